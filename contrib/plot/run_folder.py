@@ -1,0 +1,111 @@
+"""Reads the folder of a Limber run: parameters, statistics, points."""
+
+import base64
+import re
+import xml.etree.ElementTree as xml
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+VTK_TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4",
+             "UInt32": "<u4", "Int64": "<i8", "UInt64": "<u8",
+             "Int8": "i1", "UInt8": "u1"}
+
+
+def parameters(folder):
+    """Returns {'Section/Name': value} of parameters.prm, without comments."""
+    values, section = {}, []
+    for line in (Path(folder) / "parameters.prm").read_text().splitlines():
+        line = line.split("#")[0].strip()
+        if line.startswith("subsection "):
+            section.append(line[len("subsection "):].strip())
+        elif line == "end":
+            section.pop()
+        elif line.startswith("set "):
+            name, value = line[len("set "):].split("=", 1)
+            values["/".join(section + [name.strip()])] = value.strip()
+    return values
+
+
+def numbers(text):
+    """'0, -9.81' as an array."""
+    return np.array([float(word) for word in re.split("[,;]", text)])
+
+
+def words(text):
+    """'front, height' as a list."""
+    return [word.strip() for word in text.split(",") if word.strip()]
+
+
+def statistics(folder):
+    """Returns ({name: column}, {name: unit})."""
+    path = Path(folder) / "statistics"
+    columns = re.findall(r"^# *(\d+): *(.+?) *(?:\[([^\]]*)\])? *$",
+                         path.read_text(), re.MULTILINE)
+    table = np.loadtxt(path, ndmin=2)
+    values = {name: table[:, int(n) - 1] for n, name, _ in columns}
+    return values, {name: unit for _, name, unit in columns}
+
+
+def data_array(element, compressed):
+    """One array of a VTU file, as written by deal.II: text or base64."""
+    kind = VTK_TYPES[element.get("type")]
+    text = "".join((element.text or "").split())
+    if element.get("format") != "binary" or not text:
+        values = np.array((element.text or "").split(), dtype=kind)
+    elif not compressed:
+        values = np.frombuffer(base64.b64decode(text)[4:], kind)
+    else:
+        # A header of 32-bit numbers: blocks, their size, size of the last
+        # one, compressed size of each. It is encoded on its own.
+        blocks = int(np.frombuffer(base64.b64decode(text[:8])[:4], "<u4")[0])
+        length = -(-4 * (3 + blocks) // 3) * 4
+        sizes = np.frombuffer(base64.b64decode(text[:length]), "<u4")[3:]
+        data, begin, parts = base64.b64decode(text[length:]), 0, []
+        for size in sizes[:blocks]:
+            parts.append(zlib.decompress(data[begin:begin + size]))
+            begin += size
+        values = np.frombuffer(b"".join(parts), kind)
+    components = int(element.get("NumberOfComponents") or 1)
+    return values.reshape(-1, components) if components > 1 else values
+
+
+def points(path):
+    """Reads a .vtu or .pvtu: {'position': ..., and each field by its name}."""
+    path = Path(path)
+    root = xml.parse(path).getroot()
+    if path.suffix == ".pvtu":
+        pieces = [points(path.parent / piece.get("Source"))
+                  for piece in root.iter("Piece")]
+    else:
+        compressed = root.get("compressor") is not None
+        pieces = []
+        for piece in root.iter("Piece"):
+            place = piece.find("Points/DataArray")
+            if int(piece.get("NumberOfPoints")) == 0 or place is None:
+                continue
+            fields = {array.get("Name"): data_array(array, compressed)
+                      for array in piece.findall("PointData/DataArray")}
+            pieces.append({"position": data_array(place, compressed), **fields})
+    pieces = [piece for piece in pieces if piece]
+    if not pieces:
+        return {}
+    return {name: np.concatenate([piece[name] for piece in pieces])
+            for name in pieces[0]}
+
+
+def series(folder):
+    """Returns the times and the files of points.pvd, in order."""
+    path = Path(folder) / "points.pvd"
+    if not path.exists():
+        return np.array([]), []
+    files = {}
+    for entry in xml.parse(path).getroot().iter("DataSet"):
+        files[float(entry.get("timestep"))] = path.parent / entry.get("file")
+    times = sorted(files)
+    return np.array(times), [files[time] for time in times]
+
+
+def magnitude(vectors):
+    return np.sqrt((vectors**2).sum(axis=1))

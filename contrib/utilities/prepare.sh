@@ -1,0 +1,93 @@
+# Sourced by contrib/limber and contrib/check: installs what is missing on
+# Debian, configures and builds. Says nothing when nothing needs doing.
+#
+# Expects 'set -euo pipefail'. Sets root (the project) and build (the folder of
+# the release build).
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=$root/build/release
+
+packages=(g++ cmake ninja-build ccache libdeal.ii-dev libgtest-dev
+  python3-numpy python3-matplotlib python3-h5py)
+
+# Both for mpirun in a container, and for more ranks than cores.
+if [[ $(id -u) == 0 ]]; then
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+fi
+export OMPI_MCA_rmaps_base_oversubscribe=${OMPI_MCA_rmaps_base_oversubscribe:-1}
+export OMPI_MCA_hwloc_base_binding_policy=${OMPI_MCA_hwloc_base_binding_policy:-none}
+
+fail() {
+  echo "$*" >&2
+  exit 1
+}
+
+# Runs a command with its output in a log, which is shown if it fails.
+quietly() {
+  local log=$1
+  shift
+  "$@" >"$log" 2>&1 && return
+  cat "$log" >&2
+  fail "'$*' failed; what it said is above and in $log."
+}
+
+install_missing() {
+  # Elsewhere CMake says what is missing.
+  command -v dpkg-query apt-get >/dev/null || return 0
+
+  local package missing=() as_root=()
+  for package in "${packages[@]}"; do
+    [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == \
+      installed ]] || missing+=("$package")
+  done
+  [[ ${#missing[@]} == 0 ]] && return
+
+  if [[ $(id -u) != 0 ]]; then
+    command -v sudo >/dev/null || fail "Missing: ${missing[*]}." \
+      "Installing them needs root: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  echo "Installing ${missing[*]} (deal.II alone takes some minutes)"
+  local log
+  log=$(mktemp)
+  quietly "$log" "${as_root[@]}" apt-get update
+  quietly "$log" "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install --yes --no-install-recommends "${missing[@]}"
+  rm "$log"
+}
+
+# As many compilers as there are cores, at 1.5 GB each.
+jobs_that_fit() {
+  local cores memory
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable/ {print int($2 / 1500000)}' /proc/meminfo)
+  ((memory < 1)) && memory=1
+  echo $((memory < cores ? memory : cores))
+}
+
+# Passes nothing on, but says so once when a compiler is at work.
+announce_building() {
+  local line said=
+  while read -r line; do
+    if [[ -z $said && $line == *"Building CXX"* ]]; then
+      echo "Building Limber, a few minutes the first time; see $1"
+      said=yes
+    fi
+  done
+}
+
+# prepare [target]: everything if no target is named.
+prepare() {
+  local log=$build/build.log
+  install_missing
+  mkdir -p "$build"
+  if [[ ! -e $build/build.ninja ]]; then
+    echo "Configuring Limber in $build"
+    quietly "$build/configure.log" \
+      cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release
+  fi
+  cmake --build "$build" --parallel "$(jobs_that_fit)" ${1:+--target "$1"} 2>&1 |
+    tee "$log" | announce_building "$log" && return
+  cat "$log" >&2
+  fail "The build failed; what it said is above and in $log."
+}

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_base_console_h
+#define limber_base_console_h
+
+#include <fstream>
+#include <iosfwd>
+#include <map>
+#include <string>
+
+namespace limber
+{
+  /**
+   * What the program says: on the screen and, once the run folder exists, in
+   * its log. Only rank 0 speaks; on the others every call does nothing but
+   * count warnings. Nothing here communicates.
+   */
+  class Console
+  {
+  public:
+    /** @p screen must outlive the console. */
+    Console(const bool speaks, std::ostream &screen);
+
+    /**
+     * Continue in a file as well, which also receives what was said before;
+     * @p append keeps what stands there, for a run that is resumed. Throws
+     * FileError.
+     */
+    void
+    open_log(const std::string &path, const bool append = false);
+
+    /** A line, or several. */
+    void
+    say(const std::string &text);
+
+    /** Only on the screen: what would make the log long or irreproducible. */
+    void
+    show(const std::string &text);
+
+    /** A line that begins with "Warning:". */
+    void
+    warn(const std::string &text);
+
+    /**
+     * A warning that may come up in every step: said the first time,
+     * counted afterwards. @p key tells kinds of warnings apart.
+     */
+    void
+    warn_once(const std::string &key, const std::string &text);
+
+    /** How often each kind of warn_once() came up, for the summary. */
+    const std::map<std::string, unsigned int> &
+    warning_counts() const;
+
+  private:
+    const bool                          speaks;
+    std::ostream                       &screen;
+    std::ofstream                       log;
+    std::string                         said_before_log;
+    std::map<std::string, unsigned int> counts;
+  };
+} // namespace limber
+
+#endif

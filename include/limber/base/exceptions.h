@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_base_exceptions_h
+#define limber_base_exceptions_h
+
+#include <stdexcept>
+#include <string>
+
+namespace limber
+{
+  /**
+   * What the program returns to the shell. Study drivers and batch scripts
+   * tell a typing mistake from an unstable run by these numbers.
+   */
+  enum class ExitCode
+  {
+    success            = 0, // finished as asked
+    wrong_input        = 1, // wrong use or wrong input, nothing was computed
+    computation_failed = 2, // not finite, unstable, too many points lost
+    file_error         = 3, // a file could not be read or written
+    check_missed       = 4, // finished, but a requested check was missed
+    stopped_by_signal  = 128
+  };
+
+
+
+  /**
+   * A failure that the user can mend. Its message has four parts, in this
+   * order: what happened, with the offending value; where (section and entry,
+   * or body, place and time); the usual cause; what to change.
+   */
+  class Failure : public std::runtime_error
+  {
+  public:
+    Failure(const ExitCode code, const std::string &message)
+      : std::runtime_error(message)
+      , code(code)
+    {}
+
+    const ExitCode code;
+  };
+
+
+
+  /** The scene or the command line is wrong; nothing was computed. */
+  class InputError : public Failure
+  {
+  public:
+    explicit InputError(const std::string &message)
+      : Failure(ExitCode::wrong_input, message)
+    {}
+  };
+
+
+
+  /** The run became unstable, not finite, or lost too many points. */
+  class ComputationError : public Failure
+  {
+  public:
+    explicit ComputationError(const std::string &message)
+      : Failure(ExitCode::computation_failed, message)
+    {}
+  };
+
+
+
+  /** A file could not be read or written. */
+  class FileError : public Failure
+  {
+  public:
+    explicit FileError(const std::string &message)
+      : Failure(ExitCode::file_error, message)
+    {}
+  };
+} // namespace limber
+
+#endif

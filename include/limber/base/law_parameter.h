@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_base_law_parameter_h
+#define limber_base_law_parameter_h
+
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * One entry in the section of a law: what the scene may say and how it is
+   * documented. Words are numbered: the value of a word is its place in the
+   * list.
+   */
+  struct LawParameter
+  {
+    const char *name;
+    double      standard; // default
+    double      lowest, highest; // open interval, or closed where admitted
+    bool        closed;          // the bounds themselves are admissible
+    const char *text;            // symbol, meaning, unit, formula
+    const char *words = "";      // "false|true": a choice instead of a number
+  };
+
+
+
+  /** What the scene needs to know of a law: its name and its entries. */
+  struct LawDescription
+  {
+    std::string               name;
+    std::vector<LawParameter> parameters;
+  };
+
+
+
+  /** Entries that several laws share. */
+  namespace law_parameters
+  {
+    inline constexpr LawParameter density{
+      "Density",
+      1000,
+      0,
+      1e300,
+      false,
+      "rho_0, mass per volume in the reference state, kg/m^3"};
+    inline constexpr LawParameter young_modulus{
+      "Young's modulus",
+      1e6,
+      0,
+      1e300,
+      false,
+      "E, Pa"};
+    inline constexpr LawParameter poisson_ratio{
+      "Poisson's ratio",
+      0.3,
+      -1,
+      0.5,
+      false,
+      "nu, dimensionless; K = E / (3 (1 - 2 nu)), G = E / (2 (1 + nu))"};
+  } // namespace law_parameters
+} // namespace limber
+
+#endif

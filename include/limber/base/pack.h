@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_base_pack_h
+#define limber_base_pack_h
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+/**
+ * @file A pack is a few doubles that the compiler keeps in one vector
+ * register (or several, on machines with short ones). Arithmetic, comparison
+ * and the selection <tt>mask ? a : b</tt> are the compiler's own; this file
+ * adds what it lacks. Laws are written for a type @p Number that is a pack in
+ * the sweeps and a double in the tests, so every function here has both forms.
+ */
+namespace limber
+{
+  namespace internal
+  {
+    template <int width>
+    struct PackType
+    {
+      typedef double type __attribute__((vector_size(width * sizeof(double))));
+      typedef std::int64_t mask
+        __attribute__((vector_size(width * sizeof(double))));
+    };
+
+    template <>
+    struct PackType<1>
+    {
+      using type = double;
+      using mask = bool;
+    };
+  } // namespace internal
+
+  template <int width>
+  using Pack = typename internal::PackType<width>::type;
+
+  /** How many doubles a Number holds. */
+  template <class Number>
+  inline constexpr int pack_width = sizeof(Number) / sizeof(double);
+
+
+
+  template <class Number>
+  inline Number
+  load(const double *const from)
+  {
+    Number to;
+    std::memcpy(&to, from, sizeof(Number));
+    return to;
+  }
+
+
+
+  template <class Number>
+  inline void
+  store(const Number &from, double *const to)
+  {
+    std::memcpy(to, &from, sizeof(Number));
+  }
+
+
+
+  /** All lanes equal to one value. */
+  template <class Number>
+  inline Number
+  broadcast(const double value)
+  {
+    return value - Number{};
+  }
+
+
+
+  template <class Number>
+  inline double
+  lane(const Number &pack, const int i)
+  {
+    if constexpr (pack_width<Number> == 1)
+      return pack;
+    else
+      return pack[i];
+  }
+
+
+
+  template <class Number>
+  inline double
+  sum(const Number &pack)
+  {
+    double result = lane(pack, 0);
+    for (int i = 1; i < pack_width<Number>; ++i)
+      result += lane(pack, i);
+    return result;
+  }
+
+
+
+  template <class Number>
+  inline double
+  maximum(const Number &pack)
+  {
+    double result = lane(pack, 0);
+    for (int i = 1; i < pack_width<Number>; ++i)
+      result = lane(pack, i) > result ? lane(pack, i) : result;
+    return result;
+  }
+
+
+
+  /** The larger of two, lane by lane. */
+  template <class Number>
+  inline Number
+  larger(const Number &a, const Number &b)
+  {
+    return a > b ? a : b;
+  }
+
+
+
+  template <class Number>
+  inline Number
+  magnitude(const Number &a)
+  {
+    return a < 0. ? -a : a;
+  }
+
+
+
+  /** A scalar function applied to each lane. */
+  template <class Number, class Function>
+  inline Number
+  each_lane(const Number &a, const Function &function)
+  {
+    if constexpr (pack_width<Number> == 1)
+      return function(a);
+    else
+      {
+        Number result = a;
+        for (int i = 0; i < pack_width<Number>; ++i)
+          result[i] = function(a[i]);
+        return result;
+      }
+  }
+
+
+
+  template <class Number>
+  inline Number
+  square_root(const Number &a)
+  {
+    return each_lane(a, [](const double x) { return std::sqrt(x); });
+  }
+
+
+
+  /**
+   * 1 / a^(1/3) for positive a by Newton's iteration x <- x (4 - a x^3) / 3,
+   * from a start that divides the binary exponent by minus three (within 4 %,
+   * so that four quadratic steps reach round-off). Not defined for a <= 0.
+   */
+  template <class Number>
+  inline Number
+  inverse_cube_root(const Number &a)
+  {
+    using Bits = std::conditional_t<
+      pack_width<Number> == 1,
+      std::int64_t,
+      typename internal::PackType<pack_width<Number>>::mask>;
+    Bits bits;
+    std::memcpy(&bits, &a, sizeof(a));
+    bits = 0x553ef0ff289dd796LL - bits / 3;
+    Number x;
+    std::memcpy(&x, &bits, sizeof(x));
+    for (unsigned int i = 0; i < 5; ++i)
+      x *= (4. - a * x * x * x) * (1. / 3.);
+    return x;
+  }
+
+
+
+  /** Which of the first lanes of a pack take part: the tail of a run. */
+  template <class Number>
+  inline auto
+  first_lanes(const int n)
+  {
+    if constexpr (pack_width<Number> == 1)
+      return n > 0;
+    else
+      {
+        typename internal::PackType<pack_width<Number>>::mask lanes;
+        for (int i = 0; i < pack_width<Number>; ++i)
+          lanes[i] = i;
+        return lanes < n;
+      }
+  }
+} // namespace limber
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_base_text_h
+#define limber_base_text_h
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/** @file Small tools for words: cutting, joining, and guessing the meant one.
+ */
+namespace limber
+{
+  /** Without white space at both ends. */
+  std::string
+  trimmed(const std::string &text);
+
+  /** The trimmed parts of @p text; an empty text has no parts. */
+  std::vector<std::string>
+  split(const std::string &text, const char separator);
+
+  std::string
+  join(const std::vector<std::string> &parts, const std::string &separator);
+
+  /** 'text' in single quotes, as names and values stand in messages. */
+  std::string
+  in_quotes(const std::string &text);
+
+  /** The finite number that @p text is as a whole, if it is one. */
+  std::optional<double>
+  to_number(const std::string &text);
+
+  /** The shortest decimal form that reads back as the same number. */
+  std::string
+  to_text(const double number);
+
+  /** With four significant digits, for messages. */
+  std::string
+  brief(const double number);
+
+  /**
+   * The candidate that @p word was probably meant to be: the one with the
+   * smallest edit distance, letter case aside. Empty where none is near.
+   */
+  std::optional<std::string>
+  nearest(const std::string &word, const std::vector<std::string> &candidates);
+} // namespace limber
+
+#endif

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_grid_grid_view_h
+#define limber_grid_grid_view_h
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+/**
+ * @file What the sweeps see of the background grid: plain arrays, no deal.II.
+ * BackgroundGrid and NodalFields fill them; every sweep reads and writes the
+ * grid through them and through nothing else, so that hanging nodes and ranks
+ * remain a matter of NodalFields alone.
+ */
+namespace limber
+{
+  inline constexpr std::uint32_t invalid_cell = 0xffffffffu;
+
+  /**
+   * The record of a node. Before the nodes are advanced the slots hold sums
+   * over points: mass, force, momentum, re-mapped momentum. Afterwards the
+   * same storage holds mass, velocity increment of the step, new velocity,
+   * re-mapped velocity. Two dimensions are padded to one cache line.
+   */
+  template <int dim>
+  struct NodeLayout
+  {
+    static constexpr unsigned int mass     = 0;
+    static constexpr unsigned int force    = 1;
+    static constexpr unsigned int momentum = 1 + dim;
+    static constexpr unsigned int remapped = 1 + 2 * dim;
+    static constexpr unsigned int stride   = dim == 2 ? 8 : 10;
+
+    static constexpr unsigned int increment = force;
+    static constexpr unsigned int velocity  = momentum;
+  };
+
+
+
+  /** A rectangular cell: its first corner, 1 / edges, records of its nodes. */
+  template <int dim>
+  struct CellGeometry
+  {
+    std::array<double, dim>             origin;       // m
+    std::array<double, dim>             inverse_edge; // 1/m
+    std::array<std::uint32_t, 1 << dim> node; // offset of the node's record
+  };
+
+
+
+  /**
+   * From a place to the cell that holds it: a table over equal bins, as fine
+   * as the finest cell. Places outside the table give invalid_cell.
+   */
+  template <int dim>
+  struct BinView
+  {
+    std::array<double, dim>       lower{};
+    std::array<double, dim>       inverse_edge{};
+    std::array<std::int64_t, dim> n{};
+    const std::uint32_t          *table = nullptr;
+
+    std::uint32_t
+    cell_at(const std::array<double, dim> &x) const
+    {
+      std::int64_t index = 0;
+      for (int d = dim - 1; d >= 0; --d)
+        {
+          const double bin = std::floor((x[d] - lower[d]) * inverse_edge[d]);
+          if (!(bin >= 0 && bin < static_cast<double>(n[d])))
+            return invalid_cell;
+          index = index * n[d] + static_cast<std::int64_t>(bin);
+        }
+      return table[index];
+    }
+  };
+
+
+
+  template <int dim>
+  struct GridView
+  {
+    const CellGeometry<dim> *cells = nullptr;
+    double                  *nodes = nullptr;
+    BinView<dim>             bins;
+
+    // Cells that a point has entered and that were empty before; their nodes
+    // have to join the active ones.
+    std::uint8_t               *occupied = nullptr; // per cell
+    std::vector<std::uint32_t> *entered  = nullptr;
+  };
+
+
+
+  /**
+   * The sums over the points of one body in each cell from which the
+   * Hu-Washizu averages follow (DGQ0): the shares of the cell in the masses
+   * of its nodes, sum of V p, and sum of m times the volumetric variable.
+   */
+  template <int dim>
+  struct CellSums
+  {
+    static constexpr unsigned int pressure   = 1 << dim; // sum V p, J
+    static constexpr unsigned int volumetric = pressure + 1;
+    static constexpr unsigned int stride     = pressure + 2;
+
+    double *data = nullptr;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_linear_h
+#define limber_interpolation_linear_h
+
+#include <limber/base/pack.h>
+#include <limber/grid/grid_view.h>
+
+#include <array>
+
+namespace limber
+{
+  /**
+   * Bilinear and trilinear functions (Q1) on a rectangular cell. Node i lies
+   * at the upper end in direction d where bit d of i is set, which is
+   * deal.II's order of vertices.
+   *
+   * Points give to nodes with the nodes as lanes of a pack: the weights of
+   * all nodes of the cell at one point. Points take from nodes with points as
+   * lanes: the nodal values become the coefficients of the monomials 1, xi,
+   * eta, xi eta, ..., once per batch, and are evaluated at many points.
+   */
+  template <int dim>
+  struct Linear
+  {
+    static constexpr int n_nodes = 1 << dim;
+    using Nodes                  = Pack<n_nodes>;
+
+    /** Lanes of the nodes at the upper end in direction d: +1, others -1. */
+    static Nodes
+    sign(const int d)
+    {
+      Nodes result;
+      for (int i = 0; i < n_nodes; ++i)
+        result[i] = (i >> d & 1) ? 1. : -1.;
+      return result;
+    }
+
+    /** One-dimensional weights in direction d at natural coordinate xi. */
+    static Nodes
+    weights(const int d, const double xi)
+    {
+      Nodes lower;
+      for (int i = 0; i < n_nodes; ++i)
+        lower[i] = (i >> d & 1) ? 0. : 1.;
+      return lower + sign(d) * xi;
+    }
+
+    /** Exchange the lanes of the two ends of each edge in direction d. */
+    static Nodes
+    across(const Nodes &a, const int d)
+    {
+      typename internal::PackType<n_nodes>::mask order;
+      for (int i = 0; i < n_nodes; ++i)
+        order[i] = i ^ (1 << d);
+      return __builtin_shuffle(a, order);
+    }
+
+    /**
+     * Turn nodal values a[i] into coefficients of monomials, in place:
+     * coefficient k belongs to the product of the coordinates whose bits are
+     * set in k. Lanes are components.
+     */
+    template <class Number>
+    static void
+    to_monomials(std::array<Number, n_nodes> &a)
+    {
+      for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < n_nodes; ++i)
+          if (i >> d & 1)
+            a[i] -= a[i ^ (1 << d)];
+    }
+
+    /**
+     * Turn the shares of a cell in the masses of its nodes, s_i = sum m N_i,
+     * into the moments of the monomials, sum m xi^.. eta^.., in place.
+     */
+    static void
+    to_moments(std::array<double, n_nodes> &s)
+    {
+      for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < n_nodes; ++i)
+          if (!(i >> d & 1))
+            s[i] += s[i ^ (1 << d)];
+    }
+
+    /** Value at natural coordinates xi; c(k) is the k-th coefficient. */
+    template <class Number, class Coefficient>
+    static Number
+    value(const Coefficient &c, const std::array<Number, dim> &xi)
+    {
+      const Number lower =
+        (c(0) + c(1) * xi[0]) + (c(2) + c(3) * xi[0]) * xi[1];
+      if constexpr (dim == 2)
+        return lower;
+      else
+        return lower +
+               ((c(4) + c(5) * xi[0]) + (c(6) + c(7) * xi[0]) * xi[1]) * xi[2];
+    }
+
+    /** Derivatives with respect to the natural coordinates. */
+    template <class Number, class Coefficient>
+    static std::array<Number, dim>
+    gradient(const Coefficient &c, const std::array<Number, dim> &xi)
+    {
+      if constexpr (dim == 2)
+        return {{c(1) + c(3) * xi[1], c(2) + c(3) * xi[0]}};
+      else
+        {
+          const Number top = c(6) + c(7) * xi[0];
+          return {{(c(1) + c(3) * xi[1]) + (c(5) + c(7) * xi[1]) * xi[2],
+                   (c(2) + c(3) * xi[0]) + top * xi[2],
+                   (c(4) + c(5) * xi[0]) + top * xi[1]}};
+        }
+    }
+  };
+} // namespace limber
+
+#endif

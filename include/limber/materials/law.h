@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_law_h
+#define limber_materials_law_h
+
+#include <limber/base/pack.h>
+
+#include <array>
+#include <type_traits>
+
+/**
+ * @file What a constitutive law is. Laws see numbers only: neither mesh nor
+ * points. Everything is written for a type @p Number that is a double in the
+ * tests and a pack of doubles in the sweeps.
+ *
+ * Conventions: stress positive in tension, pressure positive in compression.
+ * Points store Kirchhoff quantities, tau = J sigma, so that the force of a
+ * point is (m / rho_0) tau whatever its law. Two dimensions mean plane strain;
+ * the deviator is always that of three dimensions.
+ */
+namespace limber
+{
+  /** The motion of a point within one step. */
+  template <int dim, class Number>
+  struct MotionIncrement
+  {
+    std::array<std::array<Number, dim>, dim> gradient; // dt grad v, as it is
+    Number volumetric; // dt div v, averaged where the body is projected
+    double step;       // dt, s
+
+    Number
+    trace() const
+    {
+      Number result = gradient[0][0];
+      for (int d = 1; d < dim; ++d)
+        result += gradient[d][d];
+      return result;
+    }
+  };
+
+
+
+  /** Deviatoric, symmetric: xx, yy, xy (2d) or xx, yy, xy, yz, zx (3d). */
+  template <int dim, class Number>
+  using Deviator = std::array<Number, dim == 2 ? 3 : 5>;
+
+
+
+  template <int dim, class Number, int n_history>
+  struct PointState
+  {
+    Number                        pressure{}; // J p, Pa
+    Deviator<dim, Number>         deviator{}; // of J sigma, Pa
+    std::array<Number, n_history> history{};
+  };
+
+
+
+  /** Energy per reference volume that a step turned into heat, J/m^3. */
+  template <class Number>
+  struct Dissipation
+  {
+    Number viscous{};
+    Number cutoff{}; // removed together with tension
+  };
+
+
+
+  /** The deviator of the symmetric part of a matrix. */
+  template <int dim, class Number>
+  inline Deviator<dim, Number>
+  symmetric_deviator(const std::array<std::array<Number, dim>, dim> &a)
+  {
+    if constexpr (dim == 2)
+      {
+        const Number third = (a[0][0] + a[1][1]) * (1. / 3.);
+        return {
+          {a[0][0] - third, a[1][1] - third, 0.5 * (a[0][1] + a[1][0])}};
+      }
+    else
+      {
+        const Number third = (a[0][0] + a[1][1] + a[2][2]) * (1. / 3.);
+        return {{a[0][0] - third,
+                 a[1][1] - third,
+                 0.5 * (a[0][1] + a[1][0]),
+                 0.5 * (a[1][2] + a[2][1]),
+                 0.5 * (a[2][0] + a[0][2])}};
+      }
+  }
+
+
+
+  /** s : s, with the zz component that is not stored. */
+  template <int dim, class Number>
+  inline Number
+  squared_norm(const Deviator<dim, Number> &s)
+  {
+    const Number zz     = s[0] + s[1];
+    Number       result = s[0] * s[0] + s[1] * s[1] + zz * zz;
+    for (unsigned int k = 2; k < s.size(); ++k)
+      result += 2. * s[k] * s[k];
+    return result;
+  }
+
+
+
+  /**
+   * The contract, checked when a law enters the list. A law has
+   *  - name, what the scene calls it, and parameters, what its section holds;
+   *  - n_history<dim>, how many doubles a point keeps besides the stress;
+   *  - has_deviator, whether it bears shear;
+   *  - dissipates, whether update() may return dissipated energy;
+   *  - accepts(), whether this variant of a law serves given parameters;
+   *  - has_constant_wave_speed(), whether it is the same in every state;
+   *  - volumetric, the index of the history variable with the volumetric
+   *    history, or -1 where that is the pressure itself;
+   *  - update(): new stress and history after a motion;
+   *  - initialise(): the state at rest under a given pressure;
+   *  - volume_ratio(), strain_energy(), volumetric_energy(),
+   *    wave_speed_squared() of a state; dynamic_viscosity().
+   */
+  template <class Law>
+  struct CheckLaw
+  {
+    static_assert(!std::is_polymorphic_v<Law>,
+                  "a law has no virtual function: it is called per point");
+    static_assert(Law::volumetric >= -1 &&
+                    Law::volumetric < Law::template n_history<2>,
+                  "the volumetric variable is one of the history variables");
+  };
+} // namespace limber
+
+#endif

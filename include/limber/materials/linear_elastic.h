@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_linear_elastic_h
+#define limber_materials_linear_elastic_h
+
+#include <limber/base/law_parameter.h>
+#include <limber/materials/law.h>
+
+namespace limber
+{
+  /**
+   * Linear elasticity for small strain and rotation, in rates:
+   *
+   *   dp = -K tr(d eps),   ds = 2 G dev(d eps)
+   *
+   * The stress is the whole history: a point keeps no deformation gradient.
+   * Energy per volume p^2 / 2K + s:s / 4G.
+   */
+  class LinearElastic
+  {
+  public:
+    static constexpr const char *name = "linear elastic";
+    static constexpr std::array  parameters{law_parameters::density,
+                                           law_parameters::young_modulus,
+                                           law_parameters::poisson_ratio};
+
+    template <int>
+    static constexpr int  n_history           = 0;
+    static constexpr bool has_deviator        = true;
+    static constexpr bool dissipates          = false;
+    static constexpr int  volumetric          = -1;
+
+    template <int dim, class Number>
+    using State = PointState<dim, Number, 0>;
+
+    explicit LinearElastic(const std::array<double, 3> &values)
+      : density(values[0])
+      , bulk_modulus(values[1] / (3 * (1 - 2 * values[2])))
+      , shear_modulus(values[1] / (2 * (1 + values[2])))
+    {}
+
+    /** Whether this variant of the law serves these parameters. */
+    static bool
+    accepts(const std::array<double, 3> &)
+    {
+      return true;
+    }
+
+    double
+    dynamic_viscosity() const
+    {
+      return 0;
+    }
+
+    bool
+    has_constant_wave_speed() const
+    {
+      return true;
+    }
+
+    template <int dim, class Number>
+    Dissipation<Number>
+    update(const MotionIncrement<dim, Number> &motion,
+           State<dim, Number>                 &state) const
+    {
+      const auto strain = symmetric_deviator<dim, Number>(motion.gradient);
+      state.pressure -= bulk_modulus * motion.volumetric;
+      for (unsigned int k = 0; k < strain.size(); ++k)
+        state.deviator[k] += 2. * shear_modulus * strain[k];
+      return {};
+    }
+
+    template <int dim>
+    State<dim, double>
+    initialise(const double pressure) const
+    {
+      State<dim, double> state;
+      state.pressure = pressure;
+      return state;
+    }
+
+    template <int dim, class Number>
+    Number
+    volume_ratio(const State<dim, Number> &state) const
+    {
+      return 1. - state.pressure / bulk_modulus;
+    }
+
+    template <class Number>
+    Number
+    volumetric_energy(const Number &pressure) const
+    {
+      return pressure * pressure / (2. * bulk_modulus);
+    }
+
+    template <int dim, class Number>
+    Number
+    strain_energy(const State<dim, Number> &state) const
+    {
+      return volumetric_energy(state.pressure) +
+             squared_norm<dim, Number>(state.deviator) / (4. * shear_modulus);
+    }
+
+    template <int dim, class Number>
+    Number
+    wave_speed_squared(const State<dim, Number> &) const
+    {
+      return broadcast<Number>((bulk_modulus + 4. / 3. * shear_modulus) /
+                               density);
+    }
+
+    const double density;       // rho_0, kg/m^3
+    const double bulk_modulus;  // K, Pa
+    const double shear_modulus; // G, Pa
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_neo_hookean_h
+#define limber_materials_neo_hookean_h
+
+#include <limber/base/law_parameter.h>
+#include <limber/materials/law.h>
+
+namespace limber
+{
+  /**
+   * Neo-Hookean solid at finite strain with the volumetric and isochoric parts
+   * apart (Simo and Hughes, Computational Inelasticity, 9.2):
+   *
+   *   W = K/2 ((J^2 - 1)/2 - ln J) + G/2 (tr(be) - 3),  be = J^(-2/3) F F^T
+   *   J p = -K/2 (J^2 - 1),   dev(tau) = G dev(be)
+   *
+   * A point keeps J and the part of be that det(be) = 1 leaves free: xx, yy,
+   * xy in plane strain; all but zz in three dimensions, where zz follows from
+   * the determinant as well. The motion enters through f = 1 + a + a^2/2 with
+   * a = dt grad v (exact to second order for a steady rotation); be takes its
+   * isochoric part, so averaging the volumetric part leaves be alone and be
+   * cannot drift away from det(be) = 1.
+   */
+  class NeoHookean
+  {
+  public:
+    static constexpr const char *name = "neo hookean";
+    static constexpr std::array  parameters{law_parameters::density,
+                                           law_parameters::young_modulus,
+                                           law_parameters::poisson_ratio};
+
+    template <int dim>
+    static constexpr int  n_history           = dim == 2 ? 4 : 6;
+    static constexpr bool has_deviator        = true;
+    static constexpr bool dissipates          = false;
+    static constexpr int  volumetric          = 0;
+
+    template <int dim, class Number>
+    using State = PointState<dim, Number, n_history<dim>>;
+
+    explicit NeoHookean(const std::array<double, 3> &values)
+      : density(values[0])
+      , bulk_modulus(values[1] / (3 * (1 - 2 * values[2])))
+      , shear_modulus(values[1] / (2 * (1 + values[2])))
+    {}
+
+    /** Whether this variant of the law serves these parameters. */
+    static bool
+    accepts(const std::array<double, 3> &)
+    {
+      return true;
+    }
+
+    double
+    dynamic_viscosity() const
+    {
+      return 0;
+    }
+
+    bool
+    has_constant_wave_speed() const
+    {
+      return false;
+    }
+
+    template <int dim, class Number>
+    Dissipation<Number>
+    update(const MotionIncrement<dim, Number> &motion,
+           State<dim, Number>                 &state) const
+    {
+      const auto  &a = motion.gradient;
+      std::array<std::array<Number, dim>, dim> f;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          {
+            f[i][j] = a[i][j];
+            for (int k = 0; k < dim; ++k)
+              f[i][j] += 0.5 * a[i][k] * a[k][j];
+          }
+      for (int d = 0; d < dim; ++d)
+        f[d][d] += 1.;
+
+      Number determinant = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+      if constexpr (dim == 3)
+        determinant = f[2][2] * determinant +
+                      f[2][1] * (f[0][2] * f[1][0] - f[0][0] * f[1][2]) +
+                      f[2][0] * (f[0][1] * f[1][2] - f[0][2] * f[1][1]);
+
+      // be = (det f)^(-2/3) f be f^T
+      const Number root  = inverse_cube_root(determinant);
+      const Number scale = root * root;
+      const auto   be    = isochoric_strain<dim>(state);
+      std::array<std::array<Number, dim>, dim> fb;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          {
+            fb[i][j] = f[i][0] * be[0][j];
+            for (int k = 1; k < dim; ++k)
+              fb[i][j] += f[i][k] * be[k][j];
+          }
+      const auto entry = [&](const int i, const int j) {
+        Number result = fb[i][0] * f[j][0];
+        for (int k = 1; k < dim; ++k)
+          result += fb[i][k] * f[j][k];
+        return scale * result;
+      };
+      state.history[1] = entry(0, 0);
+      state.history[2] = entry(1, 1);
+      state.history[3] = entry(0, 1);
+      if constexpr (dim == 3)
+        {
+          state.history[4] = entry(1, 2);
+          state.history[5] = entry(2, 0);
+        }
+
+      state.history[0] *= determinant + (motion.volumetric - motion.trace());
+      set_stress<dim>(state);
+      return {};
+    }
+
+    template <int dim>
+    State<dim, double>
+    initialise(const double pressure) const
+    {
+      // J p with Cauchy pressure p: K/2 J^2 + p J - K/2 = 0
+      const double      ratio = pressure / bulk_modulus;
+      State<dim, double> state;
+      state.history[0] = std::sqrt(ratio * ratio + 1) - ratio;
+      state.history[1] = state.history[2] = 1;
+      set_stress<dim>(state);
+      return state;
+    }
+
+    template <int dim, class Number>
+    Number
+    volume_ratio(const State<dim, Number> &state) const
+    {
+      return state.history[0];
+    }
+
+    template <class Number>
+    Number
+    volumetric_energy(const Number &J) const
+    {
+      const Number logarithm =
+        each_lane(J, [](const double x) { return std::log(x); });
+      return 0.5 * bulk_modulus * (0.5 * (J * J - 1.) - logarithm);
+    }
+
+    template <int dim, class Number>
+    Number
+    strain_energy(const State<dim, Number> &state) const
+    {
+      const auto be = isochoric_strain<dim>(state);
+      return volumetric_energy(state.history[0]) +
+             0.5 * shear_modulus * ((be[0][0] + be[1][1] + be[2][2]) - 3.);
+    }
+
+    /** An upper bound; exact at rest (largest eigenvalue by Gershgorin). */
+    template <int dim, class Number>
+    Number
+    wave_speed_squared(const State<dim, Number> &state) const
+    {
+      const auto be    = isochoric_strain<dim>(state);
+      Number     bound = be[2][2];
+      for (int i = 0; i < 3; ++i)
+        bound = larger(bound,
+                       magnitude(be[i][0]) + magnitude(be[i][1]) +
+                         magnitude(be[i][2]));
+      const Number J = state.history[0];
+      return (0.5 * bulk_modulus * (J * J + 1.) +
+              4. / 3. * shear_modulus * bound) *
+             (1. / density);
+    }
+
+    const double density;       // rho_0, kg/m^3
+    const double bulk_modulus;  // K, Pa
+    const double shear_modulus; // G, Pa
+
+  private:
+    /** be as a full matrix, zz from det(be) = 1. */
+    template <int dim, class Number>
+    static std::array<std::array<Number, 3>, 3>
+    isochoric_strain(const State<dim, Number> &state)
+    {
+      const auto  &h  = state.history;
+      const Number xx = h[1], yy = h[2], xy = h[3];
+      Number       yz{}, zx{};
+      if constexpr (dim == 3)
+        {
+          yz = h[4];
+          zx = h[5];
+        }
+      const Number minor = xx * yy - xy * xy;
+      const Number zz =
+        (1. + xx * yz * yz + yy * zx * zx - 2. * xy * yz * zx) / minor;
+      return {{{{xx, xy, zx}}, {{xy, yy, yz}}, {{zx, yz, zz}}}};
+    }
+
+    template <int dim, class Number>
+    void
+    set_stress(State<dim, Number> &state) const
+    {
+      const auto   be    = isochoric_strain<dim>(state);
+      const Number third = (be[0][0] + be[1][1] + be[2][2]) * (1. / 3.);
+      state.deviator[0]  = shear_modulus * (be[0][0] - third);
+      state.deviator[1]  = shear_modulus * (be[1][1] - third);
+      state.deviator[2]  = shear_modulus * be[0][1];
+      if constexpr (dim == 3)
+        {
+          state.deviator[3] = shear_modulus * be[1][2];
+          state.deviator[4] = shear_modulus * be[2][0];
+        }
+      const Number J = state.history[0];
+      state.pressure = -0.5 * bulk_modulus * (J * J - 1.);
+    }
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_newtonian_fluid_h
+#define limber_materials_newtonian_fluid_h
+
+#include <limber/base/law_parameter.h>
+#include <limber/materials/law.h>
+
+namespace limber
+{
+  /**
+   * Weakly compressible Newtonian fluid,
+   *
+   *   sigma = -p 1 + 2 mu dev(D),   J <- J (1 + dt div v)
+   *   p = K (1/J - 1)                     (linear in the density)
+   *   p = K/gamma (J^-gamma - 1)          (Tait, Cole)
+   *
+   * A point keeps the volume ratio J and no deformation gradient; without
+   * viscosity it keeps no deviator either. The tension cutoff sets p = 0 and
+   * J = 1 where p < 0: the fluid then parts freely, and volume grows.
+   */
+  template <bool viscous>
+  class NewtonianFluid
+  {
+  public:
+    static constexpr const char *name = "newtonian fluid";
+    static constexpr std::array  parameters{
+      law_parameters::density,
+      LawParameter{"Bulk modulus",
+                    2e9,
+                    0,
+                    1e300,
+                    false,
+                    "K, Pa; 'auto' takes the softest one that keeps the Mach "
+                     "number below 0.1",
+                    "auto"},
+      LawParameter{"Viscosity", 0, 0, 1e300, true, "mu, Pa s"},
+      LawParameter{"Tension cutoff",
+                    0,
+                    0,
+                    1,
+                    true,
+                    "whether negative pressure is set to zero, with J = 1",
+                    "false|true"},
+      LawParameter{"Equation of state",
+                    0,
+                    0,
+                    1,
+                    true,
+                    "linear: p = K (1/J - 1); tait: p = K/gamma (J^-gamma - 1)",
+                    "linear|tait"},
+      LawParameter{"Tait exponent", 7, 0, 100, false, "gamma, for tait"}};
+
+    template <int>
+    static constexpr int  n_history           = 1;
+    static constexpr bool has_deviator        = viscous;
+    static constexpr bool dissipates          = true;
+    static constexpr int  volumetric          = 0;
+
+    template <int dim, class Number>
+    using State = PointState<dim, Number, 1>;
+
+    explicit NewtonianFluid(const std::array<double, 6> &values)
+      : density(values[0])
+      , bulk_modulus(values[1])
+      , viscosity(values[2])
+      , tension_cutoff(values[3] != 0)
+      , tait(values[4] != 0)
+      , exponent(values[5])
+    {}
+
+    /** Whether this variant of the law serves these parameters. */
+    static bool
+    accepts(const std::array<double, 6> &values)
+    {
+      return (values[2] > 0) == viscous;
+    }
+
+    double
+    dynamic_viscosity() const
+    {
+      return viscosity;
+    }
+
+    bool
+    has_constant_wave_speed() const
+    {
+      return !tait;
+    }
+
+    template <int dim, class Number>
+    Dissipation<Number>
+    update(const MotionIncrement<dim, Number> &motion,
+           State<dim, Number>                 &state) const
+    {
+      Dissipation<Number> dissipation;
+      Number              J = state.history[0] * (1. + motion.volumetric);
+      if (tension_cutoff)
+        {
+          const Number cut   = larger(J, broadcast<Number>(1.));
+          dissipation.cutoff = J > 1. ? volumetric_energy(cut) : Number{};
+          J                  = J > 1. ? broadcast<Number>(1.) : J;
+        }
+      state.history[0] = J;
+      state.pressure   = J * pressure(J);
+
+      if constexpr (viscous)
+        {
+          auto strain = symmetric_deviator<dim, Number>(motion.gradient);
+          for (auto &component : strain)
+            component *= 1. / motion.step;
+          for (unsigned int k = 0; k < strain.size(); ++k)
+            state.deviator[k] = 2. * viscosity * J * strain[k];
+          dissipation.viscous = motion.step * 2. * viscosity * J *
+                                squared_norm<dim, Number>(strain);
+        }
+      return dissipation;
+    }
+
+    template <int dim>
+    State<dim, double>
+    initialise(const double pressure) const
+    {
+      const double       ratio = pressure / bulk_modulus;
+      State<dim, double> state;
+      state.history[0] =
+        tait ? std::pow(1 + exponent * ratio, -1 / exponent) : 1 / (1 + ratio);
+      state.pressure = state.history[0] * pressure;
+      return state;
+    }
+
+    template <int dim, class Number>
+    Number
+    volume_ratio(const State<dim, Number> &state) const
+    {
+      return state.history[0];
+    }
+
+    /** The energy whose derivative with respect to J is -p. */
+    template <class Number>
+    Number
+    volumetric_energy(const Number &J) const
+    {
+      if (tait)
+        return bulk_modulus / exponent *
+               ((power(J, 1 - exponent) - 1.) / (exponent - 1) + J - 1.);
+      return bulk_modulus *
+             (J - 1. - each_lane(J, [](const double x) { return std::log(x); }));
+    }
+
+    template <int dim, class Number>
+    Number
+    strain_energy(const State<dim, Number> &state) const
+    {
+      return volumetric_energy(state.history[0]);
+    }
+
+    template <int dim, class Number>
+    Number
+    wave_speed_squared(const State<dim, Number> &state) const
+    {
+      const double at_rest = bulk_modulus / density;
+      if (tait)
+        return at_rest * power(state.history[0], 1 - exponent);
+      return broadcast<Number>(at_rest);
+    }
+
+    const double density;      // rho_0, kg/m^3
+    const double bulk_modulus; // K, Pa
+    const double viscosity;    // mu, Pa s
+    const bool   tension_cutoff;
+    const bool   tait;
+    const double exponent; // gamma
+
+  private:
+    template <class Number>
+    static Number
+    power(const Number &a, const double b)
+    {
+      return each_lane(a, [b](const double x) { return std::pow(x, b); });
+    }
+
+    template <class Number>
+    Number
+    pressure(const Number &J) const
+    {
+      if (tait)
+        return bulk_modulus / exponent * (power(J, -exponent) - 1.);
+      return bulk_modulus * (1. - J) / J;
+    }
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_points_cell_batch_h
+#define limber_points_cell_batch_h
+
+#include <limber/points/point_view.h>
+
+namespace limber
+{
+  /** The window of every sweep: points of one body that share one cell. */
+  struct CellBatch
+  {
+    std::uint32_t cell;
+    std::size_t   begin, end; // points [begin, end)
+  };
+
+
+
+  /**
+   * The one loop over occupied cells: call @p work for every batch, in
+   * storage order. Points that have left the neighbours they were sorted with
+   * form batches of their own, so a cell may come more than once. Returns the
+   * number of batches, which tells how far the order has decayed.
+   */
+  template <int dim, class Work>
+  inline std::size_t
+  for_each_batch(const PointView<dim> &points, const Work &work)
+  {
+    std::size_t       n_batches = 0;
+    const std::size_t n         = points.size;
+    for (std::size_t p = 0; p < n; ++n_batches)
+      {
+        const std::uint32_t cell  = points.cell[p];
+        const std::size_t   begin = p;
+        do
+          ++p;
+        while (p < n && points.cell[p] == cell);
+        work(CellBatch{cell, begin, p});
+      }
+    return n_batches;
+  }
+} // namespace limber
+
+#endif

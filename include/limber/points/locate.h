@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_points_locate_h
+#define limber_points_locate_h
+
+#include <limber/points/point_view.h>
+
+namespace limber
+{
+  /**
+   * Give the points [begin, end), known to have been in @p cell, the number
+   * of the cell that holds them now, and report cells that come to life. A
+   * point outside the grid gets invalid_cell; MaterialPoints deals with it.
+   */
+  template <int dim>
+  inline void
+  locate(const PointView<dim> &points,
+         const GridView<dim>  &grid,
+         const std::uint32_t   cell,
+         const std::size_t     begin,
+         const std::size_t     end)
+  {
+    const CellGeometry<dim> &geometry = grid.cells[cell];
+    for (std::size_t p = begin; p < end; ++p)
+      {
+        bool inside = true;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double xi = (points.position[d][p] - geometry.origin[d]) *
+                              geometry.inverse_edge[d];
+            inside &= (xi >= 0.) & (xi <= 1.);
+          }
+        if (inside)
+          continue;
+
+        std::array<double, dim> x;
+        for (int d = 0; d < dim; ++d)
+          x[d] = points.position[d][p];
+        const std::uint32_t next = grid.bins.cell_at(x);
+        points.cell[p]           = next;
+        if (next != invalid_cell && !grid.occupied[next])
+          {
+            grid.occupied[next] = 1;
+            grid.entered->push_back(next);
+          }
+      }
+  }
+} // namespace limber
+
+#endif

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_points_point_view_h
+#define limber_points_point_view_h
+
+#include <limber/grid/grid_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace limber
+{
+  /**
+   * Independent components of a stress deviator: xx, yy, xy in two
+   * dimensions, xx, yy, xy, yz, zx in three; zz is minus the sum of xx and yy.
+   */
+  template <int dim>
+  inline constexpr unsigned int n_deviator = dim == 2 ? 3 : 5;
+
+  /** The largest number of history variables that a law may ask for. */
+  inline constexpr unsigned int max_history = 12;
+
+  /**
+   * What the sweeps see of the points of one body: one array per quantity, in
+   * the order of cells as far as the points have not moved on since the last
+   * sort. Arrays that the body does not need are null. Every array can be
+   * read and written one pack beyond the last point.
+   */
+  template <int dim>
+  struct PointView
+  {
+    std::size_t                           size = 0;
+    std::array<double *, dim>             position{}; // m
+    std::array<double *, dim>             velocity{}; // m/s
+    double                               *mass = nullptr; // kg
+    double                               *pressure = nullptr; // J p, Pa
+    std::array<double *, n_deviator<dim>> deviator{}; // of J sigma, Pa
+    std::array<double *, max_history>     history{};  // meaning: the law's
+    std::array<double *, dim * dim>       affine{};   // APIC, row-major, 1/s
+    // The variable that carries the volumetric history (of the law's choice):
+    // one of the arrays above.
+    double        *volumetric = nullptr;
+    std::uint32_t *cell       = nullptr;
+  };
+} // namespace limber
+
+#endif

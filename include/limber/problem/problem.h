@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_problem_h
+#define limber_problem_problem_h
+
+#include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
+
+#include <limber/base/functions.h>
+#include <limber/problem/shapes.h>
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+/**
+ * @file The whole question of a run as plain data: no mesh, no points. It is
+ * filled once by read_problem() and handed on as const.
+ */
+namespace limber
+{
+  enum class Placement
+  {
+    regular, // cell edges divided evenly, points at the centres of the parts
+    gauss,   // Gauss-Legendre places, weights into the masses
+    jittered // regular, moved at random by up to a quarter of the spacing
+  };
+
+  enum class LockingTreatment
+  {
+    none, // point values as they are
+    cell  // Hu-Washizu: volumetric strain and pressure in DGQ0
+  };
+
+  /** What happens to the scatter of the volume ratios within a cell. */
+  enum class HistoryTreatment
+  {
+    keep,   // every point keeps its own value
+    relax,  // it tends to the mean of the cell within a given time
+    replace // it is replaced by the mean of the cell in every step
+  };
+
+  enum class StressUpdateOrder
+  {
+    first,        // USF
+    last,         // USL
+    last_remapped // MUSL
+  };
+
+  enum class Transfer
+  {
+    pic,
+    flip,
+    apic
+  };
+
+  enum class SideCondition
+  {
+    free,
+    slip,
+    no_slip,
+    friction,
+    velocity
+  };
+
+  struct LinearElasticParameters
+  {
+    double density         = 1000; // rho, kg/m^3
+    double young_modulus   = 1e6;  // E, Pa
+    double poisson_ratio   = 0.3;  // nu, -1 < nu < 0.5
+  };
+
+  /** The same constants; the law is another. */
+  using NeoHookeanParameters = LinearElasticParameters;
+
+  struct NewtonianFluidParameters
+  {
+    double density        = 1000; // rho, kg/m^3
+    double bulk_modulus   = 2e9;  // K, Pa; negative: 'auto'
+    double viscosity      = 0;    // mu, Pa s
+    bool   tension_cutoff = false;
+    bool   tait           = false; // false: p linear in density; true: Tait
+    double tait_exponent  = 7;     // gamma
+  };
+
+  enum class LawKind
+  {
+    linear_elastic,
+    neo_hookean,
+    newtonian_fluid
+  };
+
+  /** A pressure or a traction on one initial face of a box body. */
+  template <int dim>
+  struct FaceLoad
+  {
+    std::string  name;
+    std::string  body;
+    unsigned int face = 0; // deal.II order: left right bottom top back front
+    bool         is_pressure = true;
+    Formula<dim> formula; // pressure: 1 component, Pa; traction: dim, Pa
+  };
+
+  template <int dim>
+  struct Body
+  {
+    std::string               name;
+    std::shared_ptr<const Shape<dim>> shape;
+    std::array<unsigned int, dim>     points_per_cell_edge{};
+    Placement                 placement = Placement::regular;
+    Formula<dim>              initial_velocity; // dim components, m/s
+    bool                      hydrostatic = false;
+    std::optional<Formula<dim>> initial_pressure; // 1 component, Pa
+
+    LawKind                  law = LawKind::linear_elastic;
+    LinearElasticParameters  linear_elastic;
+    NeoHookeanParameters     neo_hookean;
+    NewtonianFluidParameters newtonian_fluid; // bulk modulus already resolved
+
+    LockingTreatment treatment       = LockingTreatment::none;
+    HistoryTreatment history         = HistoryTreatment::keep;
+    double           relaxation_time = 0; // s, for HistoryTreatment::relax
+
+    double density() const;
+  };
+
+  template <int dim>
+  struct GridDescription
+  {
+    dealii::Point<dim>            lower, upper;
+    std::array<unsigned int, dim> cells{};
+  };
+
+  /** What one side of the box does; sides in deal.II's order. */
+  template <int dim>
+  struct Side
+  {
+    SideCondition condition   = SideCondition::slip;
+    double        friction    = 0; // Coulomb coefficient
+    Formula<dim>  velocity;        // dim components, m/s
+  };
+
+  template <int dim>
+  struct Loads
+  {
+    dealii::Tensor<1, dim>      gravity;    // m/s^2
+    std::optional<Formula<dim>> body_force; // dim components, per mass, m/s^2;
+                                            // empty where identically zero
+    std::vector<FaceLoad<dim>> faces;
+  };
+
+  struct Method
+  {
+    StressUpdateOrder order    = StressUpdateOrder::last_remapped;
+    Transfer          transfer = Transfer::flip;
+    double damping_time   = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
+    double courant_number = 0.4; // C
+    double time_step      = 0;   // s; 0: from the Courant number
+    double lost_points_limit = 0; // share of all points that may be lost
+    double energy_growth_limit = 1; // drift over energy scale that stops a run
+  };
+
+  struct OutputRequest
+  {
+    std::string directory              = "output";
+    bool        replace                = false; // an existing run folder
+    double      time_interval          = 0; // s; 0: statistics only
+    std::vector<std::string> fields;   // names of point fields
+    unsigned int statistics_interval   = 1; // steps
+    double       progress_interval     = 5; // s of wall time
+  };
+
+  enum class ObservableKind
+  {
+    displacement,
+    velocity,
+    stress,
+    pressure,
+    position,
+    extreme_coordinate,
+    kinetic_energy,
+    strain_energy,
+    total_energy,
+    momentum,
+    centre_of_mass,
+    frequency,
+    reaction_force
+  };
+
+  template <int dim>
+  struct Observable
+  {
+    std::string        name;
+    ObservableKind     kind = ObservableKind::displacement;
+    std::string        body; // empty: all bodies
+    dealii::Point<dim> location;
+    // direction of a component, and of an extreme: +x, -x, +y, ...
+    unsigned int axis     = 0;
+    bool         positive = true;
+    // second axis of a stress component: xx, xy, ...
+    unsigned int second_axis = 0;
+    // extreme coordinate: only points within this box, where given
+    std::optional<std::pair<dealii::Point<dim>, dealii::Point<dim>>> within;
+    std::string  observable; // frequency: of which other observable
+    unsigned int side = 0;   // reaction force
+  };
+
+  struct Check
+  {
+    std::string           name;
+    std::string           observable;
+    std::optional<double> at_time; // s; empty: at the end
+    double                reference = 0;
+    double                tolerance = 0;
+  };
+
+  template <int dim>
+  struct Problem
+  {
+    double                       end_time = 1; // s
+    std::vector<Body<dim>>       bodies;
+    GridDescription<dim>         grid;
+    std::array<Side<dim>, 2 * dim> sides;
+    Loads<dim>                   loads;
+    Method                       method;
+    OutputRequest                output;
+    std::vector<Observable<dim>> observables;
+    std::vector<Check>           checks;
+    std::vector<std::string>     notes; // what the reader decided, for the log
+  };
+} // namespace limber
+
+#endif

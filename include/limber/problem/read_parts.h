@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_read_parts_h
+#define limber_problem_read_parts_h
+
+#include <limber/base/parameters.h>
+#include <limber/problem/problem.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+/**
+ * @file The parts that read_problem() is made of, one file each. Every part
+ * declares its entries and reads them; what contradicts something read
+ * before it, it refuses. All read functions throw InputError.
+ */
+namespace limber
+{
+  /** The names that a scene gives to things; they decide which sections exist.
+   */
+  struct SceneNames
+  {
+    std::vector<std::string> bodies, face_loads, observables, checks;
+    // Parts of a body's shape, where it is a union, by name of the body.
+    std::map<std::string, std::vector<std::string>> shapes;
+  };
+
+  // Small tools of the readers (source/problem/read_tools.cc)
+
+  /** left, right, bottom, top, back, front: deal.II's order of faces. */
+  std::vector<std::string>
+  side_names(const unsigned int dim);
+
+  /** Position in side_names(). */
+  unsigned int
+  side_index(const std::string &name);
+
+  /** The same text for each direction: "0, 0, 0". */
+  std::string
+  for_each_direction(const unsigned int dim,
+                     const std::string &text,
+                     const std::string &separator = ", ");
+
+  /** "x, y, t" or "x, y, z, t", to speak about formulas. */
+  std::string
+  variable_names(const unsigned int dim);
+
+  /** Declare the entry 'Constants' of a section. */
+  void
+  declare_constants(Parameters &parameters);
+
+  /** Those of the top level and, with priority, those of the section. */
+  Constants
+  read_constants(const Section &section);
+
+  template <int dim>
+  dealii::Point<dim>
+  read_point(const Section &section, const std::string &entry);
+
+  /** The formula is evaluated once within @p box; it must be finite there. */
+  template <int dim>
+  Formula<dim>
+  read_formula(const Section      &section,
+               const std::string  &entry,
+               const unsigned int  n_components,
+               const Constants    &constants,
+               const Corners<dim> &box);
+
+  template <int dim>
+  Corners<dim>
+  corners(const GridDescription<dim> &grid);
+
+  /** "(1, 2)" */
+  template <int dim>
+  std::string
+  to_text(const dealii::Point<dim> &point);
+
+  /** Throws with a hint, unless @p name is one of @p known. */
+  void
+  check_name(const std::string              &kind,
+             const std::string              &name,
+             const std::vector<std::string> &known,
+             const std::string              &where);
+
+  // Grid, boundaries, loads (source/problem/read_grid.cc, read_loads.cc)
+
+  void
+  declare_grid(Parameters &parameters, const unsigned int dim);
+
+  template <int dim>
+  GridDescription<dim>
+  read_grid(const Section &section);
+
+  void
+  declare_boundaries(Parameters &parameters, const unsigned int dim);
+
+  template <int dim>
+  void
+  read_boundaries(const Section &section, Problem<dim> &problem);
+
+  void
+  declare_loads(Parameters                     &parameters,
+                const unsigned int              dim,
+                const std::vector<std::string> &face_loads);
+
+  /** Gravity and body force; needs the grid. */
+  template <int dim>
+  void
+  read_volume_loads(const Section &section, Problem<dim> &problem);
+
+  /** Needs the bodies. */
+  template <int dim>
+  void
+  read_face_loads(const Section &section, Problem<dim> &problem);
+
+  // Bodies (source/problem/read_shape.cc, read_material.cc, read_body.cc)
+
+  void
+  declare_shape(Parameters &parameters);
+
+  /** The sections that belong to the entry 'Shape' beside them. */
+  void
+  declare_shape_sections(Parameters                     &parameters,
+                         const unsigned int              dim,
+                         const std::vector<std::string> &union_parts);
+
+  template <int dim>
+  std::shared_ptr<const Shape<dim>>
+  read_shape(const Section      &section,
+             const Constants    &constants,
+             const Corners<dim> &grid);
+
+  void
+  declare_material_sections(Parameters &parameters);
+
+  /** Needs shape, initial velocity and gravity for the bulk modulus 'auto'. */
+  template <int dim>
+  void
+  read_material(const Section &section, Body<dim> &body, Problem<dim> &problem);
+
+  void
+  declare_bodies(Parameters        &parameters,
+                 const unsigned int dim,
+                 const SceneNames  &names);
+
+  /** Needs grid and gravity. */
+  template <int dim>
+  void
+  read_bodies(const Section &root, Problem<dim> &problem);
+
+  // Method and output (source/problem/read_method.cc)
+
+  void
+  declare_method(Parameters &parameters);
+
+  Method
+  read_method(const Section &section);
+
+  void
+  declare_output(Parameters &parameters);
+
+  OutputRequest
+  read_output(const Section &section);
+
+  // Observables and checks (source/problem/read_observables.cc)
+
+  void
+  declare_observables(Parameters                     &parameters,
+                      const unsigned int              dim,
+                      const std::vector<std::string> &names);
+
+  /** Needs grid and bodies. */
+  template <int dim>
+  void
+  read_observables(const Section &root, Problem<dim> &problem);
+
+  void
+  declare_checks(Parameters &parameters, const std::vector<std::string> &names);
+
+  /** Needs end time and observables. */
+  template <int dim>
+  void
+  read_checks(const Section &root, Problem<dim> &problem);
+} // namespace limber
+
+#endif

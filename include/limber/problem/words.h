@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_words_h
+#define limber_problem_words_h
+
+#include <limber/base/exceptions.h>
+#include <limber/base/parameters.h>
+#include <limber/base/text.h>
+#include <limber/problem/problem.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+/**
+ * @file The words of the scene and what they mean to the program, side by
+ * side and once: ranges, help texts and error messages follow from them.
+ */
+namespace limber
+{
+  /** No value: the word is reserved, but not available in this version. */
+  template <typename Enum>
+  struct Word
+  {
+    std::string         word;
+    std::optional<Enum> value;
+    std::string         text; // one line for --list and the manual
+  };
+
+  template <typename Enum>
+  using Words = std::vector<Word<Enum>>;
+
+  enum class ShapeKind
+  {
+    box,
+    ball,
+    cylinder,
+    formula,
+    union_of_shapes
+  };
+
+  enum class TimeIntegrationKind
+  {
+    explicit_steps
+  };
+
+  enum class KernelKind
+  {
+    linear
+  };
+
+  enum class EquationOfState
+  {
+    linear,
+    tait
+  };
+
+  const Words<ShapeKind> &
+  shape_words();
+
+  const Words<LawKind> &
+  law_words();
+
+  const Words<KernelKind> &
+  kernel_words();
+
+  const Words<TimeIntegrationKind> &
+  time_integration_words();
+
+  const Words<StressUpdateOrder> &
+  stress_update_words();
+
+  const Words<Transfer> &
+  transfer_words();
+
+  const Words<Placement> &
+  placement_words();
+
+  const Words<LockingTreatment> &
+  locking_words();
+
+  const Words<HistoryTreatment> &
+  history_words();
+
+  const Words<EquationOfState> &
+  equation_of_state_words();
+
+  const Words<SideCondition> &
+  side_condition_words();
+
+
+
+  /** The admissible words. */
+  template <typename Enum>
+  std::vector<std::string>
+  plain(const Words<Enum> &words)
+  {
+    std::vector<std::string> result;
+    for (const Word<Enum> &word : words)
+      result.push_back(word.word);
+    return result;
+  }
+
+
+
+  /** "word: text; word: text", for the documentation of an entry. */
+  template <typename Enum>
+  std::string
+  explained(const Words<Enum> &words)
+  {
+    std::vector<std::string> parts;
+    for (const Word<Enum> &word : words)
+      parts.push_back(word.word + ": " + word.text);
+    return join(parts, "; ") + ".";
+  }
+
+
+
+  template <typename Enum>
+  void
+  declare_word(Parameters        &parameters,
+               const std::string &entry,
+               const std::string &default_word,
+               const Words<Enum> &words,
+               const std::string &text)
+  {
+    parameters.declare(entry,
+                       default_word,
+                       admissible::one_of(plain(words)),
+                       text + " " + explained(words));
+  }
+
+
+
+  /** Throws InputError for a word that is not available in this version. */
+  template <typename Enum>
+  Enum
+  read_word(const Section     &section,
+            const std::string &entry,
+            const Words<Enum> &words)
+  {
+    const std::string text = section.text(entry);
+    std::string       available;
+    for (const Word<Enum> &word : words)
+      {
+        if (word.word == text && word.value)
+          return *word.value;
+        if (word.value)
+          available = word.word;
+      }
+    // The list ends with the reserved words; the last one before them is the
+    // most capable replacement.
+    throw InputError(in_quotes(text) + " was chosen in " +
+                     section.where(entry) +
+                     ", but is not available in this version of Limber; the "
+                     "word is reserved for a later one. Use " +
+                     in_quotes(available) + " instead.");
+  }
+} // namespace limber
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_simulation_command_line_h
+#define limber_simulation_command_line_h
+
+#include <limber/base/parameters.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /** What the user asked for in the shell. */
+  struct CommandLine
+  {
+    bool help     = false;
+    bool version  = false;
+    bool validate = false; // build everything, run nothing
+    bool resume   = false; // go on from the checkpoint in the run folder
+
+    std::optional<PrintStyle>  print_parameters;
+    std::optional<std::string> list; // topic of --list
+    std::optional<std::string> output_directory;
+
+    // "Section/Name=value", in order; --output-directory is among them.
+    std::vector<std::string> overrides;
+
+    // Path of the scene; "--": standard input; empty: none was given.
+    std::string scene;
+  };
+
+  /** Throws InputError for an unknown option or a missing value. */
+  CommandLine
+  parse_command_line(const int argc, const char *const *argv);
+
+  /** What --help prints. */
+  std::string
+  usage();
+
+  /**
+   * What --list prints: name and one line for each choice of a topic, laws,
+   * kernels, schemes, shapes or exact. Throws InputError for another topic.
+   */
+  std::string
+  list_text(const std::string &topic);
+} // namespace limber
+
+#endif

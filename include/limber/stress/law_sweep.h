@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_law_sweep_h
+#define limber_stress_law_sweep_h
+
+#include <limber/interpolation/batch_lanes.h>
+#include <limber/materials/law.h>
+#include <limber/points/locate.h>
+#include <limber/stress/stress_update.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  /** Means over the points of a cell, from the sums gathered with them. */
+  template <int dim>
+  struct CellMeans
+  {
+    std::array<double, 1 << dim> monomial; // of 1, xi, eta, xi eta, ...
+    double                       volumetric = 0;
+
+    explicit CellMeans(const double *const cell_sums)
+    {
+      std::copy_n(cell_sums, 1 << dim, monomial.begin());
+      Linear<dim>::to_moments(monomial);
+      const double inverse_mass = 1. / monomial[0];
+      for (double &m : monomial)
+        m *= inverse_mass;
+      volumetric = cell_sums[CellSums<dim>::volumetric] * inverse_mass;
+    }
+
+    /**
+     * The mean of the divergence of a velocity field, given the coefficients
+     * of its components. The gradient of a multilinear function is made of
+     * monomials, so its mean over the points is that of the monomials.
+     */
+    template <class Coefficients>
+    double
+    divergence(const Coefficients      &coefficients,
+               const unsigned int       first,
+               const CellGeometry<dim> &cell) const
+    {
+      double result = 0;
+      for (int d = 0; d < dim; ++d)
+        {
+          const auto c = coefficients.component(first + d);
+          double derivative = 0;
+          for (int k = 0; k < 1 << dim; ++k)
+            if (k >> d & 1)
+              derivative += c(k) * monomial[k ^ (1 << d)];
+          result += derivative * cell.inverse_edge[d];
+        }
+      return result;
+    }
+  };
+
+
+
+  /** StressUpdate for one law, with or without averages over cells. */
+  template <int dim, class Law, bool projected>
+  class LawSweep final : public StressUpdate<dim>
+  {
+  public:
+    explicit LawSweep(const Law &law)
+      : law(law)
+    {}
+
+    StressSummary
+    update(const PointView<dim> &points,
+           const GridView<dim>  &grid,
+           const CellSums<dim>  *sums,
+           const StressSweep    &what) const override
+    {
+      return what.move ? sweep<true>(points, grid, sums, what) :
+                         sweep<false>(points, grid, sums, what);
+    }
+
+    StateSummary
+    summarize(const PointView<dim> &points) const override
+    {
+      StateSummary result;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto state =
+            load_state<double>(points, [&](const double *a) { return a[p]; });
+          result.strain_energy += points.mass[p] * inverse_density *
+                                  law.template strain_energy<dim>(state);
+          const double J         = law.template volume_ratio<dim>(state);
+          result.smallest_volume = std::min(result.smallest_volume, J);
+          result.largest_volume  = std::max(result.largest_volume, J);
+        }
+      return result;
+    }
+
+    double
+    wave_speed_squared(const PointView<dim> &points) const override
+    {
+      double result = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        result = std::max(result,
+                          law.template wave_speed_squared<dim>(
+                            load_state<double>(points, [&](const double *a) {
+                              return a[p];
+                            })));
+      return result;
+    }
+
+    double
+    initialise(const PointView<dim> &points,
+               const std::size_t     p,
+               const double          pressure) const override
+    {
+      const auto state = law.template initialise<dim>(pressure);
+      store_state(points, state, [&](const double value, double *const a) {
+        a[p] = value;
+      });
+      return law.template volume_ratio<dim>(state);
+    }
+
+    void
+    volume_ratio(const PointView<dim> &points,
+                 double *const         volume_ratio) const override
+    {
+      for (std::size_t p = 0; p < points.size; ++p)
+        volume_ratio[p] = law.template volume_ratio<dim>(
+          load_state<double>(points, [&](const double *a) { return a[p]; }));
+    }
+
+    unsigned int
+    n_history() const override
+    {
+      return Law::template n_history<dim>;
+    }
+
+    bool
+    has_deviator() const override
+    {
+      return Law::has_deviator;
+    }
+
+    int
+    volumetric() const override
+    {
+      return Law::volumetric;
+    }
+
+    double
+    density() const override
+    {
+      return law.density;
+    }
+
+    double
+    viscosity() const override
+    {
+      return law.dynamic_viscosity();
+    }
+
+  private:
+    template <class Number>
+    using State = PointState<dim, Number, Law::template n_history<dim>>;
+
+    template <class Number, class Load>
+    static State<Number>
+    load_state(const PointView<dim> &points, const Load &load)
+    {
+      State<Number> state;
+      state.pressure = load(points.pressure);
+      if constexpr (Law::has_deviator)
+        for (unsigned int k = 0; k < state.deviator.size(); ++k)
+          state.deviator[k] = load(points.deviator[k]);
+      for (unsigned int k = 0; k < state.history.size(); ++k)
+        state.history[k] = load(points.history[k]);
+      return state;
+    }
+
+    template <class Number, class Store>
+    static void
+    store_state(const PointView<dim> &points,
+                const State<Number>  &state,
+                const Store          &store)
+    {
+      store(state.pressure, points.pressure);
+      if constexpr (Law::has_deviator)
+        for (unsigned int k = 0; k < state.deviator.size(); ++k)
+          store(state.deviator[k], points.deviator[k]);
+      for (unsigned int k = 0; k < state.history.size(); ++k)
+        store(state.history[k], points.history[k]);
+    }
+
+    template <class Number>
+    static Number &
+    volumetric_variable(State<Number> &state)
+    {
+      if constexpr (Law::volumetric < 0)
+        return state.pressure;
+      else
+        return state.history[Law::volumetric];
+    }
+
+
+
+    template <bool moves>
+    StressSummary
+    sweep(const PointView<dim>       &points,
+          const GridView<dim>        &grid,
+          const CellSums<dim> *const  sums,
+          const StressSweep          &what) const
+    {
+      using Number = PointPack<dim>;
+      using Kernel = Linear<dim>;
+      using Layout = NodeLayout<dim>;
+
+      const unsigned int strained      = what.remapped ? dim : 0;
+      const bool         measure_waves = !law.has_constant_wave_speed();
+      Number             waves{}, viscous{}, removed{}, displacement{};
+
+      for_each_batch(points, [&](const CellBatch &batch) {
+        const CellGeometry<dim> &cell = grid.cells[batch.cell];
+        // new velocity and, right behind it, the re-mapped one
+        const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
+          cell, grid.nodes);
+
+        [[maybe_unused]] double mean_volumetric = 0, mean_increment = 0;
+        if constexpr (projected)
+          {
+            const CellMeans<dim> mean(sums->data +
+                                      batch.cell * CellSums<dim>::stride);
+            mean_volumetric = mean.volumetric;
+            mean_increment =
+              what.step * mean.divergence(nodal, strained, cell);
+          }
+
+        for (std::size_t p = batch.begin; p < batch.end;
+             p += BatchLanes<dim>::width)
+          {
+            const BatchLanes<dim> lanes(batch, p);
+            const auto            xi = lanes.natural(points, cell);
+
+            MotionIncrement<dim, Number> motion;
+            motion.step = what.step;
+            for (int d = 0; d < dim; ++d)
+              {
+                const auto gradient = Kernel::template gradient<Number>(
+                  nodal.component(strained + d), xi);
+                for (int e = 0; e < dim; ++e)
+                  motion.gradient[d][e] =
+                    (what.step * cell.inverse_edge[e]) * gradient[e];
+              }
+            motion.volumetric = motion.trace();
+
+            auto state = load_state<Number>(points, [&](const double *a) {
+              return lanes.load(a);
+            });
+            // reference volume, zero in lanes beyond the batch
+            [[maybe_unused]] const Number volume =
+              lanes.only_active(lanes.load(points.mass)) * inverse_density;
+
+            if constexpr (projected)
+              {
+                motion.volumetric = broadcast<Number>(mean_increment);
+                if (what.relaxation > 0)
+                  {
+                    Number      &variable = volumetric_variable(state);
+                    const Number before =
+                      law.volumetric_energy(variable);
+                    variable +=
+                      what.relaxation * (mean_volumetric - variable);
+                    removed +=
+                      volume * (before - law.volumetric_energy(variable));
+                  }
+              }
+
+            const auto dissipation = law.template update<dim>(motion, state);
+            if constexpr (Law::dissipates)
+              {
+                viscous += volume * dissipation.viscous;
+                removed += volume * dissipation.cutoff;
+              }
+            store_state(points, state, [&](const Number &value, double *a) {
+              lanes.store(value, a);
+            });
+            if (measure_waves)
+              waves = larger(waves,
+                             lanes.only_active(
+                               law.template wave_speed_squared<dim>(state)));
+
+            if constexpr (moves)
+              for (int d = 0; d < dim; ++d)
+                {
+                  const Number shift =
+                    what.step *
+                    Kernel::template value<Number>(nodal.component(d), xi);
+                  displacement =
+                    larger(displacement,
+                           lanes.only_active(magnitude(shift) *
+                                             cell.inverse_edge[d]));
+                  lanes.store(lanes.load(points.position[d]) + shift,
+                              points.position[d]);
+                }
+          }
+        if constexpr (moves)
+          locate(points, grid, batch.cell, batch.begin, batch.end);
+      });
+
+      StressSummary result;
+      result.wave_speed_squared =
+        measure_waves ? maximum(waves) :
+                        law.template wave_speed_squared<dim>(State<double>{});
+      result.viscous      = sum(viscous);
+      result.history      = sum(removed);
+      result.displacement = maximum(displacement);
+      return result;
+    }
+
+    const Law    law;
+    const double inverse_density = 1. / law.density;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_ledger_h
+#define limber_stress_ledger_h
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/tensor.h>
+
+#include <array>
+
+namespace limber
+{
+  /**
+   * What has happened to energy and momentum since the start, summed step by
+   * step on this rank; sum_over_ranks() completes it. Energies in J,
+   * impulses in kg m/s.
+   *
+   * The kinetic energy of points changes by what the grid gained,
+   * grid_kinetic, less what the transfers between points and grid removed;
+   * that loss is therefore known without being measured.
+   */
+  template <int dim>
+  struct Ledger
+  {
+    double grid_kinetic  = 0; // change of kinetic energy on the grid
+    double boundary_work = 0; // done on the material by the sides of the box
+    double load_work     = 0; // by body force formulas and face loads
+    double viscous       = 0; // turned into heat by viscosity
+    double history       = 0; // removed with volumetric history or tension
+
+    dealii::Tensor<1, dim> load_impulse; // body force formulas and face loads
+    dealii::Tensor<1, dim> gravity_impulse;
+    // From each side of the box on the material, in deal.II's order.
+    std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
+
+    double                 lost_mass    = 0; // kg
+    double                 lost_kinetic = 0;
+    double                 lost_other   = 0; // strain and gravity energy
+    dealii::Tensor<1, dim> lost_momentum;
+    unsigned long          lost_points = 0;
+
+    Ledger
+    sum_over_ranks(MPI_Comm communicator) const
+    {
+      static_assert(sizeof(Ledger) % sizeof(double) == 0);
+      constexpr int n = (sizeof(Ledger) - sizeof(lost_points)) / sizeof(double);
+      Ledger        result;
+      MPI_Allreduce(
+        &grid_kinetic, &result.grid_kinetic, n, MPI_DOUBLE, MPI_SUM, communicator);
+      result.lost_points =
+        dealii::Utilities::MPI::sum(lost_points, communicator);
+      return result;
+    }
+  };
+} // namespace limber
+
+#endif

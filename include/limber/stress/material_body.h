@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_material_body_h
+#define limber_stress_material_body_h
+
+#include <limber/grid/nodal_fields.h>
+#include <limber/points/material_points.h>
+#include <limber/stress/ledger.h>
+#include <limber/stress/stress_update.h>
+
+#include <memory>
+#include <optional>
+
+namespace limber
+{
+  /** A body at run time: its points, its law, its cell sums if projected. */
+  template <int dim>
+  struct MaterialBody
+  {
+    const Body<dim>                         &description;
+    std::unique_ptr<const StressUpdate<dim>> stress;
+    MaterialPoints<dim>                      points;
+    // Hu-Washizu sums in DGQ0, only where the treatment needs them
+    std::optional<CellFields<dim>> cell_sums;
+  };
+
+
+
+  /** What the outside may look at between two steps. */
+  template <int dim>
+  struct State
+  {
+    const Problem<dim>                                      &problem;
+    const BackgroundGrid<dim>                               &grid;
+    const NodalFields<dim>                                  &nodes;
+    const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
+
+    unsigned long step      = 0;
+    double        time      = 0; // s
+    double        step_size = 0; // of the last step, s
+    Ledger<dim>   ledger;        // of this rank
+  };
+} // namespace limber
+
+#endif

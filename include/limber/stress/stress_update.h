@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_stress_update_h
+#define limber_stress_stress_update_h
+
+#include <limber/base/law_parameter.h>
+#include <limber/points/point_view.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /** How a sweep over a body updates its strain and stress. */
+  struct StressSweep
+  {
+    double step     = 0;     // s
+    bool   remapped = false; // grad v of the re-mapped velocity, not the new
+    bool   move     = false; // then move the points with the new velocity
+    // Share of the way that the volumetric variable goes to the mean of the
+    // cell in this step: 0 keeps the history, 1 replaces it.
+    double relaxation = 0;
+  };
+
+
+
+  struct StressSummary
+  {
+    double wave_speed_squared = 0; // the largest, m^2/s^2
+    double viscous            = 0; // dissipated by viscosity, J
+    double history            = 0; // removed with history or tension, J
+    double displacement       = 0; // the largest over the edge of its cell
+  };
+
+
+
+  /** Extremes and sums of a body that statistics ask for now and then. */
+  struct StateSummary
+  {
+    double strain_energy   = 0; // J
+    double smallest_volume = 1; // of all J
+    double largest_volume  = 1;
+  };
+
+
+
+  /**
+   * The sweep over the points of a body that turns the motion of the grid
+   * into strain, averages it where the body is projected, and calls the law.
+   * The type of the law is erased here, once per body and step.
+   */
+  template <int dim>
+  class StressUpdate
+  {
+  public:
+    virtual ~StressUpdate() = default;
+
+    virtual StressSummary
+    update(const PointView<dim> &points,
+           const GridView<dim>  &grid,
+           const CellSums<dim>  *sums,
+           const StressSweep    &what) const = 0;
+
+    /** Energies and volume ratios of the present state. */
+    virtual StateSummary
+    summarize(const PointView<dim> &points) const = 0;
+
+    /** The largest wave speed squared of the present state, m^2/s^2. */
+    virtual double
+    wave_speed_squared(const PointView<dim> &points) const = 0;
+
+    /** Set point p to rest under a Cauchy pressure (Pa); returns J. */
+    virtual double
+    initialise(const PointView<dim> &points,
+               std::size_t           p,
+               double                pressure) const = 0;
+
+    /** J at points [begin, end), written to @p volume_ratio. */
+    virtual void
+    volume_ratio(const PointView<dim> &points,
+                 double               *volume_ratio) const = 0;
+
+    virtual unsigned int
+    n_history() const = 0;
+    virtual bool
+    has_deviator() const = 0;
+    /** Index of the volumetric history variable; -1: the pressure. */
+    virtual int
+    volumetric() const = 0;
+    virtual double
+    density() const = 0; // kg/m^3
+    virtual double
+    viscosity() const = 0; // Pa s, 0 for solids
+  };
+
+
+
+  /** Every law in the list: its name and the entries of its section. */
+  std::vector<LawDescription>
+  describe_laws();
+
+  /**
+   * The sweep for the law of that name; @p values in the order of its
+   * entries; @p projected: strain and pressure averaged over cells.
+   */
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_stress_update(const std::string         &law,
+                     const std::vector<double> &values,
+                     bool                       projected);
+} // namespace limber
+
+#endif

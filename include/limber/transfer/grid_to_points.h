@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_transfer_grid_to_points_h
+#define limber_transfer_grid_to_points_h
+
+#include <limber/points/point_view.h>
+
+namespace limber
+{
+  /** What the points of a body take from the nodes in one sweep. */
+  struct TakeFromGrid
+  {
+    // Share alpha of the velocity increment (FLIP); the rest is the velocity
+    // itself (PIC): v = alpha (v + sum N dv) + (1 - alpha) sum N v.
+    double flip_share = 1;
+    bool   affine     = false; // keep grad v of the grid for APIC
+    bool   remap      = false; // give the new momentum back to the nodes
+    double move       = 0;     // step by which the points move with the grid, s
+  };
+
+
+
+  /** What a sweep learns on its way. */
+  struct VelocitySummary
+  {
+    double speed_squared = 0; // the largest, m^2/s^2
+    double displacement  = 0; // the largest over the edge of its cell
+  };
+
+
+
+  /**
+   * Update the velocities of the points from the nodes and, on request, move
+   * the points and give the new momentum back to the nodes with the weights
+   * of the old positions (MUSL).
+   */
+  template <int dim>
+  VelocitySummary
+  grid_to_points(const PointView<dim> &points,
+                 const GridView<dim>  &grid,
+                 const TakeFromGrid   &what);
+} // namespace limber
+
+#endif

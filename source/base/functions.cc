@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/function_parser.h>
+#include <deal.II/base/numbers.h>
+
+#include <limber/base/exceptions.h>
+#include <limber/base/functions.h>
+#include <limber/base/text.h>
+
+#include <algorithm>
+#include <cfenv>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    /**
+     * deal.II 9.4 prints the parser's complaint to the error stream before it
+     * throws. The user is to read it once, in our message.
+     */
+    class SilencedErrorStream
+    {
+    public:
+      SilencedErrorStream()
+        : original(std::cerr.rdbuf(swallowed.rdbuf()))
+      {}
+
+      ~SilencedErrorStream()
+      {
+        std::cerr.rdbuf(original);
+      }
+
+    private:
+      std::ostringstream swallowed;
+      std::streambuf    *original;
+    };
+
+
+
+    /** Debug builds trap divisions by zero; here they are a question. */
+    class HeldFloatingPointTraps
+    {
+    public:
+      HeldFloatingPointTraps()
+      {
+        std::feholdexcept(&environment);
+      }
+
+      ~HeldFloatingPointTraps()
+      {
+        std::fesetenv(&environment);
+      }
+
+    private:
+      std::fenv_t environment;
+    };
+
+
+
+    template <int dim>
+    std::string
+    variables()
+    {
+      return dim == 2 ? "x, y, t" : "x, y, z, t";
+    }
+
+
+
+    void
+    check_constants(const Constants &constants, const std::string &where)
+    {
+      for (const std::string reserved : {"x", "y", "z", "t", "pi"})
+        if (constants.count(reserved) > 0)
+          throw InputError("The constant " + in_quotes(reserved) +
+                           " is used in " + where +
+                           ". This name is taken by a variable or by the " +
+                           "number pi. Choose another name, for instance " +
+                           in_quotes(reserved + "0") + ".");
+    }
+
+
+
+    void
+    check_components(const std::vector<std::string> &components,
+                     const unsigned int              expected,
+                     const std::string              &expression,
+                     const std::string              &where)
+    {
+      const bool has_gap =
+        std::find(components.begin(), components.end(), "") != components.end();
+      if (components.size() == expected && !has_gap)
+        return;
+
+      std::vector<std::string> example(expected, "0");
+      throw InputError(
+        "The formula " + in_quotes(expression) + " has " +
+        (has_gap ? "an empty component" :
+                   std::to_string(components.size()) + " components") +
+        " in " + where + ", which takes " + std::to_string(expected) +
+        ". Usually the separator ';' is missing or one too many. Write " +
+        in_quotes(join(example, "; ")) + ", for instance.");
+    }
+
+
+
+    /** What muparser says, without deal.II's frame around it. */
+    std::string
+    complaint_of(const dealii::ExceptionBase &exception)
+    {
+      std::ostringstream text;
+      exception.print_info(text);
+      const std::string all = text.str();
+      const std::string key = "The parser said: ";
+      const auto        at  = all.find(key);
+      return trimmed(at == std::string::npos ? all :
+                                               all.substr(at + key.size()));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Formula<dim>::Formula(const std::string &expression,
+                        const Constants   &constants,
+                        const unsigned int n_components,
+                        const std::string &where)
+    : parser(std::make_shared<dealii::FunctionParser<dim>>(n_components))
+    , text(trimmed(expression))
+    , components(n_components)
+  {
+    check_constants(constants, where);
+    const std::vector<std::string> parts = split(text, ';');
+    check_components(parts, n_components, text, where);
+
+    zero = std::all_of(parts.begin(), parts.end(), [](const std::string &part) {
+      return to_number(part) == 0.;
+    });
+
+    Constants with_pi = constants;
+    with_pi["pi"]     = dealii::numbers::PI;
+    try
+      {
+        const SilencedErrorStream silence;
+        parser->initialize(dim == 2 ? "x,y,t" : "x,y,z,t",
+                           parts,
+                           with_pi,
+                           /*time_dependent=*/true);
+        // The parser looks at the text only when a value is asked for.
+        is_finite(dealii::Point<dim>(), 0.);
+      }
+    catch (const dealii::ExceptionBase &exception)
+      {
+        throw InputError(
+          "The formula " + in_quotes(text) +
+          " cannot be read: " + complaint_of(exception) + ", in " + where +
+          ". Usually a name or a bracket is wrong. Use " + variables<dim>() +
+          ", pi and 'Constants', as in 'sin(pi*x)'.");
+      }
+  }
+
+
+
+  template <int dim>
+  double
+  Formula<dim>::value(const dealii::Point<dim> &point,
+                      const double              time,
+                      const unsigned int        component) const
+  {
+    AssertIndexRange(component, components);
+    parser->set_time(time);
+    return parser->value(point, component);
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  Formula<dim>::vector(const dealii::Point<dim> &point, const double time) const
+  {
+    AssertDimension(components, dim);
+    dealii::Tensor<1, dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      result[d] = value(point, time, d);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  Formula<dim>::is_finite(const dealii::Point<dim> &point,
+                          const double              time) const
+  {
+    const HeldFloatingPointTraps held;
+    for (unsigned int c = 0; c < components; ++c)
+      if (!std::isfinite(value(point, time, c)))
+        return false;
+    return true;
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  Formula<dim>::n_components() const
+  {
+    return components;
+  }
+
+
+
+  template <int dim>
+  bool
+  Formula<dim>::is_zero() const
+  {
+    return zero;
+  }
+
+
+
+  template <int dim>
+  bool
+  Formula<dim>::empty() const
+  {
+    return components == 0;
+  }
+
+
+
+  template <int dim>
+  const std::string &
+  Formula<dim>::expression() const
+  {
+    return text;
+  }
+
+
+
+  template class Formula<2>;
+  template class Formula<3>;
+} // namespace limber

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/parameters.h>
+#include <limber/base/text.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+namespace limber
+{
+  namespace
+  {
+    std::string
+    full_name(const SectionPath &section, const std::string &name)
+    {
+      return to_text(section) + (section.empty() ? "" : "/") + name;
+    }
+
+
+
+    std::string
+    in_section(const SectionPath &section)
+    {
+      return section.empty() ? "at the top level" :
+                               "in section " + in_quotes(to_text(section));
+    }
+
+
+
+    std::string
+    place_of(const unsigned int line, const std::string &origin)
+    {
+      return line == 0 ? origin :
+                         "line " + std::to_string(line) + " of " + origin;
+    }
+
+
+
+    /** The right-hand side, where @p text says 'full name = value'. */
+    std::optional<std::string>
+    assigned_value(const std::string &text, const std::string &full_name)
+    {
+      if (text.compare(0, full_name.size(), full_name) != 0)
+        return std::nullopt;
+      const std::string rest = trimmed(text.substr(full_name.size()));
+      if (rest.empty() || rest.front() != '=')
+        return std::nullopt;
+      return trimmed(rest.substr(1));
+    }
+
+
+
+    /** "Known there are a, b and c", unless these are too many to read. */
+    std::string
+    known_names(const std::vector<std::string> &names)
+    {
+      if (names.empty() || names.size() > 6)
+        return "See all entries with 'limber --print-parameters prm'.";
+      return "Known there: " + join(names, ", ") + ".";
+    }
+  } // namespace
+
+
+
+  void
+  Parameters::enter_subsection(const std::string &name)
+  {
+    handler.enter_subsection(name);
+    present.push_back(name);
+  }
+
+
+
+  void
+  Parameters::leave_subsection()
+  {
+    handler.leave_subsection();
+    present.pop_back();
+  }
+
+
+
+  void
+  Parameters::declare(const std::string &name,
+                      const std::string &default_value,
+                      const Admissible  &admissible,
+                      const std::string &text)
+  {
+    handler.declare_entry(name,
+                          default_value,
+                          admissible,
+                          text + " Range: " + admissible.description() + ".");
+    declarations.push_back({present, name, default_value, admissible, text});
+  }
+
+
+
+  void
+  Parameters::declare_list(const std::string &list,
+                           const std::string &default_value,
+                           const std::string &prefix,
+                           const std::string &text)
+  {
+    declare(list, default_value, admissible::names("first, second"), text);
+    lists.push_back({present, list, prefix});
+  }
+
+
+
+  void
+  Parameters::read(const Scan &scan, const std::vector<std::string> &overrides)
+  {
+    for (const ScannedSection &section : scan.sections)
+      if (!is_declared(section.path))
+        refuse_section(section.path, place_of(section.line, scan.origin));
+
+    std::set<std::string> seen;
+    for (const ScannedEntry &entry : scan.entries)
+      {
+        const std::string  place = place_of(entry.line, scan.origin);
+        const Declaration *found = find(entry.section, entry.name);
+        if (found == nullptr)
+          refuse_entry(entry, place);
+        set(*found, entry, place);
+        if (!seen.insert(full_name(entry.section, entry.name)).second)
+          notes.push_back("Entry " + in_quotes(entry.name) + " " +
+                          in_section(entry.section) +
+                          " is given more than once; " +
+                          in_quotes(entry.value) + " counts (" + place + ").");
+      }
+
+    for (const std::string &override_text : overrides)
+      read_override(override_text);
+  }
+
+
+
+  void
+  Parameters::read_override(const std::string &override_text)
+  {
+    // Names may contain '=', so the declared ones decide where the value
+    // begins.
+    for (const Declaration &declaration : declarations)
+      if (const auto value =
+            assigned_value(override_text,
+                           full_name(declaration.section, declaration.name)))
+        return set(declaration,
+                   {declaration.section, declaration.name, *value, 0},
+                   "--set");
+
+    const auto equals = override_text.find('=');
+    if (equals == std::string::npos)
+      throw InputError("The override " + in_quotes(override_text) +
+                       " of --set on the command line has no '='. Usually "
+                       "quotation marks are missing around it. Write --set "
+                       "\"Method/Courant number=0.3\", for instance.");
+    ScannedEntry entry;
+    entry.section = split(override_text.substr(0, equals), '/');
+    entry.value   = trimmed(override_text.substr(equals + 1));
+    if (!entry.section.empty())
+      {
+        entry.name = entry.section.back();
+        entry.section.pop_back();
+      }
+    if (is_declared(entry.section))
+      refuse_entry(entry, "--set");
+    refuse_section(entry.section, "--set");
+  }
+
+
+
+  void
+  Parameters::set(const Declaration  &declaration,
+                  const ScannedEntry &entry,
+                  const std::string  &place)
+  {
+    if (!declaration.admissible.match(entry.value))
+      throw InputError(
+        "The value " + in_quotes(entry.value) + " of entry " +
+        in_quotes(entry.name) + " " + in_section(entry.section) + " (" + place +
+        ") is not admissible. Usually a digit, sign or word is "
+        "mistyped. Write " +
+        declaration.admissible.description() + ", for instance " +
+        in_quotes(declaration.admissible.example()) + ".");
+
+    for (const std::string &name : entry.section)
+      handler.enter_subsection(name);
+    handler.set(entry.name, entry.value);
+    for (std::size_t i = 0; i < entry.section.size(); ++i)
+      handler.leave_subsection();
+    places[full_name(entry.section, entry.name)] = place;
+  }
+
+
+
+  void
+  Parameters::refuse_section(const SectionPath &path,
+                             const std::string &place) const
+  {
+    // The outermost unknown one is what the user got wrong.
+    SectionPath outer = path;
+    while (!outer.empty() &&
+           !is_declared(SectionPath(outer.begin(), outer.end() - 1)))
+      outer.pop_back();
+    const std::string name = outer.back();
+    outer.pop_back();
+
+    const std::string start = "Section " + in_quotes(name) + " " +
+                              in_section(outer) + " (" + place + ") ";
+    for (const NameList &list : lists)
+      if (list.section == outer &&
+          name.compare(0, list.prefix.size(), list.prefix) == 0)
+        throw InputError(
+          start + "belongs to no name in the list " + in_quotes(list.entry) +
+          ". Usually it was forgotten there. Write 'set " + list.entry + " = " +
+          trimmed(name.substr(list.prefix.size())) +
+          "', after any other names.");
+
+    std::vector<std::string> siblings;
+    std::string              elsewhere;
+    for (const Declaration &declaration : declarations)
+      for (std::size_t i = 0; i < declaration.section.size(); ++i)
+        {
+          const std::string &candidate = declaration.section[i];
+          const SectionPath  around(declaration.section.begin(),
+                                   declaration.section.begin() + i);
+          if (around == outer)
+            siblings.push_back(candidate);
+          else if (candidate == name && elsewhere.empty())
+            elsewhere = in_section(around);
+        }
+    siblings.erase(std::unique(siblings.begin(), siblings.end()),
+                   siblings.end());
+    const auto meant = nearest(name, siblings);
+    throw InputError(
+      start + "is not known. Usually the name is misspelt or an 'end' is " +
+      "missing or misplaced. " +
+      (elsewhere.empty() ? "" : "It exists " + elsewhere + ". ") +
+      (meant ? "Did you mean " + in_quotes(*meant) + "?" :
+               known_names(siblings)));
+  }
+
+
+
+  void
+  Parameters::refuse_entry(const ScannedEntry &entry,
+                           const std::string  &place) const
+  {
+    std::vector<std::string> siblings;
+    std::string              elsewhere;
+    for (const Declaration &declaration : declarations)
+      if (declaration.section == entry.section)
+        siblings.push_back(declaration.name);
+      else if (declaration.name == entry.name && elsewhere.empty())
+        elsewhere = in_section(declaration.section);
+
+    const auto meant = nearest(entry.name, siblings);
+    throw InputError(
+      "Entry " + in_quotes(entry.name) + " " + in_section(entry.section) +
+      " (" + place + ") is not known. Usually it is misspelt or in the wrong " +
+      "section. " + (elsewhere.empty() ? "" : "It exists " + elsewhere + ". ") +
+      (meant             ? "Did you mean " + in_quotes(*meant) + "?" :
+       elsewhere.empty() ? known_names(siblings) :
+                           "Move it there."));
+  }
+
+
+
+  const Declaration *
+  Parameters::find(const SectionPath &section, const std::string &name) const
+  {
+    const auto found = std::find_if(declarations.begin(),
+                                    declarations.end(),
+                                    [&](const Declaration &declaration) {
+                                      return declaration.section == section &&
+                                             declaration.name == name;
+                                    });
+    return found == declarations.end() ? nullptr : &*found;
+  }
+
+
+
+  bool
+  Parameters::is_declared(const SectionPath &section) const
+  {
+    return std::any_of(declarations.begin(),
+                       declarations.end(),
+                       [&](const Declaration &declaration) {
+                         const SectionPath &other = declaration.section;
+                         return other.size() >= section.size() &&
+                                std::equal(section.begin(),
+                                           section.end(),
+                                           other.begin());
+                       });
+  }
+
+
+
+  std::string
+  Parameters::value(const SectionPath &section, const std::string &name) const
+  {
+    return trimmed(section.empty() ? handler.get(name) :
+                                     handler.get(section, name));
+  }
+
+
+
+  std::string
+  Parameters::where(const SectionPath &section, const std::string &name) const
+  {
+    const auto place = places.find(full_name(section, name));
+    return (section.empty() ? "" :
+                              "section " + in_quotes(to_text(section)) + ", ") +
+           "entry " + in_quotes(name) +
+           (place == places.end() ? "" : " (" + place->second + ")");
+  }
+
+
+
+  Section
+  Parameters::root() const
+  {
+    return Section(*this, {});
+  }
+
+
+
+  const std::vector<std::string> &
+  Parameters::warnings() const
+  {
+    return notes;
+  }
+
+
+
+  std::string
+  scanned_value(const Scan                     &scan,
+                const std::vector<std::string> &overrides,
+                const SectionPath              &section,
+                const std::string              &name,
+                const std::string              &default_value)
+  {
+    std::string result = scan.last_value(section, name).value_or(default_value);
+    for (const std::string &override_text : overrides)
+      if (const auto value =
+            assigned_value(override_text, full_name(section, name)))
+        result = *value;
+    return result;
+  }
+} // namespace limber

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/boundary_conditions.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    template <int dim>
+    dealii::Tensor<1, dim>
+    read(const double *const values)
+    {
+      dealii::Tensor<1, dim> result;
+      for (int d = 0; d < dim; ++d)
+        result[d] = values[d];
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BoundaryConditions<dim>::BoundaryConditions(
+    const std::array<Side<dim>, 2 * dim> &sides)
+    : sides(sides)
+  {}
+
+
+
+  template <int dim>
+  bool
+  BoundaryConditions<dim>::act(
+    const unsigned int                  side,
+    const dealii::Point<dim>           &place,
+    const double                        time,
+    dealii::Tensor<1, dim>             &velocity,
+    const dealii::Tensor<1, dim> *const new_velocity) const
+  {
+    const unsigned int normal  = side / 2;
+    const double       outward = side % 2 == 1 ? 1. : -1.;
+
+    switch (sides[side].condition)
+      {
+        case SideCondition::free:
+          return false;
+        case SideCondition::slip:
+          velocity[normal] = 0;
+          return true;
+        case SideCondition::no_slip:
+          velocity = 0;
+          return true;
+        case SideCondition::velocity:
+          velocity = sides[side].velocity.vector(place, time);
+          return true;
+        case SideCondition::friction:
+          {
+            const double pressing = outward * velocity[normal];
+            if (pressing <= 0)
+              return false;
+            velocity[normal]       = 0;
+            const double tangential = velocity.norm();
+            double       stopped    = sides[side].friction * pressing;
+            if (new_velocity != nullptr)
+              {
+                auto sliding    = *new_velocity;
+                sliding[normal] = 0;
+                stopped         = sliding.norm_square() == 0 ? tangential : 0;
+              }
+            if (tangential > 0)
+              velocity *= 1 - std::min(1., stopped / tangential);
+            return true;
+          }
+      }
+    return false;
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryConditions<dim>::apply(NodalFields<dim> &nodes,
+                                 const double      time,
+                                 const Account    &account) const
+  {
+    using Layout = NodeLayout<dim>;
+    for (const std::uint32_t node : nodes.active_boundary_nodes())
+      {
+        double *const record = nodes.record(node);
+        const double  mass   = record[Layout::mass];
+        if (!(mass > 0))
+          continue;
+
+        auto velocity = read<dim>(record + Layout::velocity);
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          {
+            const auto before = velocity;
+            if ((nodes.grid.sides_of_node[node] >> side & 1) == 0 ||
+                !act(side, nodes.grid.node_places[node], time, velocity, nullptr))
+              continue;
+            const auto change = velocity - before;
+            account(side, mass * change, 0.5 * mass * (change * (velocity + before)));
+            for (int d = 0; d < dim; ++d)
+              {
+                record[Layout::increment + d] += change[d];
+                record[Layout::velocity + d] = velocity[d];
+              }
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryConditions<dim>::apply_remapped(NodalFields<dim> &nodes,
+                                          const double      time) const
+  {
+    using Layout = NodeLayout<dim>;
+    for (const std::uint32_t node : nodes.active_boundary_nodes())
+      {
+        double *const record = nodes.record(node);
+        if (!(record[Layout::mass] > 0))
+          continue;
+        const auto new_velocity = read<dim>(record + Layout::velocity);
+        auto       velocity     = read<dim>(record + Layout::remapped);
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          if (nodes.grid.sides_of_node[node] >> side & 1)
+            act(side, nodes.grid.node_places[node], time, velocity, &new_velocity);
+        for (int d = 0; d < dim; ++d)
+          record[Layout::remapped + d] = velocity[d];
+      }
+  }
+
+
+
+  template class BoundaryConditions<2>;
+  template class BoundaryConditions<3>;
+} // namespace limber

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
+#include <limber/points/seeding.h>
+
+#include <random>
+
+namespace limber
+{
+  namespace
+  {
+    /** A place in the unit cell and its share of the volume. */
+    template <int dim>
+    struct Site
+    {
+      dealii::Point<dim> place;
+      double             weight;
+    };
+
+
+
+    template <int dim>
+    std::vector<Site<dim>>
+    sites(const Body<dim> &body)
+    {
+      std::array<dealii::Quadrature<1>, dim> lines;
+      for (int d = 0; d < dim; ++d)
+        {
+          const unsigned int n = body.points_per_cell_edge[d];
+          if (body.placement == Placement::gauss)
+            lines[d] = dealii::QGauss<1>(n);
+          else
+            {
+              std::vector<dealii::Point<1>> places(n);
+              for (unsigned int i = 0; i < n; ++i)
+                places[i][0] = (i + 0.5) / n;
+              lines[d] =
+                dealii::Quadrature<1>(places, std::vector<double>(n, 1. / n));
+            }
+        }
+
+      std::vector<Site<dim>> result;
+      const unsigned int     n_z = dim == 3 ? lines[dim - 1].size() : 1;
+      for (unsigned int k = 0; k < n_z; ++k)
+        for (unsigned int j = 0; j < lines[1].size(); ++j)
+          for (unsigned int i = 0; i < lines[0].size(); ++i)
+            {
+              const unsigned int index[] = {i, j, k};
+              Site<dim>          site{{}, 1.};
+              for (int d = 0; d < dim; ++d)
+                {
+                  site.place[d] = lines[d].point(index[d])[0];
+                  site.weight *= lines[d].weight(index[d]);
+                }
+              result.push_back(site);
+            }
+      return result;
+    }
+
+
+
+    /** Move a site by up to a quarter of the spacing in each direction. */
+    template <int dim>
+    void
+    jitter(Site<dim> &site, const Body<dim> &body, std::mt19937 &random)
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          // in [-1/4, 1/4), the same on every machine
+          const double shift = random() / 8589934592. - 0.25;
+          site.place[d] += shift / body.points_per_cell_edge[d];
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  seed(const Body<dim>                                         &body,
+       const BackgroundGrid<dim>                               &grid,
+       const std::function<double(const dealii::Point<dim> &)> &density,
+       MaterialPoints<dim>                                     &points)
+  {
+    const auto regular = sites(body);
+    const auto box     = body.shape->bounding_box();
+
+    // Reserving the upper bound makes the insertion several times faster.
+    const auto touches = [&](const auto &cell) {
+      for (int d = 0; d < dim; ++d)
+        if (cell->vertex(0)[d] > box.second[d] ||
+            cell->vertex((1 << dim) - 1)[d] < box.first[d])
+          return false;
+      return true;
+    };
+    std::size_t n_cells = 0;
+    for (const auto &cell : grid.triangulation.active_cell_iterators())
+      n_cells += cell->is_locally_owned() && touches(cell);
+    points.handler.reserve(n_cells * regular.size());
+
+    for (const auto &cell : grid.triangulation.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned() || !touches(cell))
+          continue;
+        const dealii::Point<dim> lower = cell->vertex(0);
+        const auto edge   = cell->vertex((1 << dim) - 1) - lower;
+        double     volume = 1;
+        unsigned long seed = 5489;
+        for (int d = 0; d < dim; ++d)
+          {
+            volume *= edge[d];
+            seed = seed * 1000003 +
+                   std::lround((lower[d] - grid.description.lower[d]) /
+                               edge[d]);
+          }
+        std::mt19937 random(seed);
+
+        for (Site<dim> site : regular)
+          {
+            if (body.placement == Placement::jittered)
+              jitter(site, body, random);
+            dealii::Point<dim> place = lower;
+            for (int d = 0; d < dim; ++d)
+              place[d] += site.place[d] * edge[d];
+            if (body.shape->contains(place))
+              points.add(cell, place, density(place) * site.weight * volume);
+          }
+      }
+    points.finish_adding();
+  }
+
+
+
+  template void
+  seed(const Body<2> &,
+       const BackgroundGrid<2> &,
+       const std::function<double(const dealii::Point<2> &)> &,
+       MaterialPoints<2> &);
+  template void
+  seed(const Body<3> &,
+       const BackgroundGrid<3> &,
+       const std::function<double(const dealii::Point<3> &)> &,
+       MaterialPoints<3> &);
+} // namespace limber

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+namespace limber
+{
+  namespace
+  {
+    void
+    declare_points_and_state(Parameters &parameters, const unsigned int dim)
+    {
+      parameters.declare("Points per cell edge",
+                         "2",
+                         admissible::positive_integers(dim, true, "2"),
+                         "Number of points along the edge of a cell, for all "
+                         "directions or for each.");
+      declare_word(parameters,
+                   "Placement",
+                   "regular",
+                   placement_words(),
+                   "How the points are placed within a cell at the start.");
+      declare_constants(parameters);
+      parameters.declare("Initial velocity",
+                         for_each_direction(dim, "0", "; "),
+                         admissible::text("formula of " + variable_names(dim) +
+                                            " with " + std::to_string(dim) +
+                                            " components",
+                                          for_each_direction(dim, "0", "; ")),
+                         "v at time 0, m/s.");
+      parameters.declare("Initial pressure",
+                         "",
+                         admissible::text("empty, hydrostatic, or formula of " +
+                                            variable_names(dim),
+                                          "hydrostatic"),
+                         "p at time 0, Pa, positive in compression, only for "
+                         "fluids; empty: none; hydrostatic: in balance with "
+                         "gravity, zero at the highest place of the body.");
+    }
+
+
+
+    void
+    declare_treatment(Parameters &parameters)
+    {
+      declare_word(parameters,
+                   "Locking treatment",
+                   "cell",
+                   locking_words(),
+                   "What keeps a nearly incompressible material from locking; "
+                   "see doc/theory.");
+      declare_word(parameters,
+                   "History",
+                   "keep",
+                   history_words(),
+                   "With the treatment 'cell': what happens to the scatter of "
+                   "the volume ratios of the points within a cell.");
+      parameters.declare("Relaxation time",
+                         "0",
+                         admissible::non_negative_number("0.01"),
+                         "Time constant tau, s, for the history 'relax'.");
+    }
+
+
+
+    void
+    declare_body(Parameters                     &parameters,
+                 const unsigned int              dim,
+                 const std::vector<std::string> &union_parts)
+    {
+      declare_shape(parameters);
+      declare_points_and_state(parameters, dim);
+      declare_word(parameters,
+                   "Material",
+                   "linear elastic",
+                   law_words(),
+                   "The law of the stress; the section of the same name holds "
+                   "its constants.");
+      declare_treatment(parameters);
+      declare_shape_sections(parameters, dim, union_parts);
+      declare_material_sections(parameters);
+    }
+  } // namespace
+
+
+
+  void
+  declare_bodies(Parameters        &parameters,
+                 const unsigned int dim,
+                 const SceneNames  &names)
+  {
+    for (const std::string &name : names.bodies)
+      {
+        parameters.enter_subsection("Body " + name);
+        declare_body(parameters, dim, names.shapes.at(name));
+        parameters.leave_subsection();
+      }
+  }
+
+
+
+  namespace
+  {
+    template <int dim>
+    void
+    check_inside_grid(const Section              &section,
+                      const Body<dim>            &body,
+                      const GridDescription<dim> &grid)
+    {
+      const Corners<dim> box = body.shape->bounding_box();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          // Decimal fractions need not meet exactly.
+          const double tolerance = 1e-10 * (grid.upper[d] - grid.lower[d]);
+          if (box.first[d] < grid.lower[d] - tolerance ||
+              box.second[d] > grid.upper[d] + tolerance)
+            throw InputError("Body " + in_quotes(body.name) + " reaches from " +
+                             to_text(box.first) + " to " + to_text(box.second) +
+                             " (" + section.where("Shape") +
+                             "), beyond the grid. Enlarge the grid: it ranges "
+                             "from " +
+                             to_text(grid.lower) + " to " +
+                             to_text(grid.upper) + "; or move the body.");
+        }
+    }
+
+
+
+    template <int dim>
+    void
+    read_points(const Section &section, Body<dim> &body)
+    {
+      const std::vector<double> points =
+        section.numbers("Points per cell edge");
+      for (unsigned int d = 0; d < dim; ++d)
+        body.points_per_cell_edge[d] =
+          static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
+      body.placement = read_word(section, "Placement", placement_words());
+    }
+
+
+
+    template <int dim>
+    void
+    read_initial_pressure(const Section      &section,
+                          const Constants    &constants,
+                          const Problem<dim> &problem,
+                          Body<dim>          &body)
+    {
+      const std::string entry = "Initial pressure";
+      if (section.is_empty(entry))
+        return;
+
+      // A solid under initial stress needs a reference state that the scene
+      // cannot describe; a fluid has only its volume ratio.
+      if (body.law != LawKind::newtonian_fluid)
+        throw InputError("The pressure " + in_quotes(section.text(entry)) +
+                         " in " + section.where(entry) +
+                         " is for fluids only; solids start without stress. "
+                         "Leave it empty and let the load settle, or use "
+                         "'Material = newtonian fluid'.");
+
+      body.hydrostatic = section.text(entry) == "hydrostatic";
+      if (!body.hydrostatic)
+        body.initial_pressure = read_formula(
+          section, entry, 1, constants, body.shape->bounding_box());
+      else if (problem.loads.gravity.norm() == 0)
+        throw InputError("The pressure 'hydrostatic' in " +
+                         section.where(entry) +
+                         " has nothing to balance, as gravity is zero. "
+                         "Usually section 'Loads' was forgotten. Set there "
+                         "'Gravity = " +
+                         for_each_direction(dim - 1, "0") + ", -9.81'.");
+    }
+
+
+
+    template <int dim>
+    void
+    read_treatment(const Section &section, Body<dim> &body)
+    {
+      body.treatment = read_word(section, "Locking treatment", locking_words());
+      body.history   = read_word(section, "History", history_words());
+      body.relaxation_time = section.number("Relaxation time");
+
+      const bool relaxes = body.history == HistoryTreatment::relax;
+      if (relaxes && body.relaxation_time == 0)
+        throw InputError("The history 'relax' has the relaxation time 0 in " +
+                         section.where("Relaxation time") +
+                         ". Usually the entry was forgotten. Give a time, for "
+                         "instance 0.01, or use 'History = replace'.");
+      if (!relaxes && body.relaxation_time > 0)
+        throw InputError("The time " + section.text("Relaxation time") +
+                         " in " + section.where("Relaxation time") +
+                         " has no effect with the history " +
+                         in_quotes(section.text("History")) +
+                         ". Usually that was not changed along with it. Set "
+                         "'History = relax'.");
+      if (body.history != HistoryTreatment::keep &&
+          body.treatment == LockingTreatment::none)
+        throw InputError("The history " + in_quotes(section.text("History")) +
+                         " in " + section.where("History") +
+                         " needs the mean of a cell, which the locking "
+                         "treatment 'none' does not form. Set 'Locking "
+                         "treatment = cell' or 'History = keep'.");
+    }
+
+
+
+    template <int dim>
+    Body<dim>
+    read_body(const Section     &section,
+              const std::string &name,
+              Problem<dim>      &problem)
+    {
+      const Constants constants = read_constants(section);
+
+      Body<dim> body;
+      body.name  = name;
+      body.shape = read_shape(section, constants, corners(problem.grid));
+      check_inside_grid(section, body, problem.grid);
+      read_points(section, body);
+      body.initial_velocity = read_formula(section,
+                                           "Initial velocity",
+                                           dim,
+                                           constants,
+                                           body.shape->bounding_box());
+      read_material(section, body, problem);
+      read_initial_pressure(section, constants, problem, body);
+      read_treatment(section, body);
+      return body;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  read_bodies(const Section &root, Problem<dim> &problem)
+  {
+    for (const std::string &name : root.list("Bodies"))
+      problem.bodies.push_back(
+        read_body(root.subsection("Body " + name), name, problem));
+  }
+
+
+
+  template void
+  read_bodies<2>(const Section &, Problem<2> &);
+  template void
+  read_bodies<3>(const Section &, Problem<3> &);
+} // namespace limber

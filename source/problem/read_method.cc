@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+namespace limber
+{
+  void
+  declare_method(Parameters &parameters)
+  {
+    parameters.enter_subsection("Method");
+    declare_word(parameters,
+                 "Time integration",
+                 "explicit",
+                 time_integration_words(),
+                 "How a step in time is taken.");
+    declare_word(parameters,
+                 "Stress update",
+                 "last, remapped",
+                 stress_update_words(),
+                 "When in a step the stress follows the motion.");
+    declare_word(parameters,
+                 "Transfer",
+                 "flip",
+                 transfer_words(),
+                 "How velocity goes from the nodes back to the points.");
+    parameters.declare("Damping time",
+                       "0",
+                       admissible::non_negative_number("0.1"),
+                       "Time constant T, s, in which PIC takes away what FLIP "
+                       "keeps: share of FLIP 1 - dt/T; 0: pure FLIP.");
+    declare_word(parameters,
+                 "Kernel",
+                 "linear",
+                 kernel_words(),
+                 "Weights of the nodes at a point.");
+    parameters.declare("Courant number",
+                       "0.4",
+                       admissible::number_from_to(1e-6, 1, "0.4"),
+                       "C, no unit; step dt = C h / (c + |v|) with the speed "
+                       "of sound c.");
+    parameters.declare("Time step",
+                       "0",
+                       admissible::non_negative_number("1e-4"),
+                       "dt, s; 0: from the Courant number.");
+    parameters.declare("Lost points limit",
+                       "0",
+                       admissible::number_from_to(0, 1, "0.01"),
+                       "Share of all points that may leave the grid before "
+                       "the run is stopped, no unit.");
+    parameters.declare("Energy growth limit",
+                       "1",
+                       admissible::positive_number("1"),
+                       "Growth of the total energy over its scale that stops a "
+                       "run as unstable, no unit.");
+    parameters.leave_subsection();
+  }
+
+
+
+  Method
+  read_method(const Section &section)
+  {
+    read_word(section, "Time integration", time_integration_words());
+    read_word(section, "Kernel", kernel_words());
+
+    Method method;
+    method.order = read_word(section, "Stress update", stress_update_words());
+    method.transfer          = read_word(section, "Transfer", transfer_words());
+    method.damping_time      = section.number("Damping time");
+    method.courant_number    = section.number("Courant number");
+    method.time_step         = section.number("Time step");
+    method.lost_points_limit = section.number("Lost points limit");
+    method.energy_growth_limit = section.number("Energy growth limit");
+
+    if (method.damping_time > 0 && method.transfer != Transfer::flip)
+      throw InputError("The damping time " + section.text("Damping time") +
+                       " in " + section.where("Damping time") +
+                       " belongs to FLIP, but 'Transfer' is " +
+                       in_quotes(section.text("Transfer")) +
+                       ". Usually one of them was changed alone. Set "
+                       "'Transfer = flip' or 'Damping time = 0'.");
+    return method;
+  }
+
+
+
+  void
+  declare_output(Parameters &parameters)
+  {
+    parameters.enter_subsection("Output");
+    parameters.declare("Directory",
+                       "output",
+                       admissible::text("path of a folder", "output"),
+                       "The run folder; it is made, with those above it.");
+    parameters.declare("Replace",
+                       "false",
+                       admissible::flag(),
+                       "Whether a folder that holds a run is overwritten.");
+    parameters.declare("Time interval",
+                       "0",
+                       admissible::non_negative_number("0.1"),
+                       "Time between pictures for ParaView, s; 0: none, only "
+                       "statistics.");
+    parameters.declare("Fields",
+                       "displacement, velocity, pressure",
+                       admissible::some_of({"displacement",
+                                            "velocity",
+                                            "pressure",
+                                            "stress",
+                                            "equivalent stress",
+                                            "volume ratio",
+                                            "mass",
+                                            "point pressure",
+                                            "body",
+                                            "none"}),
+                       "What is written with the points. Pressure is positive "
+                       "in compression, stress in tension (Cauchy); 'point "
+                       "pressure' is the one before the locking treatment.");
+    parameters.declare("Statistics interval",
+                       "1",
+                       admissible::positive_integer("10"),
+                       "Steps between rows of the statistics.");
+    parameters.declare("Progress interval",
+                       "5",
+                       admissible::non_negative_number("5"),
+                       "Wall time between lines on the screen, s; 0: a line "
+                       "for every step.");
+    parameters.leave_subsection();
+  }
+
+
+
+  OutputRequest
+  read_output(const Section &section)
+  {
+    OutputRequest output;
+    output.directory     = section.required_text("Directory");
+    output.replace       = section.flag("Replace");
+    output.time_interval = section.number("Time interval");
+    output.statistics_interval =
+      static_cast<unsigned int>(section.number("Statistics interval"));
+    output.progress_interval = section.number("Progress interval");
+
+    output.fields = section.list("Fields");
+    for (const std::string &field : output.fields)
+      if (field == "none")
+        {
+          if (output.fields.size() > 1)
+            throw InputError("The word 'none' stands beside other fields in " +
+                             section.where("Fields") +
+                             ". Usually it was left over. Write 'none' alone "
+                             "or fields alone, for instance 'velocity, "
+                             "pressure'.");
+          output.fields.clear();
+          break;
+        }
+    return output;
+  }
+} // namespace limber

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** An observable and the entries that it must or may be given. */
+    struct ObservableType
+    {
+      std::string              word;
+      ObservableKind           kind;
+      std::vector<std::string> required, optional;
+    };
+
+
+
+    const std::vector<ObservableType> &
+    observable_types()
+    {
+      using K                                  = ObservableKind;
+      const std::vector<std::string> at_point  = {"Location"};
+      const std::vector<std::string> component = {"Location", "Direction"};
+      const std::vector<std::string> body      = {"Body"};
+      static const std::vector<ObservableType> types = {
+        {"displacement", K::displacement, component, body},
+        {"velocity", K::velocity, component, body},
+        {"stress", K::stress, component, body},
+        {"pressure", K::pressure, at_point, body},
+        {"position", K::position, component, body},
+        {"extreme coordinate",
+         K::extreme_coordinate,
+         {"Direction"},
+         {"Body", "Within"}},
+        {"kinetic energy", K::kinetic_energy, {}, body},
+        {"strain energy", K::strain_energy, {}, body},
+        {"total energy", K::total_energy, {}, body},
+        {"momentum", K::momentum, {"Direction"}, body},
+        {"centre of mass", K::centre_of_mass, {"Direction"}, body},
+        {"frequency", K::frequency, {"Observable"}, {}},
+        {"reaction force", K::reaction_force, {"Side", "Direction"}, {}}};
+      return types;
+    }
+
+
+
+    const ObservableType &
+    type_of(const std::string &word)
+    {
+      return *std::find_if(observable_types().begin(),
+                           observable_types().end(),
+                           [&](const auto &type) { return type.word == word; });
+    }
+
+
+
+    std::vector<std::string>
+    type_words()
+    {
+      std::vector<std::string> words;
+      for (const ObservableType &type : observable_types())
+        words.push_back(type.word);
+      return words;
+    }
+
+
+
+    /** x, -x, +x, ... and xx, xy, ... */
+    std::vector<std::string>
+    direction_words(const unsigned int dim)
+    {
+      const std::vector<std::string> axes =
+        dim == 2 ? std::vector<std::string>{"x", "y"} :
+                   std::vector<std::string>{"x", "y", "z"};
+      std::vector<std::string> words;
+      for (const std::string sign : {"", "+", "-"})
+        for (const std::string &axis : axes)
+          words.push_back(sign + axis);
+      for (const std::string &first : axes)
+        for (const std::string &second : axes)
+          words.push_back(first + second);
+      return words;
+    }
+
+
+
+    /** "0, 0; 1, 3": two opposite corners. */
+    Admissible
+    corners_entry(const unsigned int dim)
+    {
+      const Admissible corner = admissible::numbers(dim, "");
+      return Admissible(
+        [corner](const std::string &value) {
+          const auto parts = split(value, ';');
+          return parts.size() == 2 && corner.match(parts[0]) &&
+                 corner.match(parts[1]);
+        },
+        "lower and upper corner of a box, " + corner.description() +
+          " each, ';' between them",
+        for_each_direction(dim, "0") + "; " + for_each_direction(dim, "1"));
+    }
+
+
+
+    void
+    declare_observable(Parameters        &parameters,
+                       const unsigned int dim,
+                       const std::string &name)
+    {
+      parameters.enter_subsection("Observable " + name);
+      parameters.declare("Type",
+                         "",
+                         admissible::one_of(type_words()).or_empty(),
+                         "What is observed in every step.");
+      parameters.declare("Body",
+                         "",
+                         admissible::text("name of a body, or empty", "beam"),
+                         "The body; empty: all bodies. One is needed where a "
+                         "'Location' is given and there are several.");
+      parameters.declare(
+        "Location",
+        "",
+        admissible::numbers(dim, for_each_direction(dim, "1")).or_empty(),
+        "The point nearest to this place at the start is "
+        "followed, m.");
+      parameters.declare("Direction",
+                         "",
+                         admissible::one_of(direction_words(dim)).or_empty(),
+                         "Component, with two letters for stress; the sign "
+                         "tells the extreme coordinates +x and -x apart and "
+                         "otherwise turns the value around.");
+      parameters.declare("Within",
+                         "",
+                         corners_entry(dim).or_empty(),
+                         "For extreme coordinate: only points that are within "
+                         "this box, m.");
+      parameters.declare("Observable",
+                         "",
+                         admissible::text("name of an observable", "tip"),
+                         "For frequency: of which observable, Hz, from its "
+                         "zero crossings.");
+      parameters.declare("Side",
+                         "",
+                         admissible::one_of(side_names(dim)).or_empty(),
+                         "For reaction force: the side of the grid.");
+      parameters.leave_subsection();
+    }
+  } // namespace
+
+
+
+  void
+  declare_observables(Parameters                     &parameters,
+                      const unsigned int              dim,
+                      const std::vector<std::string> &names)
+  {
+    for (const std::string &name : names)
+      declare_observable(parameters, dim, name);
+  }
+
+
+
+  namespace
+  {
+    /** Every entry that the type needs is there, and no other. */
+    void
+    check_entries(const Section &section, const ObservableType &type)
+    {
+      const auto contains = [](const std::vector<std::string> &list,
+                               const std::string              &entry) {
+        return std::find(list.begin(), list.end(), entry) != list.end();
+      };
+      for (const std::string entry :
+           {"Body", "Location", "Direction", "Within", "Observable", "Side"})
+        if (contains(type.required, entry))
+          section.required_text(entry);
+        else if (!contains(type.optional, entry) && !section.is_empty(entry))
+          throw InputError("The value " + in_quotes(section.text(entry)) +
+                           " in " + section.where(entry) +
+                           " has no meaning for the type " +
+                           in_quotes(type.word) +
+                           ". Usually it was copied along. Remove the entry or "
+                           "choose another type.");
+    }
+
+
+
+    template <int dim>
+    void
+    read_observed_body(const Section      &section,
+                       const Problem<dim> &problem,
+                       Observable<dim>    &observable)
+    {
+      std::vector<std::string> known;
+      for (const Body<dim> &body : problem.bodies)
+        known.push_back(body.name);
+
+      observable.body = section.text("Body");
+      if (!observable.body.empty())
+        check_name("body", observable.body, known, section.where("Body"));
+      else if (!section.is_empty("Location"))
+        {
+          if (known.size() > 1)
+            throw InputError(
+              "No body is named in " + section.where("Body") +
+              ", but the scene has several: " + join(known, ", ") +
+              ". A place alone does not tell whose point is "
+              "meant. Write 'set Body = " +
+              known.front() + "', for instance.");
+          observable.body = known.front();
+        }
+    }
+
+
+
+    template <int dim>
+    void
+    read_location(const Section              &section,
+                  const GridDescription<dim> &grid,
+                  Observable<dim>            &observable)
+    {
+      if (section.is_empty("Location"))
+        return;
+      observable.location = read_point<dim>(section, "Location");
+      const BoxShape<dim> box(grid.lower, grid.upper);
+      if (!box.contains(observable.location))
+        throw InputError("The place " + to_text(observable.location) + " in " +
+                         section.where("Location") +
+                         " is outside the grid. Usually a coordinate is "
+                         "mistyped. Give one from " +
+                         to_text(grid.lower) + " to " + to_text(grid.upper) +
+                         ".");
+    }
+
+
+
+    template <int dim>
+    void
+    read_direction(const Section &section, Observable<dim> &observable)
+    {
+      if (section.is_empty("Direction"))
+        return;
+
+      // [sign] axis, or two axes for a component of the stress.
+      std::string word    = section.text("Direction");
+      observable.positive = word.front() != '-';
+      if (word.front() == '-' || word.front() == '+')
+        word.erase(0, 1);
+      const bool is_stress = observable.kind == ObservableKind::stress;
+      if (word.size() != (is_stress ? 2 : 1))
+        throw InputError(
+          "The direction " + in_quotes(section.text("Direction")) + " in " +
+          section.where("Direction") + " does not fit the type " +
+          in_quotes(section.text("Type")) +
+          ". A stress needs two letters, all else one. Write " +
+          (is_stress ? "'xx'" : "'x'") + ", for instance.");
+      observable.axis        = word.front() - 'x';
+      observable.second_axis = word.back() - 'x';
+    }
+
+
+
+    template <int dim>
+    void
+    read_within(const Section &section, Observable<dim> &observable)
+    {
+      if (section.is_empty("Within"))
+        return;
+      const auto   texts = split(section.text("Within"), ';');
+      Corners<dim> box;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          box.first[d]  = to_number(split(texts[0], ',')[d]).value();
+          box.second[d] = to_number(split(texts[1], ',')[d]).value();
+          if (box.second[d] <= box.first[d])
+            throw InputError(
+              "The box ends at " + to_text(box.second) +
+              ", not beyond its lower corner " + to_text(box.first) + ", in " +
+              section.where("Within") +
+              ". Usually the corners are swapped. Give the lower "
+              "corner first, then the upper one.");
+        }
+      observable.within = box;
+    }
+
+
+
+    template <int dim>
+    Observable<dim>
+    read_observable(const Section      &section,
+                    const std::string  &name,
+                    const Problem<dim> &problem)
+    {
+      const ObservableType &type = type_of(section.required_text("Type"));
+      check_entries(section, type);
+
+      Observable<dim> observable;
+      observable.name = name;
+      observable.kind = type.kind;
+      read_observed_body(section, problem, observable);
+      read_location(section, problem.grid, observable);
+      read_direction(section, observable);
+      read_within(section, observable);
+      observable.observable = section.text("Observable");
+      if (!section.is_empty("Side"))
+        observable.side = side_index(section.text("Side"));
+      return observable;
+    }
+
+
+
+    /** A frequency is that of another observable, not of a frequency. */
+    template <int dim>
+    void
+    check_frequencies(const Section &root, const Problem<dim> &problem)
+    {
+      const std::vector<std::string> names = root.list("Observables");
+      for (const Observable<dim> &observable : problem.observables)
+        {
+          if (observable.kind != ObservableKind::frequency)
+            continue;
+          const std::string where =
+            root.subsection("Observable " + observable.name)
+              .where("Observable");
+          check_name("observable", observable.observable, names, where);
+          const auto of =
+            std::find(names.begin(), names.end(), observable.observable) -
+            names.begin();
+          if (problem.observables[of].kind == ObservableKind::frequency)
+            throw InputError("The frequency " + in_quotes(observable.name) +
+                             " is taken of " +
+                             in_quotes(observable.observable) +
+                             ", itself a frequency, in " + where +
+                             ". Only a quantity that swings has one. Name "
+                             "another observable, for instance a "
+                             "displacement.");
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  read_observables(const Section &root, Problem<dim> &problem)
+  {
+    for (const std::string &name : root.list("Observables"))
+      problem.observables.push_back(
+        read_observable(root.subsection("Observable " + name), name, problem));
+    check_frequencies(root, problem);
+  }
+
+
+
+  template void
+  read_observables<2>(const Section &, Problem<2> &);
+  template void
+  read_observables<3>(const Section &, Problem<3> &);
+} // namespace limber

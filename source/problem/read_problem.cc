@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/read_problem.h>
+
+namespace limber
+{
+  template <int dim>
+  Problem<dim>
+  read_problem(const SceneFile &scene)
+  {
+    const Section root  = scene.parameters().root();
+    const Section loads = root.subsection("Loads");
+    if (root.is_empty("Bodies"))
+      throw InputError("The scene has no bodies: " + root.where("Bodies") +
+                       " is empty, so there is nothing to move. Usually the "
+                       "list was forgotten. Write 'set Bodies = block' and a "
+                       "section 'Body block'.");
+
+    // Each part may ask those before it.
+    Problem<dim> problem;
+    problem.end_time = root.number("End time");
+    problem.grid     = read_grid<dim>(root.subsection("Grid"));
+    read_boundaries(root.subsection("Boundaries"), problem);
+    read_volume_loads(loads, problem);
+    read_bodies(root, problem);
+    read_face_loads(loads, problem);
+    problem.method = read_method(root.subsection("Method"));
+    problem.output = read_output(root.subsection("Output"));
+    read_observables(root, problem);
+    read_checks(root, problem);
+    return problem;
+  }
+
+
+
+  void
+  print_parameters(std::ostream    &out,
+                   const PrintStyle style,
+                   const SceneFile *scene)
+  {
+    if (scene != nullptr)
+      return scene->parameters().print(out, style);
+
+    ParameterText example;
+    example.origin = "template";
+    example.text   = R"(
+      set Bodies      = block
+      set Observables = corner
+      set Checks      = corner stays low
+      subsection Body block
+        subsection Box
+          set Lower corner = 0.2, 0
+          set Upper corner = 0.8, 0.5
+        end
+      end
+      subsection Loads
+        set Gravity    = 0, -9.81
+        set Face loads = weight
+        subsection Face load weight
+          set Body     = block
+          set Face     = top
+          set Pressure = 100
+        end
+      end
+      subsection Observable corner
+        set Type      = displacement
+        set Location  = 0.8, 0.5
+        set Direction = y
+      end
+      subsection Check corner stays low
+        set Observable = corner
+        set Reference  = 0
+        set Tolerance  = 0.05
+      end
+    )";
+    SceneFile(example).parameters().print(out, style);
+  }
+
+
+
+  template Problem<2>
+  read_problem<2>(const SceneFile &);
+  template Problem<3>
+  read_problem<3>(const SceneFile &);
+} // namespace limber

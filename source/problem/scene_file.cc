@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/read_problem.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** Finds the names in a scene before anything is declared. */
+    class NameReader
+    {
+    public:
+      NameReader(const Scan &scan, const std::vector<std::string> &overrides)
+        : scan(scan)
+        , overrides(overrides)
+      {}
+
+      /** The names in a list; each must have its section beside it. */
+      std::vector<std::string>
+      names(const SectionPath &section,
+            const std::string &list,
+            const std::string &prefix) const
+      {
+        const auto names =
+          split(scanned_value(scan, overrides, section, list, ""), ',');
+        for (auto name = names.begin(); name != names.end(); ++name)
+          {
+            if (std::find(names.begin(), name, *name) != name)
+              throw InputError(
+                "The name " + in_quotes(*name) + " stands twice in the list " +
+                in_quotes(list) + " of " + scan.origin +
+                ". Usually a line was copied. Remove one or "
+                "call it " +
+                in_quotes(*name + " 2") + ", with a section of its own.");
+            check_section(section, list, prefix + *name);
+          }
+        return names;
+      }
+
+      unsigned int
+      dimension() const
+      {
+        const std::string text =
+          scanned_value(scan, overrides, {}, "Dimension", "2");
+        if (text != "2" && text != "3")
+          throw InputError("The value " + in_quotes(text) +
+                           " of entry 'Dimension' in " + scan.origin +
+                           " is not admissible. Plane strain has 2 dimensions, "
+                           "space has 3. Write 'set Dimension = 2'.");
+        return text == "2" ? 2 : 3;
+      }
+
+    private:
+      void
+      check_section(const SectionPath &around,
+                    const std::string &list,
+                    const std::string &name) const
+      {
+        SectionPath path = around;
+        path.push_back(name);
+        // An empty name is refused later, by the range of the list.
+        if (name.back() == ' ' || scan.has_section(path))
+          return;
+
+        std::vector<std::string> present;
+        for (const ScannedSection &section : scan.sections)
+          if (section.path.size() == path.size())
+            present.push_back(section.path.back());
+        const auto meant = nearest(name, present);
+        throw InputError(
+          "There is no section " + in_quotes(to_text(path)) + " in " +
+          scan.origin + ", but the list " + in_quotes(list) +
+          " has its name. Usually one of them is misspelt. " +
+          (meant ? "Did you mean " + in_quotes(*meant) + "?" :
+                   "Write 'subsection " + name + "', entries, 'end'."));
+      }
+
+      const Scan                     &scan;
+      const std::vector<std::string> &overrides;
+    };
+
+
+
+    SceneNames
+    read_names(const NameReader &reader)
+    {
+      SceneNames result;
+      result.bodies      = reader.names({}, "Bodies", "Body ");
+      result.face_loads  = reader.names({"Loads"}, "Face loads", "Face load ");
+      result.observables = reader.names({}, "Observables", "Observable ");
+      result.checks      = reader.names({}, "Checks", "Check ");
+      for (const std::string &body : result.bodies)
+        result.shapes[body] =
+          reader.names({"Body " + body, "Union"}, "Shapes", "Shape ");
+      return result;
+    }
+
+
+
+    void
+    declare_top_level(Parameters &parameters)
+    {
+      parameters.declare("Dimension",
+                         "2",
+                         admissible::one_of({"2", "3"}),
+                         "Two dimensions mean plane strain and unit "
+                         "thickness.");
+      parameters.declare("End time",
+                         "1",
+                         admissible::positive_number("1"),
+                         "Time at which the run ends, s; it begins at 0.");
+      declare_constants(parameters);
+      parameters.declare_list("Bodies",
+                              "",
+                              "Body ",
+                              "Names of the bodies; each has a section 'Body "
+                              "NAME'.");
+      parameters.declare_list("Observables",
+                              "",
+                              "Observable ",
+                              "Names of columns added to the statistics; each "
+                              "has a section 'Observable NAME'.");
+      parameters.declare_list("Checks",
+                              "",
+                              "Check ",
+                              "Names of comparisons with a reference; each has "
+                              "a section 'Check NAME'.");
+    }
+
+
+
+    void
+    declare_scene(Parameters        &parameters,
+                  const unsigned int dim,
+                  const SceneNames  &names)
+    {
+      declare_top_level(parameters);
+      declare_bodies(parameters, dim, names);
+      declare_grid(parameters, dim);
+      declare_boundaries(parameters, dim);
+      declare_loads(parameters, dim, names.face_loads);
+      declare_method(parameters);
+      declare_output(parameters);
+      declare_observables(parameters, dim, names.observables);
+      declare_checks(parameters, names.checks);
+    }
+  } // namespace
+
+
+
+  SceneFile::SceneFile(const std::string              &path,
+                       const std::vector<std::string> &overrides)
+    : SceneFile(read_parameter_text(path), overrides)
+  {}
+
+
+
+  SceneFile::SceneFile(const ParameterText            &text,
+                       const std::vector<std::string> &overrides)
+    : input(text)
+  {
+    const Scan scan = scan_parameters(text.text, text.format, text.origin);
+    const NameReader reader(scan, overrides);
+    declare_scene(values, reader.dimension(), read_names(reader));
+    values.read(scan, overrides);
+
+    notes = values.warnings();
+    for (const std::string &override_text : overrides)
+      notes.push_back("From the command line: " + override_text + ".");
+  }
+
+
+
+  unsigned int
+  SceneFile::dimension() const
+  {
+    return values.root().text("Dimension") == "2" ? 2 : 3;
+  }
+
+
+
+  const std::string &
+  SceneFile::original_text() const
+  {
+    return input.text;
+  }
+
+
+
+  std::string
+  SceneFile::original_name() const
+  {
+    return input.format == FileFormat::json ? "original.json" : "original.prm";
+  }
+
+
+
+  const Parameters &
+  SceneFile::parameters() const
+  {
+    return values;
+  }
+
+
+
+  const std::vector<std::string> &
+  SceneFile::warnings() const
+  {
+    return notes;
+  }
+} // namespace limber

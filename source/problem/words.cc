@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/problem/words.h>
+
+namespace limber
+{
+  namespace
+  {
+    const std::string not_available = "not available in this version";
+  }
+
+
+
+  const Words<ShapeKind> &
+  shape_words()
+  {
+    static const Words<ShapeKind> words = {
+      {"box", ShapeKind::box, "between two corners"},
+      {"ball", ShapeKind::ball, "disc or ball, by centre and radius"},
+      {"cylinder", ShapeKind::cylinder, "along x, y or z; only in 3D"},
+      {"formula", ShapeKind::formula, "where a formula is positive"},
+      {"union", ShapeKind::union_of_shapes, "all that is in one of several"}};
+    return words;
+  }
+
+
+
+  const Words<LawKind> &
+  law_words()
+  {
+    static const Words<LawKind> words = {
+      {"linear elastic", LawKind::linear_elastic, "small strains"},
+      {"neo hookean", LawKind::neo_hookean, "elastic, large deformation"},
+      {"newtonian fluid",
+       LawKind::newtonian_fluid,
+       "viscous, weakly compressible"}};
+    return words;
+  }
+
+
+
+  const Words<KernelKind> &
+  kernel_words()
+  {
+    static const Words<KernelKind> words = {
+      {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
+      {"gimp", std::nullopt, not_available},
+      {"quadratic b-spline", std::nullopt, not_available}};
+    return words;
+  }
+
+
+
+  const Words<TimeIntegrationKind> &
+  time_integration_words()
+  {
+    static const Words<TimeIntegrationKind> words = {
+      {"explicit", TimeIntegrationKind::explicit_steps, "symplectic Euler"},
+      {"implicit", std::nullopt, not_available},
+      {"semi-implicit", std::nullopt, not_available}};
+    return words;
+  }
+
+
+
+  const Words<StressUpdateOrder> &
+  stress_update_words()
+  {
+    static const Words<StressUpdateOrder> words = {
+      {"first", StressUpdateOrder::first, "USF, before the forces"},
+      {"last", StressUpdateOrder::last, "USL, with the moved nodes"},
+      {"last, remapped",
+       StressUpdateOrder::last_remapped,
+       "MUSL, velocity gradient from the updated points"}};
+    return words;
+  }
+
+
+
+  const Words<Transfer> &
+  transfer_words()
+  {
+    static const Words<Transfer> words = {
+      {"pic", Transfer::pic, "points take the velocity; strong damping"},
+      {"flip", Transfer::flip, "points take the change of velocity"},
+      {"apic", Transfer::apic, "points carry an affine velocity field"}};
+    return words;
+  }
+
+
+
+  const Words<Placement> &
+  placement_words()
+  {
+    static const Words<Placement> words = {
+      {"regular", Placement::regular, "evenly, at the centres of the parts"},
+      {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
+      {"jittered", Placement::jittered, "regular, moved at random"}};
+    return words;
+  }
+
+
+
+  const Words<LockingTreatment> &
+  locking_words()
+  {
+    static const Words<LockingTreatment> words = {
+      {"none", LockingTreatment::none, "values of the points as they are"},
+      {"cell",
+       LockingTreatment::cell,
+       "Hu-Washizu, volume ratio and pressure constant in the cell"},
+      {"cell shear", std::nullopt, not_available},
+      {"cell full", std::nullopt, not_available},
+      {"node", std::nullopt, not_available},
+      {"hybrid", std::nullopt, not_available},
+      {"assumed strain", std::nullopt, not_available}};
+    return words;
+  }
+
+
+
+  const Words<HistoryTreatment> &
+  history_words()
+  {
+    static const Words<HistoryTreatment> words = {
+      {"keep", HistoryTreatment::keep, "every point keeps its own"},
+      {"relax",
+       HistoryTreatment::relax,
+       "it tends to the mean of the cell within 'Relaxation time'"},
+      {"replace",
+       HistoryTreatment::replace,
+       "it is set to the mean of the cell in every step"}};
+    return words;
+  }
+
+
+
+  const Words<EquationOfState> &
+  equation_of_state_words()
+  {
+    static const Words<EquationOfState> words = {
+      {"linear", EquationOfState::linear, "pressure linear in density"},
+      {"tait", EquationOfState::tait, "a power of the density"}};
+    return words;
+  }
+
+
+
+  const Words<SideCondition> &
+  side_condition_words()
+  {
+    static const Words<SideCondition> words = {
+      {"free", SideCondition::free, "nothing is prescribed"},
+      {"slip", SideCondition::slip, "no velocity through the side"},
+      {"no slip", SideCondition::no_slip, "no velocity"},
+      {"friction", SideCondition::friction, "slip with Coulomb friction"},
+      {"velocity", SideCondition::velocity, "prescribed by a formula"}};
+    return words;
+  }
+} // namespace limber

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/materials/law_list.h>
+#include <limber/stress/law_sweep.h>
+
+#include <stdexcept>
+
+namespace limber
+{
+  namespace
+  {
+    template <class Function, std::size_t... index>
+    void
+    for_each_law(const Function &function, std::index_sequence<index...>)
+    {
+      (function(static_cast<std::tuple_element_t<index, LawList> *>(nullptr)),
+       ...);
+    }
+
+
+
+    template <class Function>
+    void
+    for_each_law(const Function &function)
+    {
+      for_each_law(function,
+                   std::make_index_sequence<std::tuple_size_v<LawList>>());
+    }
+  } // namespace
+
+
+
+  std::vector<LawDescription>
+  describe_laws()
+  {
+    std::vector<LawDescription> result;
+    for_each_law([&](auto *const law) {
+      using Law = std::remove_pointer_t<decltype(law)>;
+      static_assert(sizeof(CheckLaw<Law>) > 0);
+      if (result.empty() || result.back().name != Law::name)
+        result.push_back(
+          {Law::name, {Law::parameters.begin(), Law::parameters.end()}});
+    });
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_stress_update(const std::string         &name,
+                     const std::vector<double> &values,
+                     const bool                 projected)
+  {
+    std::unique_ptr<const StressUpdate<dim>> result;
+    for_each_law([&](auto *const candidate) {
+      using Law = std::remove_pointer_t<decltype(candidate)>;
+      if (result || name != Law::name)
+        return;
+      std::array<double, Law::parameters.size()> own;
+      if (values.size() != own.size())
+        throw std::logic_error("wrong number of parameters for " + name);
+      std::copy(values.begin(), values.end(), own.begin());
+      if (!Law::accepts(own))
+        return;
+      const Law law(own);
+      if (projected)
+        result = std::make_unique<LawSweep<dim, Law, true>>(law);
+      else
+        result = std::make_unique<LawSweep<dim, Law, false>>(law);
+    });
+    if (!result)
+      throw std::logic_error("no law " + name);
+    return result;
+  }
+
+
+
+  template std::unique_ptr<const StressUpdate<2>>
+  make_stress_update(const std::string &, const std::vector<double> &, bool);
+  template std::unique_ptr<const StressUpdate<3>>
+  make_stress_update(const std::string &, const std::vector<double> &, bool);
+} // namespace limber

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/batch_lanes.h>
+#include <limber/points/locate.h>
+#include <limber/transfer/add_to_nodes.h>
+#include <limber/transfer/grid_to_points.h>
+
+namespace limber
+{
+  namespace
+  {
+    /** Momentum of the points of a batch, to the nodes of their cell. */
+    template <int dim, bool affine>
+    void
+    remap_momentum(const PointView<dim>    &points,
+                   const CellBatch         &batch,
+                   const CellGeometry<dim> &cell,
+                   double *const            nodes)
+    {
+      using Kernel = Linear<dim>;
+      using Nodes  = typename Kernel::Nodes;
+
+      std::array<Nodes, dim> momentum{};
+      for (std::size_t p = batch.begin; p < batch.end; ++p)
+        {
+          std::array<Nodes, dim> w;
+          for (int d = 0; d < dim; ++d)
+            w[d] = Kernel::weights(d,
+                                   (points.position[d][p] - cell.origin[d]) *
+                                     cell.inverse_edge[d]);
+          Nodes mass_weight = w[0] * w[1];
+          if constexpr (dim == 3)
+            mass_weight *= w[2];
+          mass_weight *= points.mass[p];
+          for (int d = 0; d < dim; ++d)
+            {
+              Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
+              if constexpr (affine)
+                for (int e = 0; e < dim; ++e)
+                  velocity +=
+                    points.affine[d * dim + e][p] / cell.inverse_edge[e] *
+                    (Kernel::sign(e) * Kernel::across(w[e], e));
+              momentum[d] += mass_weight * velocity;
+            }
+        }
+      add_to_nodes<dim, NodeLayout<dim>::remapped>(cell, momentum, nodes);
+    }
+
+
+
+    template <int dim, bool affine, bool remap, bool moves>
+    VelocitySummary
+    sweep(const PointView<dim> &points,
+          const GridView<dim>  &grid,
+          const TakeFromGrid   &what)
+    {
+      using Number = PointPack<dim>;
+      using Kernel = Linear<dim>;
+      using Layout = NodeLayout<dim>;
+
+      Number speed_squared{}, displacement{};
+
+      for_each_batch(points, [&](const CellBatch &batch) {
+        const CellGeometry<dim> &cell = grid.cells[batch.cell];
+        // velocity increment and, right behind it, the new velocity
+        const NodalCoefficients<dim, Layout::increment, 2 * dim> nodal(
+          cell, grid.nodes);
+
+        for (std::size_t p = batch.begin; p < batch.end;
+             p += BatchLanes<dim>::width)
+          {
+            const BatchLanes<dim> lanes(batch, p);
+            const auto            xi = lanes.natural(points, cell);
+
+            Number squared{};
+            for (int d = 0; d < dim; ++d)
+              {
+                const auto grid_velocity = nodal.component(dim + d);
+                Number     velocity;
+                if constexpr (affine)
+                  {
+                    velocity =
+                      Kernel::template value<Number>(grid_velocity, xi);
+                    const auto gradient =
+                      Kernel::template gradient<Number>(grid_velocity, xi);
+                    for (int e = 0; e < dim; ++e)
+                      lanes.store(gradient[e] * cell.inverse_edge[e],
+                                  points.affine[d * dim + e]);
+                  }
+                else
+                  {
+                    velocity =
+                      lanes.load(points.velocity[d]) +
+                      Kernel::template value<Number>(nodal.component(d), xi);
+                    if (what.flip_share != 1.)
+                      velocity +=
+                        (1. - what.flip_share) *
+                        (Kernel::template value<Number>(grid_velocity, xi) -
+                         velocity);
+                  }
+                lanes.store(velocity, points.velocity[d]);
+                squared += velocity * velocity;
+                if constexpr (moves)
+                  {
+                    const Number shift =
+                      what.move *
+                      Kernel::template value<Number>(grid_velocity, xi);
+                    displacement = larger(displacement,
+                                          lanes.only_active(
+                                            magnitude(shift) *
+                                            cell.inverse_edge[d]));
+                    lanes.store(lanes.load(points.position[d]) + shift,
+                                points.position[d]);
+                  }
+              }
+            speed_squared = larger(speed_squared, lanes.only_active(squared));
+          }
+
+        if constexpr (remap)
+          remap_momentum<dim, affine>(points, batch, cell, grid.nodes);
+        if constexpr (moves)
+          locate(points, grid, batch.cell, batch.begin, batch.end);
+      });
+      return {maximum(speed_squared), maximum(displacement)};
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  VelocitySummary
+  grid_to_points(const PointView<dim> &points,
+                 const GridView<dim>  &grid,
+                 const TakeFromGrid   &what)
+  {
+    const bool moves = what.move != 0;
+    if (what.affine)
+      return what.remap ? sweep<dim, true, true, false>(points, grid, what) :
+             moves      ? sweep<dim, true, false, true>(points, grid, what) :
+                          sweep<dim, true, false, false>(points, grid, what);
+    return what.remap ? sweep<dim, false, true, false>(points, grid, what) :
+           moves      ? sweep<dim, false, false, true>(points, grid, what) :
+                        sweep<dim, false, false, false>(points, grid, what);
+  }
+
+
+
+  template VelocitySummary
+  grid_to_points(const PointView<2> &,
+                 const GridView<2> &,
+                 const TakeFromGrid &);
+  template VelocitySummary
+  grid_to_points(const PointView<3> &,
+                 const GridView<3> &,
+                 const TakeFromGrid &);
+} // namespace limber

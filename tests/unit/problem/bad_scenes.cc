@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/problem/read_problem.h>
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <sstream>
+
+using namespace limber;
+
+namespace
+{
+  /** A scene that is right; each case breaks one thing. */
+  const std::string right_scene = R"(
+    set Dimension   = 2
+    set End time    = 1
+    set Bodies      = beam, water
+    set Observables = tip, hertz
+    set Checks      = swing
+    subsection Body beam
+      subsection Box
+        set Lower corner = 0, 0
+        set Upper corner = 1, 1
+      end
+    end
+    subsection Body water
+      set Material = newtonian fluid
+      subsection Box
+        set Lower corner = 2, 0
+        set Upper corner = 3, 1
+      end
+    end
+    subsection Grid
+      set Upper corner = 4, 2
+    end
+    subsection Loads
+      set Face loads = press
+      subsection Face load press
+        set Body     = beam
+        set Pressure = 1
+      end
+    end
+    subsection Observable tip
+      set Type      = displacement
+      set Body      = beam
+      set Location  = 1, 1
+      set Direction = y
+    end
+    subsection Observable hertz
+      set Type       = frequency
+      set Observable = tip
+    end
+    subsection Check swing
+      set Observable = hertz
+      set Reference  = 1
+      set Tolerance  = 0.1
+    end
+    )";
+
+  struct BadScene
+  {
+    std::string              name;
+    std::vector<std::string> changes;  // as with --set
+    std::vector<std::string> expected; // fragments of the message
+    std::string              added = "";
+  };
+
+
+
+  std::ostream &
+  operator<<(std::ostream &out, const BadScene &scene)
+  {
+    return out << scene.name;
+  }
+
+
+
+  std::string
+  message_of(const BadScene &scene)
+  {
+    try
+      {
+        const SceneFile file(ParameterText{right_scene + scene.added,
+                                           FileFormat::prm,
+                                           "bad.prm"},
+                             scene.changes);
+        if (file.dimension() == 2)
+          read_problem<2>(file);
+        else
+          read_problem<3>(file);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+
+
+
+  unsigned int
+  count_words(const std::string &text)
+  {
+    std::istringstream stream(text);
+    std::string        word;
+    unsigned int       count = 0;
+    while (stream >> word)
+      ++count;
+    return count;
+  }
+
+
+
+  class BadScenes : public testing::TestWithParam<BadScene>
+  {};
+} // namespace
+
+
+
+TEST_P(BadScenes, AreRefusedWithWhatWhereWhyAndRemedy)
+{
+  const std::string message = message_of(GetParam());
+  ASSERT_FALSE(message.empty()) << "The scene was accepted.";
+  for (const std::string &fragment : GetParam().expected)
+    EXPECT_NE(message.find(fragment), std::string::npos)
+      << "expected: " << fragment << "\nin: " << message;
+
+  // Long enough to help, short enough to be read.
+  EXPECT_GE(count_words(message), 15u) << message;
+  EXPECT_LE(count_words(message), 45u) << message;
+}
+
+
+
+TEST(BadScene, WithoutBodiesThereIsNothingToMove)
+{
+  const SceneFile file(ParameterText{"", FileFormat::prm, "empty.prm"});
+  EXPECT_THROW(read_problem<2>(file), InputError);
+}
+
+
+
+TEST(BadScene, TheSceneTheyAreMadeFromIsRight)
+{
+  EXPECT_EQ(message_of({}), "");
+}
+
+
+
+namespace
+{
+  const std::vector<BadScene> bad_forms = {
+    {"UnknownEntry",
+     {},
+     {"'Cell'", "'Grid'", "line", "'Cells'"},
+     "subsection Grid\n set Cell = 3, 3\n end"},
+    {"EntryOfAnotherSection",
+     {},
+     {"'Gravity'", "at the top level", "exists in section 'Loads'"},
+     "set Gravity = 0, -9.81"},
+    {"UnknownSection",
+     {},
+     {"'Boundary'", "'Boundaries'"},
+     "subsection Boundary\n set left = free\n end"},
+    {"SectionOfAnUnlistedName",
+     {},
+     {"'Body sand'", "'Bodies'", "sand"},
+     "subsection Body sand\n end"},
+    {"NameWithoutSection",
+     {"Bodies=beam, watre"},
+     {"'Body watre'", "Did you mean 'Body water'?"}},
+    {"NameTwice", {"Bodies=beam, beam"}, {"'beam'", "twice", "'Bodies'"}},
+    {"EmptyName", {"Bodies=beam,,water"}, {"names separated by commas"}},
+    {"SideOfAnotherDimension",
+     {},
+     {"'front'", "'Boundaries'", "left, right, bottom, top"},
+     "subsection Boundaries\n set front = free\n end"},
+    {"WordNotKnown",
+     {"Method/Transfer=tpic"},
+     {"'tpic'", "pic | flip | apic", "'Method'"}},
+    {"NotANumber", {"End time=soon"}, {"'soon'", "'End time'"}},
+    {"EndTimeZero", {"End time=0"}, {"'0'", "a number greater than 0"}},
+    {"CellsZero", {"Grid/Cells=0, 4"}, {"'0, 4'", "integers greater than 0"}},
+    {"TwoNumbersInThreeDimensions",
+     {"Dimension=3"},
+     {"3 numbers separated by commas"}},
+    {"DimensionFour", {"Dimension=4"}, {"'4'", "set Dimension = 2"}},
+    {"NegativeDensity",
+     {"Body beam/Linear elastic/Density=-1"},
+     {"'-1'", "'Body beam/Linear elastic'"}},
+    {"PoissonOutOfRange",
+     {"Body beam/Neo hookean/Poisson's ratio=0.5"},
+     {"'0.5'", "greater than -1 and less than 0.5", "'0.3'"}},
+    {"BulkModulusZero",
+     {"Body water/Newtonian fluid/Bulk modulus=0"},
+     {"'0'", "or 'auto'"}},
+    {"OverrideOfNothing", {"Grid/Size=2"}, {"'Size'", "--set"}}};
+
+
+
+  const std::vector<BadScene> bad_bodies = {
+    {"GridUpsideDown",
+     {"Grid/Upper corner=4, -1"},
+     {"(4, -1)", "'Upper corner'", "swapped"}},
+    {"BoxUpsideDown",
+     {"Body beam/Box/Lower corner=2, 0"},
+     {"(1, 1)", "'Body beam/Box'"}},
+    {"BodyOutsideGrid",
+     {"Body beam/Box/Upper corner=1, 2.5"},
+     {"'beam'", "beyond the grid", "(4, 2)"}},
+    {"CylinderInThePlane",
+     {"Body beam/Shape=cylinder"},
+     {"cylinder", "two dimensions", "ball"}},
+    {"FormulaShapeWithoutFormula",
+     {"Body beam/Shape=formula"},
+     {"missing", "'Inside'"}},
+    {"UnionWithoutParts", {"Body beam/Shape=union"}, {"missing", "'Shapes'"}},
+    {"LockingTreatmentOfLater",
+     {"Body beam/Locking treatment=assumed strain"},
+     {"'assumed strain'", "not available in this version", "'cell'"}},
+    {"ImplicitIsOfLater",
+     {"Method/Time integration=implicit"},
+     {"'implicit'", "not available", "'explicit'"}},
+    {"RelaxWithoutTime",
+     {"Body beam/History=relax"},
+     {"relax", "'Relaxation time'", "0.01"}},
+    {"TimeWithoutRelax",
+     {"Body beam/Relaxation time=1"},
+     {"'keep'", "History = relax"}},
+    {"HistoryWithoutTreatment",
+     {"Body beam/History=replace", "Body beam/Locking treatment=none"},
+     {"'replace'", "'none'"}},
+    {"DampingWithApic",
+     {"Method/Transfer=apic", "Method/Damping time=0.1"},
+     {"0.1", "'apic'", "Damping time = 0"}},
+    {"HydrostaticWithoutGravity",
+     {"Body water/Initial pressure=hydrostatic"},
+     {"gravity", "-9.81"}},
+    {"HydrostaticSolid",
+     {"Body beam/Initial pressure=hydrostatic"},
+     {"solids", "'Body beam'"}},
+    {"AutoWithoutVelocity",
+     {"Body water/Newtonian fluid/Bulk modulus=auto"},
+     {"auto", "2e9"}}};
+
+
+
+  const std::vector<BadScene> bad_formulas = {
+    {"FormulaComponents",
+     {"Body beam/Initial velocity=1"},
+     {"'1'", "1 components", "'0; 0'"}},
+    {"FormulaUnknownName",
+     {"Body beam/Initial velocity=0; vo"},
+     {"vo", "'Initial velocity'", "'Body beam'"}},
+    {"FormulaNotFinite",
+     {"Body beam/Initial velocity=0; log(-1-x)"},
+     {"not finite", "log(-1-x)"}},
+    {"ConstantWithoutValue",
+     {"Body beam/Constants=L"},
+     {"'L'", "name = number"}},
+    {"ConstantNamedAsVariable", {"Constants=t = 3"}, {"'t'", "'t0'"}},
+    {"FrictionWithoutCoefficient",
+     {"Boundaries/left=friction"},
+     {"'friction'", "Friction coefficient = 0.3"}},
+    {"VelocityWithoutFormula",
+     {"Boundaries/top=velocity"},
+     {"'velocity'", "Side top", "Velocity = 0; 0"}},
+    {"FaceLoadOnUnknownBody",
+     {"Loads/Face load press/Body=bean"},
+     {"'bean'", "Did you mean 'beam'?"}},
+    {"FaceLoadOnABall", {"Body beam/Shape=ball"}, {"'beam'", "only a box"}},
+    {"PressureAndTraction",
+     {"Loads/Face load press/Traction=1; 0"},
+     {"both", "exactly one"}},
+    {"NeitherPressureNorTraction",
+     {"Loads/Face load press/Pressure="},
+     {"neither", "exactly one"}}};
+
+
+
+  const std::vector<BadScene> bad_observables = {
+    {"ObservableWithoutType",
+     {"Observable tip/Type="},
+     {"missing", "'Type'", "displacement"}},
+    {"ObservableOfUnknownBody",
+     {"Observable tip/Body=baem"},
+     {"'baem'", "Did you mean 'beam'?"}},
+    {"ObservableWithoutBody",
+     {"Observable tip/Body="},
+     {"several", "beam, water"}},
+    {"LocationOutsideGrid",
+     {"Observable tip/Location=1, 9"},
+     {"(1, 9)", "outside the grid"}},
+    {"LocationMissing", {"Observable tip/Location="}, {"'Location'"}},
+    {"DirectionOfAStress",
+     {"Observable tip/Type=stress"},
+     {"'y'", "two letters", "'xx'"}},
+    {"WithinWhereItHasNoMeaning",
+     {"Observable tip/Within=0, 0; 1, 1"},
+     {"no meaning", "displacement"}},
+    {"WithinUpsideDown",
+     {"Observable tip/Type=extreme coordinate",
+      "Observable tip/Location=",
+      "Observable tip/Within=1, 1; 0, 0"},
+     {"(0, 0)", "'Within'"}},
+    {"FrequencyOfUnknown",
+     {"Observable hertz/Observable=tpi"},
+     {"'tpi'", "Did you mean 'tip'?"}},
+    {"FrequencyOfItself",
+     {"Observable hertz/Observable=hertz"},
+     {"'hertz'", "frequency"}},
+    {"CheckOfUnknown",
+     {"Check swing/Observable=herz"},
+     {"'herz'", "Did you mean 'hertz'?"}},
+    {"CheckAfterTheEnd",
+     {"Check swing/At time=2"},
+     {"2", "'At time'", "End time"}},
+    {"CheckWithoutReference", {"Check swing/Reference="}, {"'Reference'"}},
+    {"FieldsBesideNone",
+     {"Output/Fields=none, velocity"},
+     {"'none'", "'Fields'"}}};
+
+
+
+  std::string
+  name_of(const testing::TestParamInfo<BadScene> &info)
+  {
+    return info.param.name;
+  }
+} // namespace
+
+INSTANTIATE_TEST_SUITE_P(Forms,
+                         BadScenes,
+                         testing::ValuesIn(bad_forms),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Bodies,
+                         BadScenes,
+                         testing::ValuesIn(bad_bodies),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Formulas,
+                         BadScenes,
+                         testing::ValuesIn(bad_formulas),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(Observables,
+                         BadScenes,
+                         testing::ValuesIn(bad_observables),
+                         name_of);

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/problem/read_problem.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+using namespace limber;
+using dealii::Point;
+
+namespace
+{
+  std::string
+  prm_folder()
+  {
+    const std::filesystem::path here(__FILE__);
+    return (here.parent_path() / "../../../prm/").lexically_normal().string();
+  }
+
+
+
+  SceneFile
+  scene_of(const std::string              &text,
+           const std::vector<std::string> &overrides = {},
+           const FileFormat                format    = FileFormat::prm)
+  {
+    return SceneFile(ParameterText{text, format, "scene"}, overrides);
+  }
+} // namespace
+
+
+
+TEST(Scenes, DamBreakReadsAsWritten)
+{
+  const SceneFile scene(prm_folder() + "dam_break.prm");
+  ASSERT_EQ(scene.dimension(), 2u);
+  const Problem<2> problem = read_problem<2>(scene);
+
+  EXPECT_DOUBLE_EQ(problem.end_time, 0.68);
+  ASSERT_EQ(problem.bodies.size(), 1u);
+  const Body<2> &water = problem.bodies[0];
+  EXPECT_EQ(water.name, "water");
+  EXPECT_EQ(water.shape->bounding_box().second, Point<2>(1, 2));
+  EXPECT_EQ(water.points_per_cell_edge[1], 5u);
+  EXPECT_TRUE(water.initial_velocity.is_zero());
+  EXPECT_TRUE(water.hydrostatic);
+  EXPECT_EQ(water.law, LawKind::newtonian_fluid);
+  EXPECT_DOUBLE_EQ(water.density(), 997.5);
+  EXPECT_DOUBLE_EQ(water.newtonian_fluid.bulk_modulus, 2e9);
+  EXPECT_DOUBLE_EQ(water.newtonian_fluid.viscosity, 1e-3);
+  EXPECT_EQ(water.treatment, LockingTreatment::cell);
+
+  EXPECT_EQ(problem.grid.upper, Point<2>(5, 3));
+  EXPECT_EQ(problem.grid.cells[1], 24u);
+  EXPECT_EQ(problem.sides[3].condition, SideCondition::slip);
+  EXPECT_DOUBLE_EQ(problem.loads.gravity[1], -9.81);
+  EXPECT_FALSE(problem.loads.body_force);
+  EXPECT_EQ(problem.method.order, StressUpdateOrder::last_remapped);
+  EXPECT_EQ(problem.method.transfer, Transfer::flip);
+  EXPECT_DOUBLE_EQ(problem.output.time_interval, 0.02);
+  EXPECT_EQ(problem.output.fields,
+            (std::vector<std::string>{"velocity", "pressure", "stress"}));
+}
+
+
+
+TEST(Scenes, DamBreakObservablesAndChecks)
+{
+  const Problem<2> problem =
+    read_problem<2>(SceneFile(prm_folder() + "dam_break.prm"));
+  ASSERT_EQ(problem.observables.size(), 2u);
+  EXPECT_EQ(problem.observables[0].kind, ObservableKind::extreme_coordinate);
+  EXPECT_EQ(problem.observables[0].axis, 0u);
+  EXPECT_TRUE(problem.observables[0].positive);
+  EXPECT_FALSE(problem.observables[0].within);
+  EXPECT_EQ(problem.observables[1].within->second, Point<2>(0.125, 3));
+
+  ASSERT_EQ(problem.checks.size(), 2u);
+  EXPECT_EQ(problem.checks[0].name, "front at T=3");
+  EXPECT_EQ(problem.checks[0].observable, "front");
+  EXPECT_DOUBLE_EQ(*problem.checks[0].at_time, 0.6773);
+  EXPECT_DOUBLE_EQ(problem.checks[1].tolerance, 0.04);
+}
+
+
+
+TEST(Scenes, CantileverReadsAsWritten)
+{
+  const Problem<2> problem =
+    read_problem<2>(SceneFile(prm_folder() + "cantilever.prm"));
+  const Body<2> &beam = problem.bodies[0];
+  EXPECT_EQ(beam.law, LawKind::neo_hookean);
+  EXPECT_DOUBLE_EQ(beam.neo_hookean.poisson_ratio, 0.49);
+  EXPECT_EQ(beam.treatment, LockingTreatment::cell);
+
+  // The first mode has the amplitude v0 at the tip.
+  EXPECT_NEAR(beam.initial_velocity.value(Point<2>(8, 2), 0., 1), 0.01, 1e-5);
+  EXPECT_NEAR(beam.initial_velocity.value(Point<2>(0, 2), 0., 1), 0, 1e-12);
+
+  EXPECT_EQ(problem.sides[0].condition, SideCondition::no_slip);
+  EXPECT_EQ(problem.sides[1].condition, SideCondition::free);
+  EXPECT_EQ(problem.observables[0].location, Point<2>(8, 2.5));
+  EXPECT_EQ(problem.observables[1].kind, ObservableKind::frequency);
+  EXPECT_EQ(problem.observables[1].observable, "tip");
+  EXPECT_FALSE(problem.checks[0].at_time);
+}
+
+
+
+TEST(Scenes, PrintedScenesReadBackTheSame)
+{
+  const SceneFile scene(prm_folder() + "dam_break.prm",
+                        {"Check front at T=3/Tolerance=0.25"});
+  for (const auto &[style, format] :
+       {std::pair(PrintStyle::prm, FileFormat::prm),
+        std::pair(PrintStyle::json, FileFormat::json)})
+    {
+      std::ostringstream printed, again;
+      print_parameters(printed, style, &scene);
+      const SceneFile copy = scene_of(printed.str(), {}, format);
+      EXPECT_TRUE(copy.warnings().empty());
+      const Problem<2> problem = read_problem<2>(copy);
+      EXPECT_DOUBLE_EQ(problem.checks[0].tolerance, 0.25);
+      EXPECT_EQ(problem.grid.cells[0], 40u);
+
+      print_parameters(again, PrintStyle::json, &copy);
+      std::ostringstream json;
+      print_parameters(json, PrintStyle::json, &scene);
+      EXPECT_EQ(again.str(), json.str());
+    }
+}
+
+
+
+TEST(Scenes, TemplateIsAScene)
+{
+  std::ostringstream printed, table;
+  print_parameters(printed, PrintStyle::prm);
+  const Problem<2> problem = read_problem<2>(scene_of(printed.str()));
+  EXPECT_EQ(problem.bodies.size(), 1u);
+  EXPECT_EQ(problem.loads.faces.size(), 1u);
+  EXPECT_EQ(problem.loads.faces[0].face, 3u);
+  EXPECT_EQ(problem.checks.size(), 1u);
+
+  print_parameters(table, PrintStyle::markdown);
+  EXPECT_NE(table.str().find("## Body block/Neo hookean"), std::string::npos);
+}
+
+
+
+TEST(Scenes, AutomaticBulkModulusKeepsTheMachNumber)
+{
+  const Problem<2> problem =
+    read_problem<2>(SceneFile(prm_folder() + "dam_break.prm",
+                              {"Body water/Newtonian fluid/Bulk modulus=auto",
+                               "Body water/Initial velocity = 3; 0"}));
+  const double speed = std::sqrt(2 * 9.81 * 2) + 3;
+  EXPECT_NEAR(problem.bodies[0].newtonian_fluid.bulk_modulus,
+              997.5 * 100 * speed * speed,
+              1e-6 * 997.5 * 100 * speed * speed);
+  ASSERT_EQ(problem.notes.size(), 1u);
+  EXPECT_NE(problem.notes[0].find("'water'"), std::string::npos);
+}
+
+
+
+TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
+{
+  const Problem<3> problem = read_problem<3>(scene_of(R"(
+    set Dimension = 3
+    set Constants = R = 0.2, speed = 2
+    set Bodies    = pin
+    subsection Body pin
+      set Shape = union
+      set Points per cell edge = 2, 3, 4
+      set Placement = gauss
+      subsection Union
+        set Shapes = shaft, head
+        subsection Shape shaft
+          set Shape = cylinder
+          subsection Cylinder
+            set Radius    = 0.1
+            set Lower end = 0.1
+            set Upper end = 0.6
+          end
+        end
+        subsection Shape head
+          set Shape = formula
+          subsection Formula
+            set Inside       = R^2 - (x-0.5)^2 - (y-0.5)^2 - (z-0.7)^2
+            set Lower corner = 0.3, 0.3, 0.5
+            set Upper corner = 0.7, 0.7, 0.9
+          end
+        end
+      end
+    end
+    subsection Boundaries
+      set back  = friction
+      set front = velocity
+      subsection Side back
+        set Friction coefficient = 0.4
+      end
+      subsection Side front
+        set Velocity = 0; 0; -speed*t
+      end
+    end
+    set Observables = push, stress
+    subsection Observable push
+      set Type = reaction force
+      set Side = front
+      set Direction = -z
+    end
+    subsection Observable stress
+      set Type = stress
+      set Location = 0.5, 0.5, 0.5
+      set Direction = xz
+    end
+    subsection Output
+      set Fields = none
+    end)"));
+
+  const Body<3> &pin = problem.bodies[0];
+  EXPECT_TRUE(pin.shape->contains(Point<3>(0.5, 0.45, 0.2)));
+  EXPECT_TRUE(pin.shape->contains(Point<3>(0.5, 0.65, 0.7)));
+  EXPECT_FALSE(pin.shape->contains(Point<3>(0.5, 0.65, 0.2)));
+  EXPECT_EQ(pin.points_per_cell_edge[2], 4u);
+  EXPECT_EQ(pin.placement, Placement::gauss);
+  EXPECT_DOUBLE_EQ(problem.sides[4].friction, 0.4);
+  EXPECT_DOUBLE_EQ(problem.sides[5].velocity.vector(Point<3>(), 3.)[2], -6);
+  EXPECT_EQ(problem.observables[0].side, 5u);
+  EXPECT_FALSE(problem.observables[0].positive);
+  EXPECT_EQ(problem.observables[1].axis, 0u);
+  EXPECT_EQ(problem.observables[1].second_axis, 2u);
+  EXPECT_EQ(problem.observables[1].body, "pin");
+  EXPECT_TRUE(problem.output.fields.empty());
+}
+
+
+
+TEST(Scenes, MissingFileIsWrongInput)
+{
+  try
+    {
+      SceneFile("nowhere/my-scene.prm");
+      FAIL() << "A scene that does not exist was read.";
+    }
+  catch (const Failure &failure)
+    {
+      EXPECT_EQ(failure.code, ExitCode::wrong_input);
+      EXPECT_NE(std::string(failure.what()).find("nowhere/my-scene.prm"),
+                std::string::npos);
+    }
+}
+
+
+
+TEST(Scenes, OriginalTextIsKept)
+{
+  const SceneFile scene = scene_of("# mine\nset Dimension = 2\n");
+  EXPECT_EQ(scene.original_text(), "# mine\nset Dimension = 2\n");
+  EXPECT_EQ(scene.original_name(), "original.prm");
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/simulation/command_line.h>
+
+#include <gtest/gtest.h>
+
+using namespace limber;
+
+namespace
+{
+  CommandLine
+  parse_words(std::vector<const char *> words)
+  {
+    words.insert(words.begin(), "limber");
+    return parse_command_line(words.size(), words.data());
+  }
+
+
+
+  std::string
+  command_line_error(const std::vector<const char *> &words)
+  {
+    try
+      {
+        parse_words(words);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+} // namespace
+
+
+
+TEST(CommandLine, OptionsInAnyOrder)
+{
+  const CommandLine line = parse_words({"--validate",
+                                        "scene.prm",
+                                        "--set",
+                                        "Check a=b/Value=1",
+                                        "--set=End time=2",
+                                        "--output-directory",
+                                        "runs/a",
+                                        "--resume"});
+  EXPECT_TRUE(line.validate);
+  EXPECT_TRUE(line.resume);
+  EXPECT_FALSE(line.help);
+  EXPECT_EQ(line.scene, "scene.prm");
+  EXPECT_EQ(line.overrides,
+            (std::vector<std::string>{"Check a=b/Value=1",
+                                      "End time=2",
+                                      "Output/Directory=runs/a"}));
+  EXPECT_EQ(line.output_directory, "runs/a");
+}
+
+
+
+TEST(CommandLine, StandardInputAndStyles)
+{
+  EXPECT_EQ(parse_words({"--"}).scene, "--");
+  EXPECT_EQ(parse_words({"--print-parameters", "json"}).print_parameters,
+            PrintStyle::json);
+  EXPECT_EQ(parse_words({"--list=laws"}).list, "laws");
+  EXPECT_TRUE(parse_words({}).scene.empty());
+}
+
+
+
+TEST(CommandLine, ErrorsGuessWhatWasMeant)
+{
+  EXPECT_NE(command_line_error({"--valdate"}).find("'--validate'"),
+            std::string::npos);
+  EXPECT_NE(command_line_error({"--set"}).find("lacks its value"),
+            std::string::npos);
+  EXPECT_NE(command_line_error({"--validate=yes"}).find("takes none"),
+            std::string::npos);
+  EXPECT_NE(command_line_error({"a.prm", "b.prm"}).find("two scenes"),
+            std::string::npos);
+  EXPECT_NE(command_line_error({"--print-parameters", "xml"}).find("markdown"),
+            std::string::npos);
+}
+
+
+
+TEST(CommandLine, ListsNameEveryChoice)
+{
+  EXPECT_NE(list_text("laws").find("neo hookean"), std::string::npos);
+  EXPECT_NE(list_text("kernels").find("linear"), std::string::npos);
+  EXPECT_NE(list_text("schemes").find("apic"), std::string::npos);
+  EXPECT_NE(list_text("shapes").find("cylinder"), std::string::npos);
+  EXPECT_NE(list_text("exact").find("None"), std::string::npos);
+  EXPECT_THROW(list_text("lows"), InputError);
+}
