@@ -7,12 +7,14 @@
 
 namespace limber
 {
-  Admissible::Admissible(const Test        &test,
-                         const std::string &in_words,
-                         const std::string &example)
+  Admissible::Admissible(const Test                     &test,
+                         const std::string              &in_words,
+                         const std::string              &example,
+                         const std::vector<std::string> &choices)
     : test(test)
     , words(in_words)
     , sample(example)
+    , choices(choices)
   {}
 
 
@@ -49,6 +51,14 @@ namespace limber
 
 
 
+  std::string
+  Admissible::example_near(const std::string &value) const
+  {
+    return nearest(value, choices).value_or(sample);
+  }
+
+
+
   Admissible
   Admissible::or_empty() const
   {
@@ -57,7 +67,8 @@ namespace limber
         return value.empty() || inner(value);
       },
       words + ", or empty",
-      sample);
+      sample,
+      choices);
   }
 
 
@@ -70,7 +81,8 @@ namespace limber
         return value == word || inner(value);
       },
       words + ", or " + in_quotes(word),
-      sample);
+      sample,
+      choices);
   }
 
 
@@ -232,7 +244,8 @@ namespace limber
       return Admissible(
         [words](const std::string &value) { return contains(words, value); },
         "one of " + join(words, " | "),
-        words.front());
+        words.front(),
+        words);
     }
 
 

@@ -69,20 +69,6 @@ namespace limber
 
 
     void
-    check_constants(const Constants &constants, const std::string &where)
-    {
-      for (const std::string reserved : {"x", "y", "z", "t", "pi"})
-        if (constants.count(reserved) > 0)
-          throw InputError("The constant " + in_quotes(reserved) +
-                           " is used in " + where +
-                           ". This name is taken by a variable or by the " +
-                           "number pi. Choose another name, for instance " +
-                           in_quotes(reserved + "0") + ".");
-    }
-
-
-
-    void
     check_components(const std::vector<std::string> &components,
                      const unsigned int              expected,
                      const std::string              &expression,
@@ -114,10 +100,27 @@ namespace limber
       const std::string all = text.str();
       const std::string key = "The parser said: ";
       const auto        at  = all.find(key);
-      return trimmed(at == std::string::npos ? all :
-                                               all.substr(at + key.size()));
+      std::string       result =
+        trimmed(at == std::string::npos ? all : all.substr(at + key.size()));
+      if (!result.empty() && result.back() == '.')
+        result.pop_back();
+      return result;
     }
   } // namespace
+
+
+
+  void
+  check_constants(const Constants &constants, const std::string &where)
+  {
+    for (const std::string reserved : {"x", "y", "z", "t", "pi"})
+      if (constants.count(reserved) > 0)
+        throw InputError("The constant " + in_quotes(reserved) +
+                         " is used in " + where +
+                         ". This name is taken by a variable or by the " +
+                         "number pi. Choose another name, for instance " +
+                         in_quotes(reserved + "0") + ".");
+  }
 
 
 

@@ -51,6 +51,23 @@ namespace limber
 
 
 
+    /** 'section/name = value', cut at the given '='. */
+    ScannedEntry
+    assigned_entry(const std::string &text, const std::size_t equals)
+    {
+      ScannedEntry entry;
+      entry.section = split(text.substr(0, equals), '/');
+      entry.value   = trimmed(text.substr(equals + 1));
+      if (!entry.section.empty())
+        {
+          entry.name = entry.section.back();
+          entry.section.pop_back();
+        }
+      return entry;
+    }
+
+
+
     /** "Known there are a, b and c", unless these are too many to read. */
     std::string
     known_names(const std::vector<std::string> &names)
@@ -149,20 +166,22 @@ namespace limber
                    {declaration.section, declaration.name, *value, 0},
                    "--set");
 
-    const auto equals = override_text.find('=');
-    if (equals == std::string::npos)
+    if (override_text.find('=') == std::string::npos)
       throw InputError("The override " + in_quotes(override_text) +
                        " of --set on the command line has no '='. Usually "
                        "quotation marks are missing around it. Write --set "
                        "\"Method/Courant number=0.3\", for instance.");
-    ScannedEntry entry;
-    entry.section = split(override_text.substr(0, equals), '/');
-    entry.value   = trimmed(override_text.substr(equals + 1));
-    if (!entry.section.empty())
+
+    // Unknown; the '=' that was meant is rather one behind a known section.
+    auto equals = override_text.find('=');
+    for (auto next = equals; next != std::string::npos;
+         next      = override_text.find('=', next + 1))
       {
-        entry.name = entry.section.back();
-        entry.section.pop_back();
+             const ScannedEntry entry = assigned_entry(override_text, next);
+             if (!entry.section.empty() && is_declared(entry.section))
+          equals = next;
       }
+    const ScannedEntry entry = assigned_entry(override_text, equals);
     if (is_declared(entry.section))
       refuse_entry(entry, "--set");
     refuse_section(entry.section, "--set");
@@ -182,7 +201,7 @@ namespace limber
         ") is not admissible. Usually a digit, sign or word is "
         "mistyped. Write " +
         declaration.admissible.description() + ", for instance " +
-        in_quotes(declaration.admissible.example()) + ".");
+        in_quotes(declaration.admissible.example_near(entry.value)) + ".");
 
     for (const std::string &name : entry.section)
       handler.enter_subsection(name);

@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 #include <sstream>
 
 namespace limber
@@ -23,24 +22,29 @@ namespace limber
 
 
 
-    /** Levenshtein's distance, one row of the table at a time. */
+    /**
+     * Damerau and Levenshtein's distance: how many letters have to be
+     * changed, added, removed or swapped with their neighbour.
+     */
     std::size_t
     edit_distance(const std::string &a, const std::string &b)
     {
-      std::vector<std::size_t> row(b.size() + 1);
-      std::iota(row.begin(), row.end(), 0);
-      for (std::size_t i = 0; i < a.size(); ++i)
-        {
-          std::size_t diagonal = row[0];
-          row[0]               = i + 1;
-          for (std::size_t j = 0; j < b.size(); ++j)
+      std::vector<std::vector<std::size_t>> d(
+        a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+      for (std::size_t i = 0; i <= a.size(); ++i)
+        for (std::size_t j = 0; j <= b.size(); ++j)
+          if (i == 0 || j == 0)
+            d[i][j] = i + j;
+          else
             {
-              const std::size_t substituted = diagonal + (a[i] != b[j]);
-              diagonal                      = row[j + 1];
-              row[j + 1] = std::min({substituted, row[j] + 1, row[j + 1] + 1});
+              d[i][j] = std::min({d[i - 1][j] + 1,
+                                  d[i][j - 1] + 1,
+                                  d[i - 1][j - 1] + (a[i - 1] != b[j - 1])});
+              if (i > 1 && j > 1 && a[i - 1] == b[j - 2] &&
+                  a[i - 2] == b[j - 1])
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
             }
-        }
-      return row[b.size()];
+      return d[a.size()][b.size()];
     }
   } // namespace
 
@@ -139,14 +143,16 @@ namespace limber
   std::optional<std::string>
   nearest(const std::string &word, const std::vector<std::string> &candidates)
   {
-    // A third of the letters may be wrong; beyond that a hint only confuses.
-    std::size_t                best = std::max<std::size_t>(1, word.size() / 3);
     std::optional<std::string> result;
+    std::size_t                best = std::string::npos;
     for (const std::string &candidate : candidates)
       {
         const std::size_t distance =
           edit_distance(lower_case(word), lower_case(candidate));
-        if (distance < best || (distance == best && !result))
+        // A third of the letters may be wrong; beyond, a hint only confuses.
+        const std::size_t letters = std::max(word.size(), candidate.size());
+        if (distance < best &&
+            distance <= std::max<std::size_t>(1, letters / 3))
           {
             best   = distance;
             result = candidate;

@@ -39,6 +39,7 @@ namespace limber
     result.bins     = grid.bins;
     result.occupied = is_occupied.data();
     result.entered  = &entered;
+    result.left     = &left;
     return result;
   }
 
@@ -124,6 +125,7 @@ namespace limber
   void
   NodalFields<dim>::clear()
   {
+    left = false;
     for (const std::uint32_t node : active_owned)
       std::fill_n(record(node), Layout::stride, 0.);
     // Masters of hanging nodes get their share whether active or not.

@@ -174,6 +174,7 @@ namespace limber
   void
   MaterialPoints<dim>::sort_by_cell()
   {
+    ++n_reorderings;
     std::vector<std::uint32_t> cells;
     collect_cells(cells);
 
@@ -213,6 +214,7 @@ namespace limber
   std::vector<LostPoint<dim>>
   MaterialPoints<dim>::remove_lost()
   {
+    ++n_reorderings;
     std::vector<LostPoint<dim>> result;
     std::size_t                 kept = 0;
     const auto                  box =
@@ -288,6 +290,7 @@ namespace limber
   void
   MaterialPoints<dim>::gather()
   {
+    ++n_reorderings;
     resize(handler.n_locally_owned_particles());
     auto       &pool = handler.get_property_pool();
     std::size_t p    = 0;

@@ -20,8 +20,8 @@ namespace limber
                          admissible::text("name of a body", "beam"),
                          "The body, which must be a box.");
       parameters.declare("Face",
-                         side_names(dim).front(),
-                         admissible::one_of(side_names(dim)),
+                         "",
+                         admissible::one_of(side_names(dim)).or_empty(),
                          "The face of the box, at the start. The load moves "
                          "with the material.");
       parameters.declare("Pressure",
@@ -140,7 +140,7 @@ namespace limber
       FaceLoad<dim> load;
       load.name        = name;
       load.body        = body.name;
-      load.face        = side_index(section.text("Face"));
+      load.face        = side_index(section.required_text("Face"));
       load.is_pressure = has_pressure;
       load.formula     = read_formula<dim>(section,
                                        has_pressure ? "Pressure" : "Traction",

@@ -276,14 +276,15 @@ namespace limber
         {
           box.first[d]  = to_number(split(texts[0], ',')[d]).value();
           box.second[d] = to_number(split(texts[1], ',')[d]).value();
-          if (box.second[d] <= box.first[d])
-            throw InputError(
-              "The box ends at " + to_text(box.second) +
-              ", not beyond its lower corner " + to_text(box.first) + ", in " +
-              section.where("Within") +
-              ". Usually the corners are swapped. Give the lower "
-              "corner first, then the upper one.");
         }
+      for (unsigned int d = 0; d < dim; ++d)
+        if (box.second[d] <= box.first[d])
+          throw InputError("The box ends at " + to_text(box.second) +
+                           ", not beyond its lower corner " +
+                           to_text(box.first) + ", in " +
+                           section.where("Within") +
+                           ". Usually the corners are swapped. Give the lower "
+                           "corner first, then the upper one.");
       observable.within = box;
     }
 

@@ -76,6 +76,7 @@ namespace limber
                              "v0 = 0.01', for instance.");
           constants[parts[0]] = *number;
         }
+      check_constants(constants, section.where("Constants"));
     }
   } // namespace
 

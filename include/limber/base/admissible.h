@@ -21,9 +21,11 @@ namespace limber
   public:
     using Test = std::function<bool(const std::string &)>;
 
-    Admissible(const Test        &test,
-               const std::string &in_words,
-               const std::string &example);
+    /** @p choices: the words to choose from, where it is a choice. */
+    Admissible(const Test                     &test,
+               const std::string              &in_words,
+               const std::string              &example,
+               const std::vector<std::string> &choices = {});
 
     bool
     match(const std::string &value) const override;
@@ -38,6 +40,10 @@ namespace limber
     const std::string &
     example() const;
 
+    /** Of a choice, the word nearest to @p value; else the example. */
+    std::string
+    example_near(const std::string &value) const;
+
     /** The same, or nothing at all: the entry may be left empty. */
     Admissible
     or_empty() const;
@@ -47,8 +53,9 @@ namespace limber
     or_word(const std::string &word) const;
 
   private:
-    Test        test;
-    std::string words, sample;
+    Test                     test;
+    std::string              words, sample;
+    std::vector<std::string> choices;
   };
 
 

@@ -21,6 +21,13 @@ namespace limber
   /** Named numbers that formulas may use. */
   using Constants = std::map<std::string, double>;
 
+  /**
+   * Throws InputError where a constant bears the name of a variable; @p where
+   * names section and entry.
+   */
+  void
+  check_constants(const Constants &constants, const std::string &where);
+
 
 
   /**

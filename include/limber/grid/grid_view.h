@@ -89,6 +89,8 @@ namespace limber
     // have to join the active ones.
     std::uint8_t               *occupied = nullptr; // per cell
     std::vector<std::uint32_t> *entered  = nullptr;
+    // Set when a point has gone where this rank knows no cell.
+    bool *left = nullptr;
   };
 
 

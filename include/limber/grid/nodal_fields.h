@@ -53,6 +53,13 @@ namespace limber
       return occupied_owned;
     }
 
+    /** Whether points have left the cells of this rank since clear(). */
+    bool
+    points_have_left() const
+    {
+      return left;
+    }
+
     /** Set the records of all active nodes to zero. */
     void
     clear();
@@ -107,6 +114,7 @@ namespace limber
     std::vector<std::uint8_t>  is_occupied, is_active;
     std::vector<std::uint32_t> active_owned, active_boundary;
     bool                       parallel = false;
+    bool                       left     = false;
   };
 
 

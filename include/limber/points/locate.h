@@ -37,7 +37,9 @@ namespace limber
           x[d] = points.position[d][p];
         const std::uint32_t next = grid.bins.cell_at(x);
         points.cell[p]           = next;
-        if (next != invalid_cell && !grid.occupied[next])
+        if (next == invalid_cell)
+          *grid.left = true;
+        else if (!grid.occupied[next])
           {
             grid.occupied[next] = 1;
             grid.entered->push_back(next);

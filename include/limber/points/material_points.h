@@ -82,6 +82,13 @@ namespace limber
     dealii::Point<dim>
     reference_position(const std::size_t p) const;
 
+    /** Changes whenever points change their places in the arrays. */
+    unsigned long
+    order() const
+    {
+      return n_reorderings;
+    }
+
     /** Put the arrays into the order of cells (counting sort). */
     void
     sort_by_cell();
@@ -137,6 +144,7 @@ namespace limber
     std::vector<std::uint32_t>       handle; // slot in the handler's pool
     std::vector<std::uint32_t>       lost_handles;
     std::vector<std::uint32_t>       offset; // per cell, for sorting
+    unsigned long                    n_reorderings = 0;
   };
 } // namespace limber
 

@@ -108,9 +108,14 @@ namespace limber
   explained(const Words<Enum> &words)
   {
     std::vector<std::string> parts;
+    bool                     all_available = true;
     for (const Word<Enum> &word : words)
-      parts.push_back(word.word + ": " + word.text);
-    return join(parts, "; ") + ".";
+      if (word.value)
+        parts.push_back(word.word + ": " + word.text);
+      else
+        all_available = false;
+    return join(parts, "; ") +
+           (all_available ? "." : "; other words are not available yet.");
   }
 
 

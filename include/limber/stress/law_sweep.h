@@ -105,6 +105,13 @@ namespace limber
     }
 
     double
+    volume_ratio_at_rest(const double pressure) const override
+    {
+      return law.template volume_ratio<dim>(
+        law.template initialise<dim>(pressure));
+    }
+
+    void
     initialise(const PointView<dim> &points,
                const std::size_t     p,
                const double          pressure) const override
@@ -113,7 +120,6 @@ namespace limber
       store_state(points, state, [&](const double value, double *const a) {
         a[p] = value;
       });
-      return law.template volume_ratio<dim>(state);
     }
 
     void

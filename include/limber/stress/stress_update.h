@@ -69,13 +69,17 @@ namespace limber
     virtual double
     wave_speed_squared(const PointView<dim> &points) const = 0;
 
-    /** Set point p to rest under a Cauchy pressure (Pa); returns J. */
+    /** J at rest under a Cauchy pressure (Pa). */
     virtual double
+    volume_ratio_at_rest(double pressure) const = 0;
+
+    /** Set point p to rest under a Cauchy pressure (Pa). */
+    virtual void
     initialise(const PointView<dim> &points,
                std::size_t           p,
                double                pressure) const = 0;
 
-    /** J at points [begin, end), written to @p volume_ratio. */
+    /** J at all points, written to an array of their number. */
     virtual void
     volume_ratio(const PointView<dim> &points,
                  double               *volume_ratio) const = 0;

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_observables_h
+#define limber_output_observables_h
+
+#include <limber/output/frequency.h>
+#include <limber/output/totals.h>
+#include <limber/output/tracked_points.h>
+
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /** What observables remember between two rows; plain, for checkpoints. */
+  template <int dim>
+  struct ObservablesState
+  {
+    std::vector<TrackedPoint<dim>> tracked;
+    std::vector<unsigned int>      tracked_of; // per observable, or invalid
+    std::vector<ZeroCrossings>     crossings;  // per observable
+    bool                           has_row = false;
+    double                         time    = 0; // of the last row, s
+    // on the material until then, kg m/s, and the force since the row before
+    std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
+    std::array<dealii::Tensor<1, dim>, 2 * dim> side_force; // N
+  };
+
+
+
+  /**
+   * The numbers that the scene asks for in every row, in its order. What
+   * cannot be told is not a number: the displacement of a lost point, the
+   * extreme of no point, a frequency before the second crossing of zero.
+   */
+  template <int dim>
+  class Observables
+  {
+  public:
+    /** Choose the points to be followed; after seeding, collective. */
+    explicit Observables(const State<dim> &start);
+
+    /** Continue those of a checkpoint. */
+    Observables(const Problem<dim>          &problem,
+                const ObservablesState<dim> &memory);
+
+    /** A row; frequencies and reaction forces count on one per call. */
+    std::vector<double>
+    evaluate(const State<dim> &state, const Totals<dim> &totals);
+
+    std::vector<std::string>
+    names() const;
+
+    /** SI, for instance "m"; forces in two dimensions are per metre. */
+    std::vector<std::string>
+    units() const;
+
+    ObservablesState<dim>
+    state() const;
+
+  private:
+    void
+    decide_what_to_sample();
+    void
+    update_side_forces(const double time, const Totals<dim> &totals);
+    double
+    value(const Observable<dim>               &observable,
+          const unsigned int                   number,
+          const Totals<dim>                   &totals,
+          const std::vector<PointSample<dim>> &samples) const;
+    void
+    fill_extremes(const State<dim> &state, std::vector<double> &values) const;
+    unsigned int
+    body_index(const std::string &name) const;
+    BodyTotals<dim>
+    totals_of(const Observable<dim> &observable,
+              const Totals<dim>     &totals) const;
+
+    const Problem<dim>   &problem;
+    ObservablesState<dim> memory;
+    TrackedPoints<dim>    points;
+    std::vector<bool>     with_stress; // per tracked point
+    bool                  has_extremes = false;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_summary_h
+#define limber_output_summary_h
+
+#include <limber/output/checks.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace limber
+{
+  /** How a run ended and what it took, for scripts. */
+  struct Summary
+  {
+    std::string   verdict; // "finished", "unstable", "stopped", "check missed"
+    std::string   message; // why, where it did not finish
+    unsigned long steps               = 0;
+    unsigned long points              = 0; // at the end
+    unsigned long lost_points         = 0;
+    unsigned int  ranks               = 1;
+    double        end_time            = 0; // reached, s
+    double        wall_seconds        = 0;
+    double        cpu_seconds         = 0; // sum over ranks
+    double        ns_per_point_step   = 0; // wall time of a core, output excluded
+    double        bytes_per_point     = 0;
+    double        energy_drift        = 0;
+    double        momentum_error      = 0;
+    // Share of the time that each verb of the step took
+    std::vector<std::pair<std::string, double>> verbs;
+    std::vector<CheckResult>                    checks;
+    std::vector<std::string>                    warnings;
+  };
+
+
+
+  /** The text of summary.json; what is not finite becomes null. */
+  std::string
+  to_json(const Summary &summary);
+
+  /** Write summary.json into the run folder; throws FileError. One rank. */
+  void
+  write_summary(const std::string &folder, const Summary &summary);
+} // namespace limber
+
+#endif

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_totals_h
+#define limber_output_totals_h
+
+#include <limber/stress/material_body.h>
+
+#include <vector>
+
+/**
+ * @file Sums over all points, and how well energy and momentum are conserved.
+ * In two dimensions all of them are per metre of thickness.
+ */
+namespace limber
+{
+  template <int dim>
+  struct BodyTotals
+  {
+    double                 mass = 0;    // kg
+    dealii::Tensor<1, dim> momentum;    // kg m/s
+    dealii::Tensor<1, dim> mass_moment; // sum of m x, kg m
+    double                 kinetic_energy       = 0; // J
+    double                 strain_energy        = 0; // J
+    double                 gravitational_energy = 0; // -sum of m g.x, J
+
+    double
+    total_energy() const
+    {
+      return kinetic_energy + strain_energy + gravitational_energy;
+    }
+
+    BodyTotals &
+    operator+=(const BodyTotals &other);
+  };
+
+
+
+  template <int dim>
+  struct Totals
+  {
+    std::vector<BodyTotals<dim>> bodies; // in the order of the scene
+    BodyTotals<dim>              all;
+    dealii::Tensor<1, dim>       centre_of_mass; // m
+
+    double dissipated           = 0; // by viscosity, J
+    double removed_with_history = 0; // with volumetric history or tension, J
+    double removed_by_transfer  = 0; // between points and grid, J
+    double boundary_work        = 0; // done on the material, J
+    double load_work            = 0; // J
+    double energy_drift         = 0; // gain over the scale of energy
+    double momentum_error       = 0; // over the scale of momentum
+    // Impulse of each side of the box on the material so far, kg m/s
+    std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
+
+    double        largest_speed   = 0; // m/s
+    double        smallest_volume = 1; // of all J
+    double        largest_volume  = 1;
+    unsigned long points          = 0;
+    unsigned long lost_points     = 0;
+    unsigned long active_nodes    = 0; // nodes with mass
+    unsigned long cells           = 0; // of the mesh
+  };
+
+
+
+  /** What a balance remembers between two rows; plain, for checkpoints. */
+  template <int dim>
+  struct BalanceState
+  {
+    // of the state at the start
+    double                 kinetic_energy       = 0;
+    double                 strain_energy        = 0;
+    double                 gravitational_energy = 0;
+    dealii::Tensor<1, dim> momentum;
+    // largest so far: J, kg m/s
+    double energy_scale   = 0;
+    double momentum_scale = 0;
+  };
+
+
+
+  /**
+   * Holds the present state against that at the start. The ledger knows what
+   * the grid, the sides, the loads, viscosity and lost points have done to
+   * energy and momentum; what it cannot account for is
+   *
+   *   drift = (E - E_0) / scale,
+   *   E = T_0 + dT_grid + U + V + viscous + history + lost - W_sides - W_loads
+   *
+   * with T kinetic, U strain and V gravitational energy: the error of the
+   * integration in time and of points that cross cells. The loss of the
+   * transfers is T_0 + dT_grid - T - lost, known without being measured. The
+   * scale is the largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far.
+   */
+  template <int dim>
+  class Balance
+  {
+  public:
+    /** From the state at the start; collective. */
+    explicit Balance(const State<dim> &start);
+
+    /** Continue that of a checkpoint. */
+    explicit Balance(const BalanceState<dim> &start);
+
+    /** All totals of the present state; collective, a pass over the points. */
+    Totals<dim>
+    evaluate(const State<dim> &state);
+
+    const BalanceState<dim> &
+    state() const
+    {
+      return start;
+    }
+
+  private:
+    void
+    balance_energy(const Ledger<dim> &ledger, Totals<dim> &totals);
+    void
+    balance_momentum(const Ledger<dim> &ledger,
+                     const double       absolute_momentum,
+                     Totals<dim>       &totals);
+
+    BalanceState<dim> start;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_tracked_points_h
+#define limber_output_tracked_points_h
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <limber/output/point_pressure.h>
+
+#include <vector>
+
+namespace limber
+{
+  /** A point that observables follow; plain, for checkpoints. */
+  template <int dim>
+  struct TrackedPoint
+  {
+    unsigned int                  body = 0;
+    dealii::types::particle_index id   = 0;
+    dealii::Point<dim>            reference; // where it was at the start, m
+    bool                          lost = false;
+  };
+
+
+
+  /** What is seen of a point; meaningless where it has been lost. */
+  template <int dim>
+  struct PointSample
+  {
+    bool                          lost = true;
+    dealii::Point<dim>            position;     // m
+    dealii::Tensor<1, dim>        velocity;     // m/s
+    double                        pressure = 0; // Cauchy, as PointPressure, Pa
+    dealii::SymmetricTensor<2, 3> stress;       // Cauchy, Pa
+  };
+
+
+
+  /**
+   * Follows single points wherever they go: they change their place in the
+   * arrays with each sort and their rank with each synchronisation. The
+   * owner notices the first itself; only where no rank has a point do all of
+   * them look for it.
+   */
+  template <int dim>
+  class TrackedPoints
+  {
+  public:
+    TrackedPoints() = default;
+    explicit TrackedPoints(const std::vector<TrackedPoint<dim>> &points);
+
+    /**
+     * Follow the point of the body that is nearest to the place, of several
+     * the first by coordinates, whatever the number of ranks. Returns its
+     * number here; a point that is followed already keeps its own. Collective.
+     */
+    unsigned int
+    follow_nearest(const State<dim>         &state,
+                   const unsigned int        body,
+                   const dealii::Point<dim> &place);
+
+    /**
+     * Look at all of them. Pressure and stress are filled for those of
+     * @p with_stress only, since averages cost a search through the cells.
+     * Collective: one reduction, another for averages, another after a
+     * point has changed its rank.
+     */
+    std::vector<PointSample<dim>>
+    sample(const State<dim> &state, const std::vector<bool> &with_stress);
+
+    const std::vector<TrackedPoint<dim>> &
+    points() const
+    {
+      return tracked;
+    }
+
+  private:
+    void
+    revalidate(const State<dim> &state, const unsigned int t);
+    void
+    search(const State<dim> &state, const unsigned int t);
+    std::vector<double>
+    collect(const State<dim> &state) const;
+    void
+    average_pressures(const State<dim>              &state,
+                      const std::vector<bool>       &with_stress,
+                      const std::vector<double>     &records,
+                      std::vector<PointSample<dim>> &samples) const;
+
+    static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+    std::vector<TrackedPoint<dim>> tracked;
+    std::vector<std::size_t>       index; // in the arrays of this rank
+  };
+} // namespace limber
+
+#endif

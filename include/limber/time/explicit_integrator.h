@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_explicit_integrator_h
+#define limber_time_explicit_integrator_h
+
+#include <limber/base/timing.h>
+#include <limber/grid/boundary_conditions.h>
+#include <limber/stress/material_body.h>
+#include <limber/time/loads.h>
+
+#include <array>
+#include <string>
+
+namespace limber
+{
+  /** The verbs of a step, in the order in which they are reported. */
+  enum class Verb
+  {
+    points_to_grid,
+    add_loads,
+    sum_shared_nodes,
+    advance_nodes,
+    apply_boundaries,
+    share_nodes,
+    grid_to_points,
+    update_stress,
+    relocate,
+    n_verbs
+  };
+
+  const char *
+  name_of(Verb verb);
+
+
+
+  /**
+   * Explicit steps of the material point method, with the stress updated
+   * first (USF), last (USL) or last with re-mapped velocity (MUSL).
+   */
+  template <int dim>
+  class ExplicitIntegrator
+  {
+  public:
+    ExplicitIntegrator(const Problem<dim>                              &problem,
+                       BackgroundGrid<dim>                             &grid,
+                       NodalFields<dim>                                &nodes,
+                       std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
+                       Ledger<dim>                                     &ledger);
+
+    /**
+     * One step from @p time over @p step seconds; collective. Throws
+     * ComputationError when the step cannot be done; where nodal velocities
+     * show it, points still are what they were.
+     */
+    void
+    advance(double time, double step);
+
+    /** The longest step that the Courant number admits now, s. */
+    double
+    longest_step() const;
+
+    /** Adopt a mesh that has changed, and points that have moved with it. */
+    void
+    reinit();
+
+    /** Share of all points on the fullest rank times the number of ranks. */
+    double
+    imbalance() const;
+
+    /** Whether ranks have exchanged points at the end of the last step. */
+    bool
+    has_exchanged() const
+    {
+      return exchanged;
+    }
+
+    /** Points that were lost in the last step, on this rank. */
+    const std::vector<std::pair<std::string, LostPoint<dim>>> &
+    lost_points() const
+    {
+      return lost;
+    }
+
+    /** Wall time per verb on this rank, s. */
+    std::array<double, std::size_t(Verb::n_verbs)> verb_seconds{};
+
+  private:
+    void
+    stress_first_step();
+    void
+    stress_last_step();
+
+    void
+    clear();
+    void
+    points_to_grid(bool momentum, bool force);
+    void
+    add_loads();
+    void
+    sum_shared_nodes(unsigned int first, unsigned int last);
+    void
+    add_mean_pressure();
+    void
+    advance_nodes();
+    void
+    check_nodes(double largest_speed, bool finite) const;
+    void
+    apply_boundaries();
+    void
+    divide_remapped(unsigned int momentum);
+    void
+    share_nodes();
+    void
+    grid_to_points(bool remap, bool move);
+    void
+    update_stress(bool remapped, bool move);
+    void
+    relocate();
+    void
+    remove_lost_points();
+    void
+    sort_points();
+    void
+    reduce_extremes();
+    void
+    exchange_points();
+
+    void
+    lap(const Verb verb)
+    {
+      stopwatch.lap(verb_seconds[std::size_t(verb)]);
+    }
+
+    const Problem<dim>                              &problem;
+    BackgroundGrid<dim>                             &grid;
+    NodalFields<dim>                                &nodes;
+    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
+    Ledger<dim>                                     &ledger;
+    const BoundaryConditions<dim>                    boundaries;
+    ExternalLoads<dim>                               loads;
+    const bool                                       parallel;
+    Stopwatch                                        stopwatch;
+
+    double time = 0, step = 0; // of the step that is being done, s
+
+    // Of the present state, over all ranks
+    double wave_speed  = 0; // m/s
+    double point_speed = 0; // m/s
+    double viscosity   = 0; // largest kinematic viscosity, m^2/s
+
+    // Of the step that is being done, on this rank
+    double                                              speed_squared = 0;
+    double                                              wave_squared  = 0;
+    double                                              displacement  = 0;
+    double                                              largest_mass  = 1e300;
+    std::vector<std::pair<std::string, LostPoint<dim>>> lost;
+
+    double any_lost  = 0;
+    bool   exchanged = false;
+
+    // Sum of largest displacements since ranks exchanged points, in cells
+    double travelled = 0;
+    // Batches beyond one per occupied cell, summed since the last sort
+    std::size_t excess_batches = 0, n_batches = 0, n_batches_sorted = 0;
+  };
+} // namespace limber
+
+#endif

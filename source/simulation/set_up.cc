@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/points/seeding.h>
+#include <limber/simulation/set_up.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** The law of a body by name, and the values of its entries in order. */
+    template <int dim>
+    std::unique_ptr<const StressUpdate<dim>>
+    make_stress_update(const Body<dim> &body)
+    {
+      const bool projected = body.treatment == LockingTreatment::cell;
+      const auto solid     = [](const LinearElasticParameters &p) {
+        return std::vector<double>{p.density, p.young_modulus, p.poisson_ratio};
+      };
+      switch (body.law)
+        {
+          case LawKind::linear_elastic:
+            return limber::make_stress_update<dim>("linear elastic",
+                                                   solid(body.linear_elastic),
+                                                   projected);
+          case LawKind::neo_hookean:
+            return limber::make_stress_update<dim>("neo hookean",
+                                                   solid(body.neo_hookean),
+                                                   projected);
+          case LawKind::newtonian_fluid:
+            break;
+        }
+      const NewtonianFluidParameters &p = body.newtonian_fluid;
+      return limber::make_stress_update<dim>("newtonian fluid",
+                                             {p.density,
+                                              p.bulk_modulus,
+                                              p.viscosity,
+                                              double(p.tension_cutoff),
+                                              double(p.tait),
+                                              p.tait_exponent},
+                                             projected);
+    }
+
+
+
+    /** Initial Cauchy pressure of a body at a place, Pa. */
+    template <int dim>
+    double
+    initial_pressure(const Problem<dim>       &problem,
+                     const Body<dim>          &body,
+                     const dealii::Point<dim> &place)
+    {
+      if (body.initial_pressure)
+        return body.initial_pressure->value(place, 0);
+      if (!body.hydrostatic)
+        return 0;
+      // rho g times the depth below the highest place of the body
+      const auto  &gravity = problem.loads.gravity;
+      const auto   box     = body.shape->bounding_box();
+      double       result  = 0;
+      for (int d = 0; d < dim; ++d)
+        {
+          const double top = gravity[d] < 0 ? box.second[d] : box.first[d];
+          result += body.density() * gravity[d] * (place[d] - top);
+        }
+      return result;
+    }
+
+
+
+    template <int dim>
+    void
+    set_initial_state(const Problem<dim> &problem, MaterialBody<dim> &body)
+    {
+      const PointView<dim> points = body.points.view();
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          dealii::Point<dim> place;
+          for (int d = 0; d < dim; ++d)
+            place[d] = points.position[d][p];
+          body.stress->initialise(
+            points, p, initial_pressure(problem, body.description, place));
+          if (body.description.initial_velocity.empty())
+            continue;
+          const auto velocity =
+            body.description.initial_velocity.vector(place, 0);
+          for (int d = 0; d < dim; ++d)
+            points.velocity[d][p] = velocity[d];
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<std::unique_ptr<MaterialBody<dim>>>
+  set_up_bodies(const Problem<dim> &problem, BackgroundGrid<dim> &grid)
+  {
+    std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
+    const auto &fields = problem.output.fields;
+
+    for (const Body<dim> &body : problem.bodies)
+      {
+        auto        stress = make_stress_update(body);
+        PointLayout layout;
+        layout.deviator   = stress->has_deviator();
+        layout.n_history  = stress->n_history();
+        layout.volumetric = stress->volumetric();
+        layout.affine     = problem.method.transfer == Transfer::apic;
+        layout.reference  = std::find(fields.begin(),
+                                     fields.end(),
+                                     "displacement") != fields.end();
+
+        const StressUpdate<dim> &law = *stress;
+        bodies.push_back(std::unique_ptr<MaterialBody<dim>>(
+          new MaterialBody<dim>{body,
+                                std::move(stress),
+                                MaterialPoints<dim>(grid, layout),
+                                std::nullopt}));
+        seed<dim>(
+          body,
+          grid,
+          [&](const dealii::Point<dim> &place) {
+            return body.density() / law.volume_ratio_at_rest(initial_pressure(
+                                      problem, body, place));
+          },
+          bodies.back()->points);
+        set_initial_state(problem, *bodies.back());
+
+        if (bodies.back()->points.n_global() == 0)
+          throw InputError("The body '" + body.name +
+                           "' holds no material point: no place that "
+                           "'Points per cell edge' puts into the cells lies "
+                           "in its shape. In 'Body " +
+                           body.name +
+                           "', enlarge the shape, or set 'Points per cell "
+                           "edge' to 4, or refine 'Grid/Cells'.");
+      }
+
+    if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
+      balance(grid, bodies);
+    for (auto &body : bodies)
+      if (body->description.treatment == LockingTreatment::cell)
+        body->cell_sums.emplace(grid);
+    return bodies;
+  }
+
+
+
+  template <int dim>
+  void
+  balance(BackgroundGrid<dim>                             &grid,
+          std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
+  {
+    for (auto &body : bodies)
+      body->points.prepare_mesh_change();
+
+    // A cell without points costs next to nothing but still counts a little.
+    using Cell = typename dealii::Triangulation<dim>::cell_iterator;
+    using Status = typename dealii::Triangulation<dim>::CellStatus;
+    const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
+      unsigned int n = 0;
+      if (cell->is_active() && cell->is_locally_owned())
+        for (const auto &body : bodies)
+          n += body->points.handler.n_particles_in_cell(cell);
+      return 1 + 20 * n;
+    };
+    const auto connection = grid.triangulation.signals.weight.connect(weight);
+    grid.triangulation.repartition();
+    connection.disconnect();
+
+    grid.rebuild();
+    for (auto &body : bodies)
+      body->points.finish_mesh_change();
+  }
+
+
+
+  template std::vector<std::unique_ptr<MaterialBody<2>>>
+  set_up_bodies(const Problem<2> &, BackgroundGrid<2> &);
+  template std::vector<std::unique_ptr<MaterialBody<3>>>
+  set_up_bodies(const Problem<3> &, BackgroundGrid<3> &);
+  template void
+  balance(BackgroundGrid<2> &, std::vector<std::unique_ptr<MaterialBody<2>>> &);
+  template void
+  balance(BackgroundGrid<3> &, std::vector<std::unique_ptr<MaterialBody<3>>> &);
+} // namespace limber

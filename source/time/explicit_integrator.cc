@@ -1,0 +1,609 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/time/explicit_integrator.h>
+#include <limber/transfer/grid_to_points.h>
+#include <limber/transfer/points_to_grid.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    // Points must not go beyond the ghost layer before ranks exchange them.
+    constexpr double travel_limit = 0.9; // cells
+  } // namespace
+
+
+
+  const char *
+  name_of(const Verb verb)
+  {
+    static constexpr const char *names[] = {"points to grid",
+                                            "add loads",
+                                            "sum shared nodes",
+                                            "advance nodes",
+                                            "apply boundaries",
+                                            "share nodes",
+                                            "grid to points",
+                                            "update stress",
+                                            "relocate"};
+    return names[std::size_t(verb)];
+  }
+
+
+
+  template <int dim>
+  ExplicitIntegrator<dim>::ExplicitIntegrator(
+    const Problem<dim>                              &problem,
+    BackgroundGrid<dim>                             &grid,
+    NodalFields<dim>                                &nodes,
+    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
+    Ledger<dim>                                     &ledger)
+    : problem(problem)
+    , grid(grid)
+    , nodes(nodes)
+    , bodies(bodies)
+    , ledger(ledger)
+    , boundaries(problem.sides)
+    , loads(problem, grid, bodies)
+    , parallel(dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
+  {
+    for (const auto &body : bodies)
+      {
+        viscosity = std::max(viscosity,
+                             body->stress->viscosity() /
+                               body->stress->density());
+        const PointView<dim> points = body->points.view();
+        wave_squared =
+          std::max(wave_squared, body->stress->wave_speed_squared(points));
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            double squared = 0;
+            for (int d = 0; d < dim; ++d)
+              squared += points.velocity[d][p] * points.velocity[d][p];
+            speed_squared = std::max(speed_squared, squared);
+          }
+      }
+    reduce_extremes();
+    sort_points();
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::reinit()
+  {
+    nodes.reinit();
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        body->cell_sums->reinit();
+    loads.reinit();
+    travelled = 0;
+    sort_points();
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::advance(const double now, const double length)
+  {
+    time = now;
+    step = length;
+    stopwatch.start();
+
+    if (problem.method.order == StressUpdateOrder::first)
+      stress_first_step();
+    else
+      stress_last_step();
+
+    relocate();
+  }
+
+
+
+  // USF: strain from the velocity that the points bring to the grid.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::stress_first_step()
+  {
+    using Layout = NodeLayout<dim>;
+
+    clear();
+    points_to_grid(/*momentum=*/true, /*force=*/false);
+    sum_shared_nodes(0, Layout::stride);
+    divide_remapped(Layout::momentum);
+    share_nodes();
+    update_stress(/*remapped=*/true, /*move=*/false);
+
+    points_to_grid(/*momentum=*/false, /*force=*/true);
+    add_mean_pressure();
+    sum_shared_nodes(Layout::force, Layout::force + dim);
+    add_loads();
+    advance_nodes();
+    apply_boundaries();
+    share_nodes();
+    grid_to_points(/*remap=*/false, /*move=*/true);
+  }
+
+
+
+  // USL, and MUSL with the strain from the re-mapped velocity.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::stress_last_step()
+  {
+    using Layout     = NodeLayout<dim>;
+    const bool remap = problem.method.order == StressUpdateOrder::last_remapped;
+
+    clear();
+    points_to_grid(/*momentum=*/true, /*force=*/true);
+    add_mean_pressure();
+    sum_shared_nodes(0, Layout::stride);
+    add_loads();
+    advance_nodes();
+    apply_boundaries();
+    share_nodes();
+    grid_to_points(remap, /*move=*/false);
+    if (remap)
+      {
+        sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+        divide_remapped(Layout::remapped);
+        share_nodes();
+      }
+    update_stress(remap, /*move=*/true);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::clear()
+  {
+    nodes.clear();
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        body->cell_sums->clear(nodes.occupied_cells());
+    speed_squared = wave_squared = displacement = 0;
+    n_batches                                   = 0;
+    lost.clear();
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::points_to_grid(const bool momentum, const bool force)
+  {
+    GiveToGrid what;
+    what.momentum = momentum;
+    what.force    = force;
+    what.affine   = momentum && problem.method.transfer == Transfer::apic;
+    n_batches     = 0;
+    for (auto &body : bodies)
+      {
+        what.inverse_density = 1 / body->stress->density();
+        CellSums<dim> sums;
+        if (body->cell_sums)
+          sums = body->cell_sums->view();
+        n_batches += limber::points_to_grid<dim>(body->points.view(),
+                                                 nodes.view(),
+                                                 what,
+                                                 body->cell_sums ? &sums :
+                                                                   nullptr);
+      }
+    lap(Verb::points_to_grid);
+  }
+
+
+
+  // Sums of cells are complete only after ranks have added theirs.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::add_mean_pressure()
+  {
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        {
+          body->cell_sums->sum_shared();
+          const auto &cells = nodes.owned_occupied_cells();
+          add_projected_pressure<dim>(cells.data(),
+                                      cells.size(),
+                                      nodes.view(),
+                                      body->cell_sums->view());
+        }
+    lap(Verb::points_to_grid);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::add_loads()
+  {
+    if (loads.any())
+      loads.add(nodes, time);
+    lap(Verb::add_loads);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::sum_shared_nodes(const unsigned int first,
+                                            const unsigned int last)
+  {
+    nodes.sum_shared(first, last);
+    lap(Verb::sum_shared_nodes);
+  }
+
+
+
+  // v_i = p_i / m_i,  dv_i = dt (f_i / m_i + g)
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::advance_nodes()
+  {
+    using Layout = NodeLayout<dim>;
+
+    std::array<double, dim> gravity_step;
+    for (int d = 0; d < dim; ++d)
+      gravity_step[d] = step * problem.loads.gravity[d];
+
+    double kinetic = 0, total_mass = 0, checked_speed = 0, all = 0;
+    // A node that only touches the material may be fast for a moment.
+    const double checked_mass = 0.1 * largest_mass;
+    largest_mass              = 0;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        const double  mass   = record[Layout::mass];
+        if (!(mass > 0))
+          continue;
+        const double inverse = 1 / mass;
+        double       gain = 0, squared = 0;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double before = record[Layout::momentum + d] * inverse;
+            const double change =
+              step * record[Layout::force + d] * inverse + gravity_step[d];
+            const double after           = before + change;
+            record[Layout::increment + d] = change;
+            record[Layout::velocity + d]  = after;
+            gain += change * (before + after);
+            squared += after * after;
+          }
+        kinetic += 0.5 * mass * gain;
+        total_mass += mass;
+        largest_mass = std::max(largest_mass, mass);
+        all += squared;
+        if (mass > checked_mass)
+          checked_speed = std::max(checked_speed, squared);
+      }
+    ledger.grid_kinetic += kinetic;
+    for (int d = 0; d < dim; ++d)
+      ledger.gravity_impulse[d] += total_mass * gravity_step[d];
+
+    if (loads.any())
+      for (const std::uint32_t node : nodes.active_nodes())
+        {
+          const double *const record = nodes.record(node);
+          if (!(record[Layout::mass] > 0))
+            continue;
+          const auto force = loads.on_node(node);
+          ledger.load_impulse += step * force;
+          for (int d = 0; d < dim; ++d)
+            ledger.load_work += step * force[d] *
+                                (record[Layout::velocity + d] -
+                                 0.5 * record[Layout::increment + d]);
+        }
+
+    check_nodes(std::sqrt(checked_speed), std::isfinite(all));
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::check_nodes(const double largest_speed,
+                                       const bool   finite) const
+  {
+    double cells = finite ? largest_speed * step / grid.smallest_edge : 1e300;
+    if (parallel)
+      cells = dealii::Utilities::MPI::max(cells, grid.communicator);
+    if (cells <= 1)
+      return;
+
+    std::ostringstream text;
+    if (cells >= 1e300)
+      text << "The velocity of a node is not finite";
+    else
+      text << "A node moves at "
+           << cells * grid.smallest_edge / step << " m/s, " << cells
+           << " cells in one step";
+    text << ", at time " << time << " s with step " << step
+         << " s. The run is unstable: usually the step is too long for the "
+            "stiffness, or 'Stress update' is 'last' without re-mapping. Set "
+            "Method/Courant number to 0.4 or below, or Method/Time step to "
+         << 0.4 * grid.smallest_edge / (wave_speed + point_speed) << " s.";
+    throw ComputationError(text.str());
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::apply_boundaries()
+  {
+    boundaries.apply(nodes,
+                     time + step,
+                     [this](const unsigned int            side,
+                            const dealii::Tensor<1, dim> &impulse,
+                            const double                  work) {
+                       ledger.side_impulse[side] += impulse;
+                       ledger.boundary_work += work;
+                       ledger.grid_kinetic += work;
+                     });
+    lap(Verb::apply_boundaries);
+  }
+
+
+
+  // A velocity in the re-mapped slot, with the boundary conditions on it.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::divide_remapped(const unsigned int momentum)
+  {
+    using Layout = NodeLayout<dim>;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        const double  mass   = record[Layout::mass];
+        if (!(mass > 0))
+          continue;
+        const double inverse = 1 / mass;
+        for (int d = 0; d < dim; ++d)
+          record[Layout::remapped + d] = record[momentum + d] * inverse;
+      }
+    lap(Verb::advance_nodes);
+    boundaries.apply_remapped(nodes, time + step);
+    lap(Verb::apply_boundaries);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::share_nodes()
+  {
+    nodes.share();
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        body->cell_sums->share();
+    lap(Verb::share_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::grid_to_points(const bool remap, const bool move)
+  {
+    const Method &method = problem.method;
+    TakeFromGrid  what;
+    what.affine = method.transfer == Transfer::apic;
+    what.flip_share =
+      method.transfer == Transfer::pic ? 0 :
+      method.damping_time > 0 ? std::max(0., 1 - step / method.damping_time) :
+                                1;
+    what.remap = remap;
+    what.move  = move ? step : 0;
+    for (auto &body : bodies)
+      {
+        const auto found =
+          limber::grid_to_points<dim>(body->points.view(), nodes.view(), what);
+        speed_squared = std::max(speed_squared, found.speed_squared);
+        displacement  = std::max(displacement, found.displacement);
+      }
+    lap(Verb::grid_to_points);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::update_stress(const bool remapped, const bool move)
+  {
+    StressSweep what;
+    what.step     = step;
+    what.remapped = remapped;
+    what.move     = move;
+    for (auto &body : bodies)
+      {
+        const Body<dim> &description = body->description;
+        what.relaxation =
+          description.history == HistoryTreatment::replace ? 1 :
+          description.history == HistoryTreatment::relax ?
+                                 -std::expm1(-step / description.relaxation_time) :
+                                 0;
+        CellSums<dim> sums;
+        if (body->cell_sums)
+          sums = body->cell_sums->view();
+        const auto found = body->stress->update(body->points.view(),
+                                                nodes.view(),
+                                                body->cell_sums ? &sums :
+                                                                  nullptr,
+                                                what);
+        wave_squared = std::max(wave_squared, found.wave_speed_squared);
+        displacement = std::max(displacement, found.displacement);
+        ledger.viscous += found.viscous;
+        ledger.history += found.history;
+      }
+    lap(Verb::update_stress);
+  }
+
+
+
+  // The one reduction over ranks that every step needs.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::reduce_extremes()
+  {
+    any_lost = nodes.points_have_left() ? 1 : 0;
+    if (parallel)
+      {
+        double extremes[] = {speed_squared,
+                             wave_squared,
+                             displacement,
+                             largest_mass,
+                             any_lost};
+        MPI_Allreduce(
+          MPI_IN_PLACE, extremes, 5, MPI_DOUBLE, MPI_MAX, grid.communicator);
+        speed_squared = extremes[0];
+        wave_squared  = extremes[1];
+        displacement  = extremes[2];
+        largest_mass  = extremes[3];
+        any_lost      = extremes[4];
+      }
+    wave_speed  = std::sqrt(wave_squared);
+    point_speed = std::sqrt(speed_squared);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::relocate()
+  {
+    reduce_extremes();
+    if (any_lost > 0)
+      remove_lost_points();
+    nodes.add_entered();
+
+    exchanged = false;
+    if (parallel)
+      {
+        travelled += displacement;
+        // The next step may be somewhat longer than this one.
+        exchanged = travelled + 1.5 * displacement > travel_limit;
+      }
+    if (exchanged)
+      exchange_points();
+
+    // A sort costs about as much as the detours of n / 4 surplus batches.
+    std::size_t n_points = 0;
+    for (const auto &body : bodies)
+      n_points += body->points.size();
+    if (n_batches > n_batches_sorted)
+      excess_batches += n_batches - n_batches_sorted;
+    if (excess_batches > n_points / 4)
+      sort_points();
+    lap(Verb::relocate);
+  }
+
+
+
+  // A point without a cell has left the box, or this rank's part of it.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::remove_lost_points()
+  {
+    for (auto &body : bodies)
+      {
+        const auto strain_energy = [&]() {
+          return body->stress->summarize(body->points.view()).strain_energy;
+        };
+        const double before = strain_energy();
+        for (const LostPoint<dim> &point : body->points.remove_lost())
+          {
+            ++ledger.lost_points;
+            ledger.lost_mass += point.mass;
+            ledger.lost_momentum += point.momentum;
+            ledger.lost_kinetic +=
+              0.5 * point.momentum.norm_square() / point.mass;
+            for (int d = 0; d < dim; ++d)
+              ledger.lost_other -=
+                point.mass * problem.loads.gravity[d] * point.position[d];
+            lost.emplace_back(body->description.name, point);
+          }
+        ledger.lost_other += before - strain_energy();
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::exchange_points()
+  {
+    for (auto &body : bodies)
+      body->points.synchronise();
+    travelled = 0;
+    sort_points();
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::sort_points()
+  {
+    std::vector<std::uint32_t> cells;
+    n_batches_sorted = 0;
+    for (auto &body : bodies)
+      {
+        body->points.sort_by_cell();
+        const std::size_t before = cells.size();
+        body->points.collect_cells(cells);
+        n_batches_sorted += cells.size() - before;
+      }
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    nodes.set_occupied(std::move(cells));
+    excess_batches = 0;
+  }
+
+
+
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::longest_step() const
+  {
+    const Method &method = problem.method;
+    if (method.time_step > 0)
+      return method.time_step;
+
+    const double h    = grid.smallest_edge;
+    double       step = method.courant_number * h / (wave_speed + point_speed);
+    // explicit viscosity
+    if (viscosity > 0)
+      step = std::min(step, method.courant_number * h * h / (4 * viscosity));
+    // never more than one cell
+    return std::min(step, h / std::max(point_speed, 1e-300));
+  }
+
+
+
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::imbalance() const
+  {
+    double own = 0;
+    for (const auto &body : bodies)
+      own += body->points.size();
+    const auto all =
+      dealii::Utilities::MPI::min_max_avg(own, grid.communicator);
+    return all.avg > 0 ? all.max / all.avg : 1;
+  }
+
+
+
+  template class ExplicitIntegrator<2>;
+  template class ExplicitIntegrator<3>;
+} // namespace limber

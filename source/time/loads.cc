@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/linear.h>
+#include <limber/time/loads.h>
+
+namespace limber
+{
+  template <int dim>
+  ExternalLoads<dim>::ExternalLoads(
+    const Problem<dim>                              &problem,
+    const BackgroundGrid<dim>                       &grid,
+    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
+    : problem(problem)
+    , grid(grid)
+    , bodies(bodies)
+  {
+    for (const FaceLoad<dim> &load : problem.loads.faces)
+      for (auto &body : bodies)
+        if (body->description.name == load.body)
+          layers.push_back(find_layer(load, *body));
+    reinit();
+  }
+
+
+
+  template <int dim>
+  bool
+  ExternalLoads<dim>::any() const
+  {
+    return problem.loads.body_force || !layers.empty();
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::reinit()
+  {
+    if (any())
+      forces.reinit(grid.node_records(dim));
+  }
+
+
+
+  template <int dim>
+  typename ExternalLoads<dim>::FaceLayer
+  ExternalLoads<dim>::find_layer(const FaceLoad<dim> &load,
+                                 MaterialBody<dim>   &body) const
+  {
+    FaceLayer          layer{&load, &body, {}, {}, 0};
+    const unsigned int normal = load.face / 2;
+    const auto         box    = body.description.shape->bounding_box();
+    const double face = load.face % 2 == 0 ? box.first[normal] : box.second[normal];
+
+    // Only the points next to the face; regular placement is ensured when
+    // the scene is read.
+    std::vector<std::pair<dealii::types::particle_index, double>> own;
+    const PointView<dim> points = body.points.view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const auto &cell = grid.geometry[points.cell[p]];
+        double      area = 1, spacing = 0;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double part = 1 / (cell.inverse_edge[d] *
+                                     body.description.points_per_cell_edge[d]);
+            if (d == normal)
+              spacing = part;
+            else
+              area *= part;
+          }
+        if (std::abs(points.position[normal][p] - face) < spacing)
+          own.emplace_back(body.points.id(p), area);
+      }
+    for (const auto &part :
+         dealii::Utilities::MPI::all_gather(grid.communicator, own))
+      layer.area.insert(part.begin(), part.end());
+
+    // The layer stands for the whole face also where the box does not end on
+    // the edges of cells.
+    double total = 0, exact = 1;
+    for (const auto &[id, area] : layer.area)
+      total += area;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (d != normal)
+        exact *= box.second[d] - box.first[d];
+    for (auto &[id, area] : layer.area)
+      area *= exact / total;
+    return layer;
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::give(const PointView<dim>         &points,
+                           const std::size_t             p,
+                           const dealii::Tensor<1, dim> &force)
+  {
+    using Kernel     = Linear<dim>;
+    const auto &cell = grid.geometry[points.cell[p]];
+    auto        weights =
+      broadcast<typename Kernel::Nodes>(1.);
+    for (int d = 0; d < dim; ++d)
+      weights *= Kernel::weights(d,
+                                 (points.position[d][p] - cell.origin[d]) *
+                                   cell.inverse_edge[d]);
+    for (int i = 0; i < Kernel::n_nodes; ++i)
+      for (int d = 0; d < dim; ++d)
+        forces.local_element(cell.node[i] / NodeLayout<dim>::stride * dim + d) +=
+          weights[i] * force[d];
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::add_body_force(const MaterialBody<dim> &body,
+                                     const double             time)
+  {
+    const PointView<dim> points = body.points.view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        dealii::Point<dim> place;
+        for (int d = 0; d < dim; ++d)
+          place[d] = points.position[d][p];
+        give(points,
+             p,
+             points.mass[p] * problem.loads.body_force->vector(place, time));
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::add_face_load(FaceLayer &layer, const double time)
+  {
+    const MaterialPoints<dim> &carrier = layer.body->points;
+    if (layer.order != carrier.order())
+      {
+        layer.here.clear();
+        for (std::size_t p = 0; p < carrier.size(); ++p)
+          {
+            const auto found = layer.area.find(carrier.id(p));
+            if (found != layer.area.end())
+              layer.here.emplace_back(p, found->second);
+          }
+        layer.order = carrier.order();
+      }
+
+    const FaceLoad<dim> &load   = *layer.load;
+    const PointView<dim> points = carrier.view();
+    for (const auto &[p, area] : layer.here)
+      {
+        dealii::Point<dim> place;
+        for (int d = 0; d < dim; ++d)
+          place[d] = points.position[d][p];
+        dealii::Tensor<1, dim> traction;
+        if (load.is_pressure)
+          traction[load.face / 2] =
+            load.formula.value(place, time) * (load.face % 2 == 0 ? 1 : -1);
+        else
+          traction = load.formula.vector(place, time);
+        give(points, p, area * traction);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::add(NodalFields<dim> &nodes, const double time)
+  {
+    forces = 0.;
+    if (problem.loads.body_force)
+      for (const auto &body : bodies)
+        add_body_force(*body, time);
+    for (FaceLayer &layer : layers)
+      add_face_load(layer, time);
+
+    // As for the nodes themselves: hanging nodes give to their masters.
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      for (int d = 0; d < dim; ++d)
+        {
+          double &from = forces.local_element(hanging.node * dim + d);
+          for (const auto &[master, weight] : hanging.masters)
+            forces.local_element(master * dim + d) += weight * from;
+          from = 0;
+        }
+    forces.compress(dealii::VectorOperation::add);
+
+    for (const std::uint32_t node : nodes.active_nodes())
+      for (int d = 0; d < dim; ++d)
+        nodes.record(node)[NodeLayout<dim>::force + d] +=
+          forces.local_element(node * dim + d);
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  ExternalLoads<dim>::on_node(const std::uint32_t node) const
+  {
+    dealii::Tensor<1, dim> result;
+    for (int d = 0; d < dim; ++d)
+      result[d] = forces.local_element(node * dim + d);
+    return result;
+  }
+
+
+
+  template class ExternalLoads<2>;
+  template class ExternalLoads<3>;
+} // namespace limber
