@@ -55,8 +55,9 @@ namespace limber
                                       const MPI_Comm              communicator)
     : description(description)
     , communicator(communicator)
-    , triangulation(communicator,
-                    dealii::Triangulation<dim>::limit_level_difference_at_vertices)
+    , triangulation(
+        communicator,
+        dealii::Triangulation<dim>::limit_level_difference_at_vertices)
     , node_handler(triangulation)
     , cell_handler(triangulation)
   {
@@ -103,10 +104,14 @@ namespace limber
       for (const auto &[master, weight] : line.entries)
         relevant_nodes.add_index(master);
 
-    node_partitioner = std::make_shared<Partitioner>(
-      node_handler.locally_owned_dofs(), relevant_nodes, communicator);
-    cell_partitioner = std::make_shared<Partitioner>(
-      cell_handler.locally_owned_dofs(), relevant_cells, communicator);
+    node_partitioner =
+      std::make_shared<Partitioner>(node_handler.locally_owned_dofs(),
+                                    relevant_nodes,
+                                    communicator);
+    cell_partitioner =
+      std::make_shared<Partitioner>(cell_handler.locally_owned_dofs(),
+                                    relevant_cells,
+                                    communicator);
 
     build_cells();
     build_bins();
@@ -188,8 +193,8 @@ namespace limber
             bins.inverse_edge[d] =
               std::max(bins.inverse_edge[d], cell.inverse_edge[d]);
           }
-        bins.n[d] = std::lround((upper[d] - bins.lower[d]) *
-                                bins.inverse_edge[d]);
+        bins.n[d] =
+          std::lround((upper[d] - bins.lower[d]) * bins.inverse_edge[d]);
       }
 
     std::size_t size = 1;

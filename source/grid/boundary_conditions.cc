@@ -58,7 +58,7 @@ namespace limber
             const double pressing = outward * velocity[normal];
             if (pressing <= 0)
               return false;
-            velocity[normal]       = 0;
+            velocity[normal]        = 0;
             const double tangential = velocity.norm();
             double       stopped    = sides[side].friction * pressing;
             if (new_velocity != nullptr)
@@ -96,10 +96,13 @@ namespace limber
           {
             const auto before = velocity;
             if ((nodes.grid.sides_of_node[node] >> side & 1) == 0 ||
-                !act(side, nodes.grid.node_places[node], time, velocity, nullptr))
+                !act(
+                  side, nodes.grid.node_places[node], time, velocity, nullptr))
               continue;
             const auto change = velocity - before;
-            account(side, mass * change, 0.5 * mass * (change * (velocity + before)));
+            account(side,
+                    mass * change,
+                    0.5 * mass * (change * (velocity + before)));
             for (int d = 0; d < dim; ++d)
               {
                 record[Layout::increment + d] += change[d];
@@ -126,7 +129,11 @@ namespace limber
         auto       velocity     = read<dim>(record + Layout::remapped);
         for (unsigned int side = 0; side < 2 * dim; ++side)
           if (nodes.grid.sides_of_node[node] >> side & 1)
-            act(side, nodes.grid.node_places[node], time, velocity, &new_velocity);
+            act(side,
+                nodes.grid.node_places[node],
+                time,
+                velocity,
+                &new_velocity);
         for (int d = 0; d < dim; ++d)
           record[Layout::remapped + d] = velocity[d];
       }

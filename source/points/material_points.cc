@@ -53,12 +53,12 @@ namespace limber
     if (layout.reference)
       for (int d = 0; d < dim; ++d)
         properties[n_fields - dim + d] = place[d];
-    handler.insert_particle(
-      place,
-      grid.mapping.transform_real_to_unit_cell(cell, place),
-      handler.n_locally_owned_particles(),
-      cell,
-      dealii::ArrayView<const double>(properties));
+    handler.insert_particle(place,
+                            grid.mapping.transform_real_to_unit_cell(cell,
+                                                                     place),
+                            handler.n_locally_owned_particles(),
+                            cell,
+                            dealii::ArrayView<const double>(properties));
   }
 
 
@@ -68,7 +68,7 @@ namespace limber
   MaterialPoints<dim>::finish_adding()
   {
     // Numbers are unique over all ranks: this rank's follow its predecessors'.
-    const unsigned long own = handler.n_locally_owned_particles();
+    const unsigned long own    = handler.n_locally_owned_particles();
     unsigned long       before = 0;
     const int           ierr   = MPI_Exscan(
       &own, &before, 1, MPI_UNSIGNED_LONG, MPI_SUM, grid.communicator);
@@ -109,7 +109,7 @@ namespace limber
     result.volumetric = layout.volumetric < 0 ?
                           result.pressure :
                           result.history[layout.volumetric];
-    result.cell = cell.data();
+    result.cell       = cell.data();
     return result;
   }
 
@@ -147,7 +147,8 @@ namespace limber
   dealii::Point<dim>
   MaterialPoints<dim>::reference_position(const std::size_t p) const
   {
-    const auto properties = handler.get_property_pool().get_properties(handle[p]);
+    const auto properties =
+      handler.get_property_pool().get_properties(handle[p]);
     dealii::Point<dim> result;
     for (int d = 0; d < dim; ++d)
       result[d] = properties[n_fields - dim + d];
@@ -272,8 +273,8 @@ namespace limber
     if (lost_handles.empty())
       return;
     std::sort(lost_handles.begin(), lost_handles.end());
-    std::vector<typename dealii::Particles::ParticleHandler<
-      dim>::particle_iterator>
+    std::vector<
+      typename dealii::Particles::ParticleHandler<dim>::particle_iterator>
       lost;
     for (auto particle = handler.begin(); particle != handler.end(); ++particle)
       if (std::binary_search(lost_handles.begin(),
@@ -296,8 +297,8 @@ namespace limber
     std::size_t p    = 0;
     for (const auto &particle : handler)
       {
-        handle[p] = particle.get_local_index();
-        cell[p]   = grid.cell_number(particle.get_surrounding_cell());
+        handle[p]         = particle.get_local_index();
+        cell[p]           = grid.cell_number(particle.get_surrounding_cell());
         const auto &place = particle.get_location();
         for (int d = 0; d < dim; ++d)
           fields[d][p] = place[d];

@@ -102,16 +102,16 @@ namespace limber
       {
         if (!cell->is_locally_owned() || !touches(cell))
           continue;
-        const dealii::Point<dim> lower = cell->vertex(0);
-        const auto edge   = cell->vertex((1 << dim) - 1) - lower;
-        double     volume = 1;
-        unsigned long seed = 5489;
+        const dealii::Point<dim> lower  = cell->vertex(0);
+        const auto               edge   = cell->vertex((1 << dim) - 1) - lower;
+        double                   volume = 1;
+        unsigned long            seed   = 5489;
         for (int d = 0; d < dim; ++d)
           {
             volume *= edge[d];
-            seed = seed * 1000003 +
-                   std::lround((lower[d] - grid.description.lower[d]) /
-                               edge[d]);
+            seed =
+              seed * 1000003 +
+              std::lround((lower[d] - grid.description.lower[d]) / edge[d]);
           }
         std::mt19937 random(seed);
 

@@ -37,7 +37,7 @@ namespace limber
                  "Weights of the nodes at a point.");
     parameters.declare("Courant number",
                        "0.4",
-                       admissible::number_from_to(1e-6, 1, "0.4"),
+                       admissible::number_from_to(1e-6, 100, "0.4"),
                        "C, no unit; step dt = C h / (c + |v|) with the speed "
                        "of sound c.");
     parameters.declare("Time step",

@@ -56,9 +56,9 @@ namespace limber
       if (!body.hydrostatic)
         return 0;
       // rho g times the depth below the highest place of the body
-      const auto  &gravity = problem.loads.gravity;
-      const auto   box     = body.shape->bounding_box();
-      double       result  = 0;
+      const auto &gravity = problem.loads.gravity;
+      const auto  box     = body.shape->bounding_box();
+      double      result  = 0;
       for (int d = 0; d < dim; ++d)
         {
           const double top = gravity[d] < 0 ? box.second[d] : box.first[d];
@@ -108,9 +108,10 @@ namespace limber
         layout.n_history  = stress->n_history();
         layout.volumetric = stress->volumetric();
         layout.affine     = problem.method.transfer == Transfer::apic;
-        layout.reference  = std::find(fields.begin(),
-                                     fields.end(),
-                                     "displacement") != fields.end();
+        layout.reference =
+          problem.output.time_interval > 0 &&
+          std::find(fields.begin(), fields.end(), "displacement") !=
+            fields.end();
 
         const StressUpdate<dim> &law = *stress;
         bodies.push_back(std::unique_ptr<MaterialBody<dim>>(
@@ -122,8 +123,8 @@ namespace limber
           body,
           grid,
           [&](const dealii::Point<dim> &place) {
-            return body.density() / law.volume_ratio_at_rest(initial_pressure(
-                                      problem, body, place));
+            return body.density() / law.volume_ratio_at_rest(
+                                      initial_pressure(problem, body, place));
           },
           bodies.back()->points);
         set_initial_state(problem, *bodies.back());
@@ -157,8 +158,8 @@ namespace limber
       body->points.prepare_mesh_change();
 
     // A cell without points costs next to nothing but still counts a little.
-    using Cell = typename dealii::Triangulation<dim>::cell_iterator;
-    using Status = typename dealii::Triangulation<dim>::CellStatus;
+    using Cell        = typename dealii::Triangulation<dim>::cell_iterator;
+    using Status      = typename dealii::Triangulation<dim>::CellStatus;
     const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
       unsigned int n = 0;
       if (cell->is_active() && cell->is_locally_owned())

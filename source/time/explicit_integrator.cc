@@ -14,7 +14,7 @@ namespace limber
   {
     // Points must not go beyond the ghost layer before ranks exchange them.
     constexpr double travel_limit = 0.9; // cells
-  } // namespace
+  }                                      // namespace
 
 
 
@@ -53,9 +53,9 @@ namespace limber
   {
     for (const auto &body : bodies)
       {
-        viscosity = std::max(viscosity,
-                             body->stress->viscosity() /
-                               body->stress->density());
+        viscosity =
+          std::max(viscosity,
+                   body->stress->viscosity() / body->stress->density());
         const PointView<dim> points = body->points.view();
         wave_squared =
           std::max(wave_squared, body->stress->wave_speed_squared(points));
@@ -191,11 +191,11 @@ namespace limber
         CellSums<dim> sums;
         if (body->cell_sums)
           sums = body->cell_sums->view();
-        n_batches += limber::points_to_grid<dim>(body->points.view(),
-                                                 nodes.view(),
-                                                 what,
-                                                 body->cell_sums ? &sums :
-                                                                   nullptr);
+        n_batches +=
+          limber::points_to_grid<dim>(body->points.view(),
+                                      nodes.view(),
+                                      what,
+                                      body->cell_sums ? &sums : nullptr);
       }
     lap(Verb::points_to_grid);
   }
@@ -272,7 +272,7 @@ namespace limber
             const double before = record[Layout::momentum + d] * inverse;
             const double change =
               step * record[Layout::force + d] * inverse + gravity_step[d];
-            const double after           = before + change;
+            const double after            = before + change;
             record[Layout::increment + d] = change;
             record[Layout::velocity + d]  = after;
             gain += change * (before + after);
@@ -324,9 +324,8 @@ namespace limber
     if (cells >= 1e300)
       text << "The velocity of a node is not finite";
     else
-      text << "A node moves at "
-           << cells * grid.smallest_edge / step << " m/s, " << cells
-           << " cells in one step";
+      text << "A node moves at " << cells * grid.smallest_edge / step
+           << " m/s, " << cells << " cells in one step";
     text << ", at time " << time << " s with step " << step
          << " s. The run is unstable: usually the step is too long for the "
             "stiffness, or 'Stress update' is 'last' without re-mapping. Set "
@@ -427,19 +426,19 @@ namespace limber
     for (auto &body : bodies)
       {
         const Body<dim> &description = body->description;
-        what.relaxation =
-          description.history == HistoryTreatment::replace ? 1 :
-          description.history == HistoryTreatment::relax ?
-                                 -std::expm1(-step / description.relaxation_time) :
-                                 0;
+        what.relaxation = description.history == HistoryTreatment::replace ?
+                            1 :
+                          description.history == HistoryTreatment::relax ?
+                            -std::expm1(-step / description.relaxation_time) :
+                            0;
         CellSums<dim> sums;
         if (body->cell_sums)
           sums = body->cell_sums->view();
-        const auto found = body->stress->update(body->points.view(),
-                                                nodes.view(),
-                                                body->cell_sums ? &sums :
-                                                                  nullptr,
-                                                what);
+        const auto found =
+          body->stress->update(body->points.view(),
+                               nodes.view(),
+                               body->cell_sums ? &sums : nullptr,
+                               what);
         wave_squared = std::max(wave_squared, found.wave_speed_squared);
         displacement = std::max(displacement, found.displacement);
         ledger.viscous += found.viscous;
@@ -458,11 +457,8 @@ namespace limber
     any_lost = nodes.points_have_left() ? 1 : 0;
     if (parallel)
       {
-        double extremes[] = {speed_squared,
-                             wave_squared,
-                             displacement,
-                             largest_mass,
-                             any_lost};
+        double extremes[] = {
+          speed_squared, wave_squared, displacement, largest_mass, any_lost};
         MPI_Allreduce(
           MPI_IN_PLACE, extremes, 5, MPI_DOUBLE, MPI_MAX, grid.communicator);
         speed_squared = extremes[0];

@@ -49,7 +49,8 @@ namespace limber
     FaceLayer          layer{&load, &body, {}, {}, 0};
     const unsigned int normal = load.face / 2;
     const auto         box    = body.description.shape->bounding_box();
-    const double face = load.face % 2 == 0 ? box.first[normal] : box.second[normal];
+    const double       face =
+      load.face % 2 == 0 ? box.first[normal] : box.second[normal];
 
     // Only the points next to the face; regular placement is ensured when
     // the scene is read.
@@ -96,18 +97,17 @@ namespace limber
                            const std::size_t             p,
                            const dealii::Tensor<1, dim> &force)
   {
-    using Kernel     = Linear<dim>;
-    const auto &cell = grid.geometry[points.cell[p]];
-    auto        weights =
-      broadcast<typename Kernel::Nodes>(1.);
+    using Kernel        = Linear<dim>;
+    const auto &cell    = grid.geometry[points.cell[p]];
+    auto        weights = broadcast<typename Kernel::Nodes>(1.);
     for (int d = 0; d < dim; ++d)
       weights *= Kernel::weights(d,
                                  (points.position[d][p] - cell.origin[d]) *
                                    cell.inverse_edge[d]);
     for (int i = 0; i < Kernel::n_nodes; ++i)
       for (int d = 0; d < dim; ++d)
-        forces.local_element(cell.node[i] / NodeLayout<dim>::stride * dim + d) +=
-          weights[i] * force[d];
+        forces.local_element(cell.node[i] / NodeLayout<dim>::stride * dim +
+                             d) += weights[i] * force[d];
   }
 
 

@@ -36,9 +36,9 @@ namespace limber
               Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
               if constexpr (affine)
                 for (int e = 0; e < dim; ++e)
-                  velocity +=
-                    points.affine[d * dim + e][p] / cell.inverse_edge[e] *
-                    (Kernel::sign(e) * Kernel::across(w[e], e));
+                  velocity += points.affine[d * dim + e][p] /
+                              cell.inverse_edge[e] *
+                              (Kernel::sign(e) * Kernel::across(w[e], e));
               momentum[d] += mass_weight * velocity;
             }
         }
@@ -104,10 +104,10 @@ namespace limber
                     const Number shift =
                       what.move *
                       Kernel::template value<Number>(grid_velocity, xi);
-                    displacement = larger(displacement,
-                                          lanes.only_active(
-                                            magnitude(shift) *
-                                            cell.inverse_edge[d]));
+                    displacement =
+                      larger(displacement,
+                             lanes.only_active(magnitude(shift) *
+                                               cell.inverse_edge[d]));
                     lanes.store(lanes.load(points.position[d]) + shift,
                                 points.position[d]);
                   }

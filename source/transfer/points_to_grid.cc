@@ -87,24 +87,21 @@ namespace limber
                 to_nodes[Layout::mass] += mass_weight;
                 for (int d = 0; d < dim; ++d)
                   {
-                    Nodes velocity =
-                      broadcast<Nodes>(points.velocity[d][p]);
+                    Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
                     if constexpr (affine)
                       // x_i - x: one weight of the other end, signed
                       for (int e = 0; e < dim; ++e)
                         velocity += points.affine[d * dim + e][p] /
                                     cell.inverse_edge[e] *
-                                    (Kernel::sign(e) *
-                                     Kernel::across(w[e], e));
+                                    (Kernel::sign(e) * Kernel::across(w[e], e));
                     to_nodes[Layout::momentum + d] += mass_weight * velocity;
                   }
               }
 
             if constexpr (force && (deviator || !projected))
               {
-                const auto t =
-                  force_density<dim, deviator, !projected>(
-                    points, p, mass * inverse_density);
+                const auto t = force_density<dim, deviator, !projected>(
+                  points, p, mass * inverse_density);
                 if constexpr (dim == 2)
                   {
                     const Nodes g0 = gradient_scale[0] * w[1];
@@ -156,10 +153,7 @@ namespace limber
            const CellSums<dim>  *sums)
     {
       if constexpr (sizeof...(chosen) == 5)
-        return sweep<dim, chosen...>(points,
-                                     grid,
-                                     what.inverse_density,
-                                     sums);
+        return sweep<dim, chosen...>(points, grid, what.inverse_density, sums);
       else
         {
           const bool switches[] = {what.momentum,
@@ -208,7 +202,7 @@ namespace limber
         if (!(mass > 0))
           continue;
 
-        const double mean = cell_sums[CellSums<dim>::pressure] / mass;
+        const double           mean = cell_sums[CellSums<dim>::pressure] / mass;
         std::array<Nodes, dim> force;
         for (int d = 0; d < dim; ++d)
           force[d] = (mean * cell.inverse_edge[d]) * Kernel::sign(d) *

@@ -15,7 +15,7 @@ namespace limber
   struct LawParameter
   {
     const char *name;
-    double      standard; // default
+    double      standard;        // default
     double      lowest, highest; // open interval, or closed where admitted
     bool        closed;          // the bounds themselves are admissible
     const char *text;            // symbol, meaning, unit, formula
@@ -43,13 +43,12 @@ namespace limber
       1e300,
       false,
       "rho_0, mass per volume in the reference state, kg/m^3"};
-    inline constexpr LawParameter young_modulus{
-      "Young's modulus",
-      1e6,
-      0,
-      1e300,
-      false,
-      "E, Pa"};
+    inline constexpr LawParameter young_modulus{"Young's modulus",
+                                                1e6,
+                                                0,
+                                                1e300,
+                                                false,
+                                                "E, Pa"};
     inline constexpr LawParameter poisson_ratio{
       "Poisson's ratio",
       0.3,

@@ -164,10 +164,10 @@ namespace limber
   inline Number
   inverse_cube_root(const Number &a)
   {
-    using Bits = std::conditional_t<
-      pack_width<Number> == 1,
-      std::int64_t,
-      typename internal::PackType<pack_width<Number>>::mask>;
+    using Bits =
+      std::conditional_t<pack_width<Number> == 1,
+                         std::int64_t,
+                         typename internal::PackType<pack_width<Number>>::mask>;
     Bits bits;
     std::memcpy(&bits, &a, sizeof(a));
     bits = 0x553ef0ff289dd796LL - bits / 3;

@@ -48,7 +48,8 @@ namespace limber
      * cells and as many global refinements as the counts have factors of two
      * in common, since every rank stores all coarse cells.
      */
-    BackgroundGrid(const GridDescription<dim> &description, MPI_Comm communicator);
+    BackgroundGrid(const GridDescription<dim> &description,
+                   MPI_Comm                    communicator);
 
     /** Renumber and rebuild all tables; to be called after mesh changes. */
     void
@@ -56,9 +57,8 @@ namespace limber
 
     /** Local number of a locally owned or ghost cell. */
     std::uint32_t
-    cell_number(
-      const typename dealii::Triangulation<dim>::active_cell_iterator &cell)
-      const
+    cell_number(const typename dealii::Triangulation<dim>::active_cell_iterator
+                  &cell) const
     {
       return cell_numbers[cell->active_cell_index()];
     }
@@ -100,22 +100,22 @@ namespace limber
     std::vector<std::uint32_t>
     shared_cells() const;
 
-    const GridDescription<dim>                               description;
-    const MPI_Comm                                           communicator;
-    dealii::parallel::distributed::Triangulation<dim>        triangulation;
-    const dealii::MappingCartesian<dim>                      mapping;
-    const dealii::FE_Q<dim>                                  node_element{1};
-    const dealii::FE_DGQ<dim>                                cell_element{0};
-    dealii::DoFHandler<dim>                                  node_handler;
-    dealii::DoFHandler<dim>                                  cell_handler;
-    dealii::AffineConstraints<double>                        constraints;
+    const GridDescription<dim>                        description;
+    const MPI_Comm                                    communicator;
+    dealii::parallel::distributed::Triangulation<dim> triangulation;
+    const dealii::MappingCartesian<dim>               mapping;
+    const dealii::FE_Q<dim>                           node_element{1};
+    const dealii::FE_DGQ<dim>                         cell_element{0};
+    dealii::DoFHandler<dim>                           node_handler;
+    dealii::DoFHandler<dim>                           cell_handler;
+    dealii::AffineConstraints<double>                 constraints;
 
     // Tables, by local number
-    std::vector<CellGeometry<dim>>           geometry;
-    std::vector<dealii::Point<dim>>          node_places;
-    std::vector<HangingNode>                 hanging_nodes;
-    std::vector<std::uint32_t>               bin_table;
-    BinView<dim>                             bins;
+    std::vector<CellGeometry<dim>>  geometry;
+    std::vector<dealii::Point<dim>> node_places;
+    std::vector<HangingNode>        hanging_nodes;
+    std::vector<std::uint32_t>      bin_table;
+    BinView<dim>                    bins;
     // Bit s is set for nodes on side s of the box.
     std::vector<std::uint8_t> sides_of_node;
     double                    smallest_edge = 0; // m, over all ranks

@@ -54,13 +54,12 @@ namespace limber
 
     /** Natural coordinates of the points in their cell. */
     std::array<Number, dim>
-    natural(const PointView<dim>    &points,
-            const CellGeometry<dim> &cell) const
+    natural(const PointView<dim> &points, const CellGeometry<dim> &cell) const
     {
       std::array<Number, dim> xi;
       for (int d = 0; d < dim; ++d)
-        xi[d] = (load(points.position[d]) - cell.origin[d]) *
-                cell.inverse_edge[d];
+        xi[d] =
+          (load(points.position[d]) - cell.origin[d]) * cell.inverse_edge[d];
       return xi;
     }
 
@@ -97,7 +96,8 @@ namespace limber
     auto
     component(const unsigned int c) const
     {
-      return [this, c](const int k) { return coefficients[k][c + first - start]; };
+      return
+        [this, c](const int k) { return coefficients[k][c + first - start]; };
     }
 
   private:

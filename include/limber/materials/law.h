@@ -73,8 +73,7 @@ namespace limber
     if constexpr (dim == 2)
       {
         const Number third = (a[0][0] + a[1][1]) * (1. / 3.);
-        return {
-          {a[0][0] - third, a[1][1] - third, 0.5 * (a[0][1] + a[1][0])}};
+        return {{a[0][0] - third, a[1][1] - third, 0.5 * (a[0][1] + a[1][0])}};
       }
     else
       {

@@ -24,10 +24,10 @@ namespace limber
                                            law_parameters::poisson_ratio};
 
     template <int>
-    static constexpr int  n_history           = 0;
-    static constexpr bool has_deviator        = true;
-    static constexpr bool dissipates          = false;
-    static constexpr int  volumetric          = -1;
+    static constexpr int  n_history    = 0;
+    static constexpr bool has_deviator = true;
+    static constexpr bool dissipates   = false;
+    static constexpr int  volumetric   = -1;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 0>;

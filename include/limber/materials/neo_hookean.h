@@ -30,10 +30,10 @@ namespace limber
                                            law_parameters::poisson_ratio};
 
     template <int dim>
-    static constexpr int  n_history           = dim == 2 ? 4 : 6;
-    static constexpr bool has_deviator        = true;
-    static constexpr bool dissipates          = false;
-    static constexpr int  volumetric          = 0;
+    static constexpr int  n_history    = dim == 2 ? 4 : 6;
+    static constexpr bool has_deviator = true;
+    static constexpr bool dissipates   = false;
+    static constexpr int  volumetric   = 0;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, n_history<dim>>;
@@ -68,7 +68,7 @@ namespace limber
     update(const MotionIncrement<dim, Number> &motion,
            State<dim, Number>                 &state) const
     {
-      const auto  &a = motion.gradient;
+      const auto                              &a = motion.gradient;
       std::array<std::array<Number, dim>, dim> f;
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
@@ -123,7 +123,7 @@ namespace limber
     initialise(const double pressure) const
     {
       // J p with Cauchy pressure p: K/2 J^2 + p J - K/2 = 0
-      const double      ratio = pressure / bulk_modulus;
+      const double       ratio = pressure / bulk_modulus;
       State<dim, double> state;
       state.history[0] = std::sqrt(ratio * ratio + 1) - ratio;
       state.history[1] = state.history[2] = 1;

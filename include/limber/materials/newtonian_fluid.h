@@ -26,35 +26,35 @@ namespace limber
     static constexpr std::array  parameters{
       law_parameters::density,
       LawParameter{"Bulk modulus",
-                    2e9,
-                    0,
-                    1e300,
-                    false,
-                    "K, Pa; 'auto' takes the softest one that keeps the Mach "
-                     "number below 0.1",
-                    "auto"},
+                   2e9,
+                   0,
+                   1e300,
+                   false,
+                   "K, Pa; 'auto' takes the softest one that keeps the Mach "
+                    "number below 0.1",
+                   "auto"},
       LawParameter{"Viscosity", 0, 0, 1e300, true, "mu, Pa s"},
       LawParameter{"Tension cutoff",
-                    0,
-                    0,
-                    1,
-                    true,
-                    "whether negative pressure is set to zero, with J = 1",
-                    "false|true"},
+                   0,
+                   0,
+                   1,
+                   true,
+                   "whether negative pressure is set to zero, with J = 1",
+                   "false|true"},
       LawParameter{"Equation of state",
-                    0,
-                    0,
-                    1,
-                    true,
-                    "linear: p = K (1/J - 1); tait: p = K/gamma (J^-gamma - 1)",
-                    "linear|tait"},
+                   0,
+                   0,
+                   1,
+                   true,
+                   "linear: p = K (1/J - 1); tait: p = K/gamma (J^-gamma - 1)",
+                   "linear|tait"},
       LawParameter{"Tait exponent", 7, 0, 100, false, "gamma, for tait"}};
 
     template <int>
-    static constexpr int  n_history           = 1;
-    static constexpr bool has_deviator        = viscous;
-    static constexpr bool dissipates          = true;
-    static constexpr int  volumetric          = 0;
+    static constexpr int  n_history    = 1;
+    static constexpr bool has_deviator = viscous;
+    static constexpr bool dissipates   = true;
+    static constexpr int  volumetric   = 0;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 1>;
@@ -143,8 +143,9 @@ namespace limber
       if (tait)
         return bulk_modulus / exponent *
                ((power(J, 1 - exponent) - 1.) / (exponent - 1) + J - 1.);
-      return bulk_modulus *
-             (J - 1. - each_lane(J, [](const double x) { return std::log(x); }));
+      return bulk_modulus * (J - 1. - each_lane(J, [](const double x) {
+                               return std::log(x);
+                             }));
     }
 
     template <int dim, class Number>

@@ -31,7 +31,7 @@ namespace limber
     dealii::types::particle_index id = 0;
     dealii::Point<dim>            position;
     dealii::Tensor<1, dim>        momentum; // kg m/s
-    double                        mass          = 0;
+    double                        mass         = 0;
     bool                          left_the_box = false;
   };
 
@@ -53,7 +53,7 @@ namespace limber
     void
     add(const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
         const dealii::Point<dim>                                        &place,
-        double                                                          mass);
+        double                                                           mass);
 
     /** After all add(): number the points over all ranks and gather them. */
     void

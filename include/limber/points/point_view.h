@@ -30,13 +30,13 @@ namespace limber
   struct PointView
   {
     std::size_t                           size = 0;
-    std::array<double *, dim>             position{}; // m
-    std::array<double *, dim>             velocity{}; // m/s
-    double                               *mass = nullptr; // kg
+    std::array<double *, dim>             position{};         // m
+    std::array<double *, dim>             velocity{};         // m/s
+    double                               *mass     = nullptr; // kg
     double                               *pressure = nullptr; // J p, Pa
-    std::array<double *, n_deviator<dim>> deviator{}; // of J sigma, Pa
-    std::array<double *, max_history>     history{};  // meaning: the law's
-    std::array<double *, dim * dim>       affine{};   // APIC, row-major, 1/s
+    std::array<double *, n_deviator<dim>> deviator{};         // of J sigma, Pa
+    std::array<double *, max_history>     history{}; // meaning: the law's
+    std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
     // The variable that carries the volumetric history (of the law's choice):
     // one of the arrays above.
     double        *volumetric = nullptr;

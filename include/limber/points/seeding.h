@@ -19,10 +19,10 @@ namespace limber
    */
   template <int dim>
   void
-  seed(const Body<dim>                                          &body,
-       const BackgroundGrid<dim>                                &grid,
-       const std::function<double(const dealii::Point<dim> &)>  &density,
-       MaterialPoints<dim>                                      &points);
+  seed(const Body<dim>                                         &body,
+       const BackgroundGrid<dim>                               &grid,
+       const std::function<double(const dealii::Point<dim> &)> &density,
+       MaterialPoints<dim>                                     &points);
 } // namespace limber
 
 #endif

@@ -42,8 +42,8 @@ namespace limber
       double result = 0;
       for (int d = 0; d < dim; ++d)
         {
-          const auto c = coefficients.component(first + d);
-          double derivative = 0;
+          const auto c          = coefficients.component(first + d);
+          double     derivative = 0;
           for (int k = 0; k < 1 << dim; ++k)
             if (k >> d & 1)
               derivative += c(k) * monomial[k ^ (1 << d)];
@@ -207,10 +207,10 @@ namespace limber
 
     template <bool moves>
     StressSummary
-    sweep(const PointView<dim>       &points,
-          const GridView<dim>        &grid,
-          const CellSums<dim> *const  sums,
-          const StressSweep          &what) const
+    sweep(const PointView<dim>      &points,
+          const GridView<dim>       &grid,
+          const CellSums<dim> *const sums,
+          const StressSweep         &what) const
     {
       using Number = PointPack<dim>;
       using Kernel = Linear<dim>;
@@ -232,8 +232,7 @@ namespace limber
             const CellMeans<dim> mean(sums->data +
                                       batch.cell * CellSums<dim>::stride);
             mean_volumetric = mean.volumetric;
-            mean_increment =
-              what.step * mean.divergence(nodal, strained, cell);
+            mean_increment = what.step * mean.divergence(nodal, strained, cell);
           }
 
         for (std::size_t p = batch.begin; p < batch.end;
@@ -267,10 +266,8 @@ namespace limber
                 if (what.relaxation > 0)
                   {
                     Number      &variable = volumetric_variable(state);
-                    const Number before =
-                      law.volumetric_energy(variable);
-                    variable +=
-                      what.relaxation * (mean_volumetric - variable);
+                    const Number before   = law.volumetric_energy(variable);
+                    variable += what.relaxation * (mean_volumetric - variable);
                     removed +=
                       volume * (before - law.volumetric_energy(variable));
                   }

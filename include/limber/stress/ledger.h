@@ -44,8 +44,12 @@ namespace limber
       static_assert(sizeof(Ledger) % sizeof(double) == 0);
       constexpr int n = (sizeof(Ledger) - sizeof(lost_points)) / sizeof(double);
       Ledger        result;
-      MPI_Allreduce(
-        &grid_kinetic, &result.grid_kinetic, n, MPI_DOUBLE, MPI_SUM, communicator);
+      MPI_Allreduce(&grid_kinetic,
+                    &result.grid_kinetic,
+                    n,
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    communicator);
       result.lost_points =
         dealii::Utilities::MPI::sum(lost_points, communicator);
       return result;

@@ -29,9 +29,9 @@ namespace limber
   template <int dim>
   struct State
   {
-    const Problem<dim>                                      &problem;
-    const BackgroundGrid<dim>                               &grid;
-    const NodalFields<dim>                                  &nodes;
+    const Problem<dim>                                    &problem;
+    const BackgroundGrid<dim>                             &grid;
+    const NodalFields<dim>                                &nodes;
     const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
 
     unsigned long step      = 0;

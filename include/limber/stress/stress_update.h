@@ -81,8 +81,7 @@ namespace limber
 
     /** J at all points, written to an array of their number. */
     virtual void
-    volume_ratio(const PointView<dim> &points,
-                 double               *volume_ratio) const = 0;
+    volume_ratio(const PointView<dim> &points, double *volume_ratio) const = 0;
 
     virtual unsigned int
     n_history() const = 0;

@@ -73,6 +73,13 @@ namespace limber
       return exchanged;
     }
 
+    /** Whether any rank has lost points in the last step. */
+    bool
+    points_were_lost() const
+    {
+      return any_lost > 0;
+    }
+
     /** Points that were lost in the last step, on this rank. */
     const std::vector<std::pair<std::string, LostPoint<dim>>> &
     lost_points() const

@@ -23,8 +23,8 @@ namespace limber
   class ExternalLoads
   {
   public:
-    ExternalLoads(const Problem<dim>                                     &problem,
-                  const BackgroundGrid<dim>                              &grid,
+    ExternalLoads(const Problem<dim>                              &problem,
+                  const BackgroundGrid<dim>                       &grid,
                   std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
 
     bool
@@ -64,11 +64,11 @@ namespace limber
          std::size_t                   p,
          const dealii::Tensor<1, dim> &force);
 
-    const Problem<dim>                                     &problem;
-    const BackgroundGrid<dim>                              &grid;
-    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
-    std::vector<FaceLayer>                                  layers;
-    dealii::LinearAlgebra::distributed::Vector<double>      forces;
+    const Problem<dim>                                &problem;
+    const BackgroundGrid<dim>                         &grid;
+    std::vector<std::unique_ptr<MaterialBody<dim>>>   &bodies;
+    std::vector<FaceLayer>                             layers;
+    dealii::LinearAlgebra::distributed::Vector<double> forces;
   };
 } // namespace limber
 

@@ -64,10 +64,9 @@ namespace limber
 
     // An addition as wide as the node count stays within the record.
     constexpr unsigned int n_first = n_values < width ? n_values : width;
-    constexpr unsigned int shift =
-      first + width <= NodeLayout<dim>::stride ?
-        0 :
-        first + width - NodeLayout<dim>::stride;
+    constexpr unsigned int shift   = first + width <= NodeLayout<dim>::stride ?
+                                       0 :
+                                       first + width - NodeLayout<dim>::stride;
     static_assert(n_first + shift <= width, "the record is too short");
 
     std::array<Nodes, width> block{};

@@ -9,10 +9,10 @@ namespace limber
   /** What the points of a body give to the nodes in one sweep. */
   struct GiveToGrid
   {
-    bool   momentum = true;  // mass and momentum
-    bool   force    = true;  // internal force
-    bool   affine   = false; // momentum with the affine part (APIC)
-    double inverse_density = 0; // 1 / rho_0 of the body, m^3/kg
+    bool   momentum        = true;  // mass and momentum
+    bool   force           = true;  // internal force
+    bool   affine          = false; // momentum with the affine part (APIC)
+    double inverse_density = 0;     // 1 / rho_0 of the body, m^3/kg
   };
 
 

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_simulation_simulation_h
+#define limber_simulation_simulation_h
+
+#include <limber/base/console.h>
+#include <limber/base/exceptions.h>
+#include <limber/output/checks.h>
+#include <limber/output/observables.h>
+#include <limber/output/statistics.h>
+#include <limber/output/summary.h>
+#include <limber/output/totals.h>
+#include <limber/output/writer.h>
+#include <limber/time/explicit_integrator.h>
+
+#include <memory>
+#include <optional>
+
+namespace limber
+{
+  /**
+   * A run: sets up grid, bodies and observers from a problem, steps through
+   * time, and leaves a run folder that explains itself. Every member function
+   * is collective.
+   */
+  template <int dim>
+  class Simulation
+  {
+  public:
+    /** Builds everything, writes nothing. */
+    Simulation(const Problem<dim> &problem,
+               Console            &console,
+               MPI_Comm            communicator);
+
+    /**
+     * Step to the end time. Returns success, check_missed or, after a signal,
+     * stopped_by_signal + n. When the run fails, the last state and the
+     * summary are written before the Failure goes on.
+     */
+    int
+    run();
+
+    /** What would be run: cells, points, first step. */
+    void
+    describe() const;
+
+  private:
+    void
+    loop();
+    double
+    next_step() const;
+    void
+    record();
+    void
+    write_pictures();
+    void
+    report_lost_points();
+    void
+    rebalance();
+    void
+    show_progress();
+    void
+    finish(const std::string &verdict, const std::string &message);
+    Summary
+    summarize() const;
+    void
+    show_summary(const Summary &summary) const;
+    bool
+    row_is_due() const;
+    bool
+    stop_requested();
+
+    const Problem<dim>                             &problem;
+    Console                                        &console;
+    const MPI_Comm                                  communicator;
+    BackgroundGrid<dim>                             grid;
+    std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
+    NodalFields<dim>                                nodes;
+    State<dim>                                      state;
+    ExplicitIntegrator<dim>                         integrator;
+    Balance<dim>                                    balance_of_start;
+    Observables<dim>                                observables;
+    Checks                                          checks;
+    Writer<dim>                                     writer;
+    std::optional<Statistics>                       statistics;
+
+    Totals<dim>         totals; // of the last row
+    const unsigned long n_points_at_start;
+    unsigned long       points_and_steps = 0; // sum of points over steps
+    std::vector<double> targets;              // times to land on, ascending, s
+    double              next_pictures = 0;    // s
+    double              start_wall = 0, start_cpu = 0, output_cpu = 0;
+    double              last_progress = 0;
+    int                 signal        = 0;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/mpi.h>
+
+#include <limber/base/console.h>
+#include <limber/base/run_info.h>
+#include <limber/output/run_folder.h>
+#include <limber/problem/read_problem.h>
+#include <limber/simulation/command_line.h>
+#include <limber/simulation/signals.h>
+#include <limber/simulation/simulation.h>
+
+#include <iostream>
+#include <sstream>
+
+namespace
+{
+  using namespace limber;
+
+  std::string
+  as_text(const PrintStyle style, const SceneFile &scene)
+  {
+    std::ostringstream text;
+    print_parameters(text, style, &scene);
+    return text.str();
+  }
+
+
+
+  template <int dim>
+  int
+  run(const SceneFile &scene, const CommandLine &command, Console &console)
+  {
+    const Problem<dim> problem = read_problem<dim>(scene);
+    for (const std::string &warning : scene.warnings())
+      console.warn(warning);
+    for (const std::string &note : problem.notes)
+      console.say(note);
+
+    Simulation<dim> simulation(problem, console, MPI_COMM_WORLD);
+    simulation.describe();
+    if (command.validate)
+      {
+        console.say("The scene is valid.");
+        return int(ExitCode::success);
+      }
+
+    const std::string &folder = problem.output.directory;
+    prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
+    write_run_texts(folder,
+                    {scene.original_text(),
+                     scene.original_name() == "original.json",
+                     as_text(PrintStyle::prm, scene),
+                     as_text(PrintStyle::json, scene)},
+                    MPI_COMM_WORLD);
+    console.open_log(folder + "/log.txt");
+    catch_signals();
+    return simulation.run();
+  }
+
+
+
+  int
+  execute(const CommandLine &command, Console &console)
+  {
+    if (command.help)
+      console.show(usage());
+    else if (command.version)
+      console.show(banner(run_info()));
+    else if (command.list)
+      console.show(list_text(*command.list));
+    else if (command.print_parameters && command.scene.empty())
+      {
+        std::ostringstream text;
+        print_parameters(text, *command.print_parameters);
+        console.show(text.str());
+      }
+    else if (command.scene.empty())
+      {
+        console.show(usage());
+        return int(ExitCode::wrong_input);
+      }
+    else
+      {
+        if (command.resume)
+          throw InputError(
+            "--resume on the command line: this version of Limber writes no "
+            "checkpoint to go on from. Run the scene from the start, with "
+            "another --output-directory if the former results are to stay.");
+        const SceneFile scene(command.scene, command.overrides);
+        if (command.print_parameters)
+          console.show(as_text(*command.print_parameters, scene));
+        else
+          {
+            console.say(banner(run_info()));
+            return scene.dimension() == 2 ? run<2>(scene, command, console) :
+                                            run<3>(scene, command, console);
+          }
+      }
+    return int(ExitCode::success);
+  }
+} // namespace
+
+
+
+int
+main(int argc, char *argv[])
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const bool                               first =
+    dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+
+  // Failures are the same on every rank, so one speaks and all end. What is
+  // not foreseen may concern one rank alone: it speaks and ends the others.
+  try
+    {
+      Console console(first, std::cout);
+      return execute(parse_command_line(argc, argv), console);
+    }
+  catch (const Failure &failure)
+    {
+      if (first)
+        std::cerr << "Error: " << failure.what() << std::endl;
+      return int(failure.code);
+    }
+  catch (const std::exception &failure)
+    {
+      std::cerr << "Error: " << failure.what() << std::endl;
+      MPI_Abort(MPI_COMM_WORLD, int(ExitCode::computation_failed));
+    }
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/checks.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace limber
+{
+  Checks::Checks(const std::vector<Check>       &checks,
+                 const std::vector<std::string> &observables)
+    : checks(checks)
+    , found(checks.size())
+  {
+    for (const Check &check : checks)
+      {
+        const auto place = std::find(observables.begin(),
+                                     observables.end(),
+                                     check.observable);
+        if (place == observables.end())
+          throw std::logic_error("no observable " + check.observable);
+        column.push_back(place - observables.begin());
+      }
+  }
+
+
+
+  std::vector<double>
+  Checks::times() const
+  {
+    std::vector<double> result;
+    for (const Check &check : checks)
+      if (check.at_time)
+        result.push_back(*check.at_time);
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
+
+
+
+  void
+  Checks::add(const double time, const std::vector<double> &values)
+  {
+    for (unsigned int c = 0; c < checks.size(); ++c)
+      {
+        const double distance =
+          checks[c].at_time ? std::abs(time - *checks[c].at_time) : 0;
+        const bool at_end = !checks[c].at_time;
+        if (at_end || distance < found[c].distance)
+          found[c] = {distance, values[column[c]]};
+      }
+  }
+
+
+
+  std::vector<CheckResult>
+  Checks::results() const
+  {
+    std::vector<CheckResult> results;
+    for (unsigned int c = 0; c < checks.size(); ++c)
+      {
+        const Check &check = checks[c];
+        CheckResult  result;
+        result.name       = check.name;
+        result.observable = check.observable;
+        result.value      = found[c].value;
+        result.reference  = check.reference;
+        result.tolerance  = check.tolerance;
+        // written such that not a number is not within
+        result.passed =
+          std::abs(result.value - check.reference) <= check.tolerance;
+        results.push_back(result);
+      }
+    return results;
+  }
+} // namespace limber

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/files.h>
+#include <limber/output/statistics.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+namespace limber
+{
+  namespace
+  {
+    void
+    append_number(std::string &text, const double value)
+    {
+      if (std::isnan(value))
+        {
+          text += "nan"; // without the sign that some processors give it
+          return;
+        }
+      char       digits[32];
+      const auto end = std::to_chars(digits, digits + sizeof(digits), value);
+      text.append(digits, end.ptr);
+    }
+  } // namespace
+
+
+
+  Statistics::Statistics(const std::string         &path,
+                         const std::vector<Column> &columns)
+    : path(path)
+    , n_columns(columns.size())
+    , file(path, std::ios::binary | std::ios::trunc)
+    , last_flush(std::chrono::steady_clock::now())
+  {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      {
+        buffer += "# " + std::to_string(c + 1) + ": " + columns[c].name;
+        if (!columns[c].unit.empty())
+          buffer += " [" + columns[c].unit + "]";
+        buffer += '\n';
+      }
+    flush();
+  }
+
+
+
+  Statistics::Statistics(const std::string   &path,
+                         const std::uintmax_t length,
+                         const unsigned int   n_columns)
+    : path(path)
+    , n_columns(n_columns)
+    , written(length)
+    , last_flush(std::chrono::steady_clock::now())
+  {
+    std::error_code      error;
+    const std::uintmax_t present = std::filesystem::file_size(path, error);
+    if (error || present < length)
+      throw FileError("The table '" + path + "' has fewer than the " +
+                      std::to_string(length) +
+                      " bytes that the checkpoint counts on. Usually it was "
+                      "edited or removed after the checkpoint. Restore it, or "
+                      "start the run anew in another 'Output/Directory'.");
+    std::filesystem::resize_file(path, length, error);
+    if (error)
+      throw cannot_write(path, error.message());
+    file.open(path, std::ios::binary | std::ios::app);
+  }
+
+
+
+  Statistics::~Statistics()
+  {
+    file << buffer;
+  }
+
+
+
+  void
+  Statistics::add(const std::vector<double> &row)
+  {
+    if (row.size() != n_columns)
+      throw std::logic_error("a row of the statistics has another length");
+    for (std::size_t c = 0; c < row.size(); ++c)
+      {
+        if (c > 0)
+          buffer += ' ';
+        append_number(buffer, row[c]);
+      }
+    buffer += '\n';
+
+    // Seldom enough for slow file systems, often enough for who watches.
+    constexpr std::size_t full = 1 << 16;
+    const auto            now  = std::chrono::steady_clock::now();
+    if (buffer.size() > full || now - last_flush > std::chrono::seconds(1))
+      flush();
+  }
+
+
+
+  void
+  Statistics::flush()
+  {
+    errno = 0;
+    file << buffer;
+    file.flush();
+    if (!file)
+      throw cannot_write(path, std::strerror(errno));
+    written += buffer.size();
+    buffer.clear();
+    last_flush = std::chrono::steady_clock::now();
+  }
+
+
+
+  template <int dim>
+  std::vector<Column>
+  statistics_columns(const Observables<dim> &observables)
+  {
+    std::vector<Column> columns = {{"step", ""},
+                                   {"time", "s"},
+                                   {"step size", "s"},
+                                   {"points", ""},
+                                   {"cells", ""},
+                                   {"active nodes", ""},
+                                   {"mass", "kg"}};
+    for (int d = 0; d < dim; ++d)
+      columns.push_back({std::string("momentum ") + "xyz"[d], "kg m/s"});
+    for (const char *const name : {"kinetic energy",
+                                   "strain energy",
+                                   "gravitational energy",
+                                   "dissipated energy",
+                                   "energy removed by transfer",
+                                   "energy removed with history",
+                                   "boundary work",
+                                   "load work"})
+      columns.push_back({name, "J"});
+    columns.push_back({"energy drift", ""});
+    columns.push_back({"momentum error", ""});
+    columns.push_back({"largest velocity", "m/s"});
+    columns.push_back({"smallest volume ratio", ""});
+    columns.push_back({"largest volume ratio", ""});
+    columns.push_back({"lost points", ""});
+
+    const std::vector<std::string> names = observables.names(),
+                                   units = observables.units();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      columns.push_back({names[i], units[i]});
+    return columns;
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  statistics_row(const State<dim>          &state,
+                 const Totals<dim>         &totals,
+                 const std::vector<double> &observed)
+  {
+    std::vector<double> row = {static_cast<double>(state.step),
+                               state.time,
+                               state.step_size,
+                               static_cast<double>(totals.points),
+                               static_cast<double>(totals.cells),
+                               static_cast<double>(totals.active_nodes),
+                               totals.all.mass};
+    for (int d = 0; d < dim; ++d)
+      row.push_back(totals.all.momentum[d]);
+    row.insert(row.end(),
+               {totals.all.kinetic_energy,
+                totals.all.strain_energy,
+                totals.all.gravitational_energy,
+                totals.dissipated,
+                totals.removed_by_transfer,
+                totals.removed_with_history,
+                totals.boundary_work,
+                totals.load_work,
+                totals.energy_drift,
+                totals.momentum_error,
+                totals.largest_speed,
+                totals.smallest_volume,
+                totals.largest_volume,
+                static_cast<double>(totals.lost_points)});
+    row.insert(row.end(), observed.begin(), observed.end());
+    return row;
+  }
+
+
+
+  template std::vector<Column>
+  statistics_columns(const Observables<2> &);
+  template std::vector<Column>
+  statistics_columns(const Observables<3> &);
+  template std::vector<double>
+  statistics_row(const State<2> &, const Totals<2> &, const std::vector<double> &);
+  template std::vector<double>
+  statistics_row(const State<3> &, const Totals<3> &, const std::vector<double> &);
+} // namespace limber

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/totals.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    /** Sums of one rank or of all, side by side for one reduction. */
+    template <int dim>
+    struct RowSums
+    {
+      // mass, kinetic and strain energy, momentum, sum of m x: per body
+      static constexpr unsigned int stride = 3 + 2 * dim;
+
+      explicit RowSums(const unsigned int n_bodies)
+        : values(n_bodies * stride + 3)
+      {}
+
+      double *
+      body(const unsigned int b)
+      {
+        return values.data() + b * stride;
+      }
+
+      double &
+      absolute_momentum() // sum of m |v|
+      {
+        return *(values.end() - 3);
+      }
+
+      double &
+      active_nodes()
+      {
+        return *(values.end() - 2);
+      }
+
+      double &
+      points()
+      {
+        return *(values.end() - 1);
+      }
+
+      std::vector<double> values;
+      // squared speed, largest J, minus smallest J
+      std::array<double, 3> largest{{0, 0, -1e300}};
+    };
+
+
+
+    /** Points [begin, end): few enough for plain sums to be accurate. */
+    template <int dim>
+    void
+    add_points(const PointView<dim> &points,
+               const std::size_t     begin,
+               const std::size_t     end,
+               double *const         body,
+               RowSums<dim>         &sums)
+    {
+      std::array<double, RowSums<dim>::stride> own{};
+      double absolute_momentum = 0, largest = 0;
+      for (std::size_t p = begin; p < end; ++p)
+        {
+          const double mass   = points.mass[p];
+          double       square = 0;
+          for (int d = 0; d < dim; ++d)
+            {
+              const double velocity = points.velocity[d][p];
+              square += velocity * velocity;
+              own[3 + d] += mass * velocity;
+              own[3 + dim + d] += mass * points.position[d][p];
+            }
+          own[0] += mass;
+          own[1] += 0.5 * mass * square;
+          absolute_momentum += mass * std::sqrt(square);
+          largest = square > largest ? square : largest;
+        }
+      for (unsigned int k = 0; k < own.size(); ++k)
+        body[k] += own[k];
+      sums.absolute_momentum() += absolute_momentum;
+      sums.largest[0] = std::max(sums.largest[0], largest);
+    }
+
+
+
+    template <int dim>
+    RowSums<dim>
+    sum_own(const State<dim> &state)
+    {
+      RowSums<dim> sums(state.bodies.size());
+      for (unsigned int b = 0; b < state.bodies.size(); ++b)
+        {
+          const MaterialBody<dim> &body   = *state.bodies[b];
+          const PointView<dim>     points = body.points.view();
+          constexpr std::size_t    block  = 512;
+          for (std::size_t p = 0; p < points.size; p += block)
+            add_points(points,
+                       p,
+                       std::min(p + block, points.size),
+                       sums.body(b),
+                       sums);
+          sums.points() += points.size;
+
+          const StateSummary summary = body.stress->summarize(points);
+          sums.body(b)[2]            = summary.strain_energy;
+          sums.largest[1] = std::max(sums.largest[1], summary.largest_volume);
+          sums.largest[2] = std::max(sums.largest[2], -summary.smallest_volume);
+        }
+      for (const std::uint32_t node : state.nodes.active_nodes())
+        sums.active_nodes() +=
+          state.nodes.record(node)[NodeLayout<dim>::mass] > 0;
+      return sums;
+    }
+
+
+
+    template <int dim>
+    RowSums<dim>
+    sum_all(const State<dim> &state)
+    {
+      RowSums<dim> sums = sum_own(state);
+      MPI_Allreduce(MPI_IN_PLACE,
+                    sums.values.data(),
+                    sums.values.size(),
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    state.grid.communicator);
+      MPI_Allreduce(MPI_IN_PLACE,
+                    sums.largest.data(),
+                    sums.largest.size(),
+                    MPI_DOUBLE,
+                    MPI_MAX,
+                    state.grid.communicator);
+      return sums;
+    }
+
+
+
+    /** Everything that is a sum over points and not a balance. */
+    template <int dim>
+    Totals<dim>
+    totals_from(RowSums<dim> &sums, const State<dim> &state)
+    {
+      Totals<dim> totals;
+      totals.bodies.resize(state.bodies.size());
+      for (unsigned int b = 0; b < totals.bodies.size(); ++b)
+        {
+          BodyTotals<dim>    &body = totals.bodies[b];
+          const double *const from = sums.body(b);
+          body.mass                = from[0];
+          body.kinetic_energy      = from[1];
+          body.strain_energy       = from[2];
+          for (int d = 0; d < dim; ++d)
+            {
+              body.momentum[d]    = from[3 + d];
+              body.mass_moment[d] = from[3 + dim + d];
+            }
+          body.gravitational_energy =
+            -(state.problem.loads.gravity * body.mass_moment);
+          totals.all += body;
+        }
+      if (totals.all.mass > 0)
+        totals.centre_of_mass = totals.all.mass_moment / totals.all.mass;
+      totals.largest_speed   = std::sqrt(sums.largest[0]);
+      totals.largest_volume  = sums.largest[1];
+      totals.smallest_volume = -sums.largest[2];
+      totals.points       = static_cast<unsigned long>(sums.points() + 0.5);
+      totals.active_nodes = static_cast<unsigned long>(sums.active_nodes() + 0.5);
+      totals.cells        = state.grid.triangulation.n_global_active_cells();
+      return totals;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BodyTotals<dim> &
+  BodyTotals<dim>::operator+=(const BodyTotals &other)
+  {
+    mass += other.mass;
+    momentum += other.momentum;
+    mass_moment += other.mass_moment;
+    kinetic_energy += other.kinetic_energy;
+    strain_energy += other.strain_energy;
+    gravitational_energy += other.gravitational_energy;
+    return *this;
+  }
+
+
+
+  template <int dim>
+  Balance<dim>::Balance(const State<dim> &state)
+  {
+    RowSums<dim>          sums   = sum_all(state);
+    const BodyTotals<dim> all    = totals_from(sums, state).all;
+    start.kinetic_energy         = all.kinetic_energy;
+    start.strain_energy          = all.strain_energy;
+    start.gravitational_energy   = all.gravitational_energy;
+    start.momentum               = all.momentum;
+  }
+
+
+
+  template <int dim>
+  Balance<dim>::Balance(const BalanceState<dim> &start)
+    : start(start)
+  {}
+
+
+
+  template <int dim>
+  Totals<dim>
+  Balance<dim>::evaluate(const State<dim> &state)
+  {
+    RowSums<dim>      sums   = sum_all(state);
+    const Ledger<dim> ledger = state.ledger.sum_over_ranks(
+      state.grid.communicator);
+    Totals<dim> totals          = totals_from(sums, state);
+    totals.lost_points          = ledger.lost_points;
+    totals.dissipated           = ledger.viscous;
+    totals.removed_with_history = ledger.history;
+    totals.boundary_work        = ledger.boundary_work;
+    totals.load_work            = ledger.load_work;
+    totals.side_impulse         = ledger.side_impulse;
+    balance_energy(ledger, totals);
+    balance_momentum(ledger, sums.absolute_momentum(), totals);
+    return totals;
+  }
+
+
+
+  template <int dim>
+  void
+  Balance<dim>::balance_energy(const Ledger<dim> &ledger, Totals<dim> &totals)
+  {
+    const BodyTotals<dim> &all = totals.all;
+    totals.removed_by_transfer = start.kinetic_energy + ledger.grid_kinetic -
+                                 ledger.lost_kinetic - all.kinetic_energy;
+
+    // Differences from the start first: potentials can be large numbers.
+    const double potential_change =
+      all.gravitational_energy - start.gravitational_energy;
+    const double gain = ledger.grid_kinetic +
+                        (all.strain_energy - start.strain_energy) +
+                        potential_change + ledger.viscous + ledger.history +
+                        ledger.lost_other - ledger.boundary_work -
+                        ledger.load_work;
+    start.energy_scale =
+      std::max(start.energy_scale,
+               all.kinetic_energy + std::abs(all.strain_energy) +
+                 std::abs(potential_change) + std::abs(ledger.boundary_work) +
+                 std::abs(ledger.load_work));
+    totals.energy_drift =
+      start.energy_scale > 0 ? gain / start.energy_scale : 0;
+  }
+
+
+
+  template <int dim>
+  void
+  Balance<dim>::balance_momentum(const Ledger<dim> &ledger,
+                                 const double       absolute_momentum,
+                                 Totals<dim>       &totals)
+  {
+    dealii::Tensor<1, dim> unexplained = totals.all.momentum - start.momentum +
+                                         ledger.lost_momentum -
+                                         ledger.gravity_impulse -
+                                         ledger.load_impulse;
+    double scale = std::max({absolute_momentum,
+                             ledger.gravity_impulse.norm(),
+                             ledger.load_impulse.norm()});
+    for (const auto &impulse : ledger.side_impulse)
+      {
+        unexplained -= impulse;
+        scale = std::max(scale, impulse.norm());
+      }
+    start.momentum_scale = std::max(start.momentum_scale, scale);
+    totals.momentum_error =
+      start.momentum_scale > 0 ? unexplained.norm() / start.momentum_scale : 0;
+  }
+
+
+
+  template struct BodyTotals<2>;
+  template struct BodyTotals<3>;
+  template class Balance<2>;
+  template class Balance<3>;
+} // namespace limber

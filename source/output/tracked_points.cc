@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/tracked_points.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limber
+{
+  namespace
+  {
+    /** What the owner of a tracked point tells the others, as doubles. */
+    template <int dim>
+    struct Telegram
+    {
+      static constexpr unsigned int found       = 0;
+      static constexpr unsigned int position    = 1;
+      static constexpr unsigned int velocity    = 1 + dim;
+      static constexpr unsigned int pressure    = 1 + 2 * dim; // J p, Pa
+      static constexpr unsigned int volume      = 2 + 2 * dim; // J
+      static constexpr unsigned int deviator    = 3 + 2 * dim; // of J sigma
+      static constexpr unsigned int cell_centre = 9 + 2 * dim;
+      static constexpr unsigned int stride      = 9 + 3 * dim;
+    };
+
+
+
+    /**
+     * A point that may be followed: distance to the wanted place, place, id.
+     * Distances are rounded to a billionth of a cell, so that of points at
+     * equal distance the first by coordinates wins on any number of ranks.
+     */
+    template <int dim>
+    using Candidate = std::array<double, 2 + dim>;
+
+
+
+    template <int dim>
+    Candidate<dim>
+    nearest_here(const PointView<dim>      &points,
+                 const MaterialPoints<dim> &owner,
+                 const dealii::Point<dim>  &place,
+                 const double               resolution)
+    {
+      Candidate<dim> best;
+      best.fill(std::numeric_limits<double>::infinity());
+      std::size_t nearest = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          Candidate<dim> candidate{};
+          double         square = 0;
+          for (int d = 0; d < dim; ++d)
+            {
+              const double x   = points.position[d][p];
+              candidate[1 + d] = x;
+              square += (x - place[d]) * (x - place[d]);
+            }
+          candidate[0] = std::floor(std::sqrt(square) / resolution + 0.5);
+          if (candidate < best)
+            {
+              best    = candidate;
+              nearest = p;
+            }
+        }
+      if (points.size > 0)
+        best[1 + dim] = owner.id(nearest);
+      return best;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  TrackedPoints<dim>::TrackedPoints(
+    const std::vector<TrackedPoint<dim>> &points)
+    : tracked(points)
+    , index(points.size(), nowhere)
+  {}
+
+
+
+  template <int dim>
+  unsigned int
+  TrackedPoints<dim>::follow_nearest(const State<dim>         &state,
+                                     const unsigned int        body,
+                                     const dealii::Point<dim> &place)
+  {
+    const MaterialPoints<dim> &owner = state.bodies[body]->points;
+    const Candidate<dim>       own   = nearest_here(
+      owner.view(), owner, place, 1e-9 * state.grid.smallest_edge);
+    std::vector<Candidate<dim>> all(
+      dealii::Utilities::MPI::n_mpi_processes(state.grid.communicator));
+    MPI_Allgather(own.data(),
+                  own.size(),
+                  MPI_DOUBLE,
+                  all.data(),
+                  own.size(),
+                  MPI_DOUBLE,
+                  state.grid.communicator);
+    const Candidate<dim> best = *std::min_element(all.begin(), all.end());
+
+    TrackedPoint<dim> point;
+    point.body = body;
+    point.lost = std::isinf(best[0]); // the body has no points at all
+    if (!point.lost)
+      {
+        point.id = static_cast<dealii::types::particle_index>(best[1 + dim]);
+        for (int d = 0; d < dim; ++d)
+          point.reference[d] = best[1 + d];
+        for (unsigned int t = 0; t < tracked.size(); ++t)
+          if (tracked[t].body == body && tracked[t].id == point.id &&
+              !tracked[t].lost)
+            return t;
+      }
+    tracked.push_back(point);
+    index.push_back(nowhere);
+    return tracked.size() - 1;
+  }
+
+
+
+  template <int dim>
+  void
+  TrackedPoints<dim>::search(const State<dim> &state, const unsigned int t)
+  {
+    const MaterialPoints<dim> &owner = state.bodies[tracked[t].body]->points;
+    index[t]                         = nowhere;
+    for (std::size_t p = 0; p < owner.size(); ++p)
+      if (owner.id(p) == tracked[t].id)
+        {
+          index[t] = p;
+          return;
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  TrackedPoints<dim>::revalidate(const State<dim> &state, const unsigned int t)
+  {
+    const MaterialPoints<dim> &owner = state.bodies[tracked[t].body]->points;
+    if (index[t] != nowhere &&
+        !(index[t] < owner.size() && owner.id(index[t]) == tracked[t].id))
+      search(state, t);
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  TrackedPoints<dim>::collect(const State<dim> &state) const
+  {
+    using T = Telegram<dim>;
+    std::vector<double> records(tracked.size() * T::stride);
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      {
+        if (index[t] == nowhere)
+          continue;
+        const MaterialBody<dim> &body = *state.bodies[tracked[t].body];
+        const PointView<dim>     point =
+          part_of(body.points.view(), index[t], 1);
+        double *const record = records.data() + t * T::stride;
+        record[T::found]     = 1;
+        for (int d = 0; d < dim; ++d)
+          {
+            record[T::position + d] = *point.position[d];
+            record[T::velocity + d] = *point.velocity[d];
+          }
+        record[T::pressure] = *point.pressure;
+        body.stress->volume_ratio(point, record + T::volume);
+        const dealii::SymmetricTensor<2, 3> s = deviator(point, 0);
+        std::copy(s.begin_raw(), s.end_raw(), record + T::deviator);
+        if (*point.cell != invalid_cell)
+          {
+            const CellGeometry<dim> &cell = state.grid.geometry[*point.cell];
+            for (int d = 0; d < dim; ++d)
+              record[T::cell_centre + d] =
+                cell.origin[d] + 0.5 / cell.inverse_edge[d];
+          }
+      }
+    MPI_Allreduce(MPI_IN_PLACE,
+                  records.data(),
+                  records.size(),
+                  MPI_DOUBLE,
+                  MPI_SUM,
+                  state.grid.communicator);
+    return records;
+  }
+
+
+
+  template <int dim>
+  std::vector<PointSample<dim>>
+  TrackedPoints<dim>::sample(const State<dim>        &state,
+                             const std::vector<bool> &with_stress)
+  {
+    using T = Telegram<dim>;
+    std::vector<PointSample<dim>> samples(tracked.size());
+    if (tracked.empty())
+      return samples;
+
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      revalidate(state, t);
+    std::vector<double> records = collect(state);
+
+    // A point that nobody has told about has changed its rank, or is lost.
+    bool looked_again = false;
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      if (!tracked[t].lost && records[t * T::stride + T::found] == 0)
+        {
+          search(state, t);
+          looked_again = true;
+        }
+    if (looked_again)
+      records = collect(state);
+
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      {
+        const double *const record = records.data() + t * T::stride;
+        tracked[t].lost            = record[T::found] == 0;
+        samples[t].lost            = tracked[t].lost;
+        for (int d = 0; d < dim; ++d)
+          {
+            samples[t].position[d] = record[T::position + d];
+            samples[t].velocity[d] = record[T::velocity + d];
+          }
+      }
+    average_pressures(state, with_stress, records, samples);
+    return samples;
+  }
+
+
+
+  template <int dim>
+  void
+  TrackedPoints<dim>::average_pressures(
+    const State<dim>              &state,
+    const std::vector<bool>       &with_stress,
+    const std::vector<double>     &records,
+    std::vector<PointSample<dim>> &samples) const
+  {
+    using T = Telegram<dim>;
+
+    // sum of m J p and of m J over the points in the cell of each
+    std::vector<double> sums(2 * tracked.size());
+    bool                any = false;
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      {
+        const MaterialBody<dim> &body = *state.bodies[tracked[t].body];
+        if (!with_stress[t] || samples[t].lost || !body.cell_sums)
+          continue;
+        any = true;
+        std::array<double, dim> centre;
+        std::copy_n(records.begin() + t * T::stride + T::cell_centre,
+                    dim,
+                    centre.begin());
+        const std::uint32_t cell = state.grid.bins.cell_at(centre);
+        if (cell == invalid_cell)
+          continue;
+        const PointView<dim> points = body.points.view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          if (points.cell[p] == cell)
+            {
+              double volume_ratio = 1;
+              body.stress->volume_ratio(part_of(points, p, 1), &volume_ratio);
+              sums[2 * t] += points.mass[p] * points.pressure[p];
+              sums[2 * t + 1] += points.mass[p] * volume_ratio;
+            }
+      }
+    if (any)
+      MPI_Allreduce(MPI_IN_PLACE,
+                    sums.data(),
+                    sums.size(),
+                    MPI_DOUBLE,
+                    MPI_SUM,
+                    state.grid.communicator);
+
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      {
+        if (!with_stress[t] || samples[t].lost)
+          continue;
+        const double *const           record = records.data() + t * T::stride;
+        dealii::SymmetricTensor<2, 3> s;
+        std::copy_n(record + T::deviator, 6, s.begin_raw());
+        samples[t].pressure = sums[2 * t + 1] != 0 ?
+                                sums[2 * t] / sums[2 * t + 1] :
+                                record[T::pressure] / record[T::volume];
+        samples[t].stress =
+          s / record[T::volume] -
+          samples[t].pressure * dealii::unit_symmetric_tensor<3>();
+      }
+  }
+
+
+
+  template class TrackedPoints<2>;
+  template class TrackedPoints<3>;
+} // namespace limber

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/simulation/set_up.h>
+#include <limber/simulation/signals.h>
+#include <limber/simulation/simulation.h>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    // More points than this over the mean on one rank, and the mesh is
+    // partitioned anew; that costs about as much as 200 steps.
+    constexpr double admitted_imbalance = 1.2;
+
+    // Times closer than this, relative to the step, are one time.
+    constexpr double same_time = 1e-9;
+  } // namespace
+
+
+
+  template <int dim>
+  Simulation<dim>::Simulation(const Problem<dim> &problem,
+                              Console            &console,
+                              const MPI_Comm      communicator)
+    : problem(problem)
+    , console(console)
+    , communicator(communicator)
+    , grid(problem.grid, communicator)
+    , bodies(set_up_bodies(problem, grid))
+    , nodes(grid)
+    , state{problem, grid, nodes, bodies, 0, 0, 0, {}}
+    , integrator(problem, grid, nodes, bodies, state.ledger)
+    , balance_of_start(state)
+    , observables(state)
+    , checks(problem.checks, observables.names())
+    , writer(problem.output.directory)
+    , totals(balance_of_start.evaluate(state))
+    , n_points_at_start(totals.points)
+    , targets(checks.times())
+  {
+    targets.push_back(problem.end_time);
+    std::sort(targets.begin(), targets.end());
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::describe() const
+  {
+    std::ostringstream text;
+    text << totals.points << " points of " << bodies.size()
+         << (bodies.size() == 1 ? " body in " : " bodies in ") << totals.cells
+         << " cells of " << grid.smallest_edge << " m; first step "
+         << integrator.longest_step() << " s, to end time " << problem.end_time
+         << " s";
+    console.say(text.str());
+  }
+
+
+
+  template <int dim>
+  int
+  Simulation<dim>::run()
+  {
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      statistics.emplace(problem.output.directory + "/statistics",
+                         statistics_columns(observables));
+    start_wall = last_progress = wall_time();
+    start_cpu                  = cpu_time();
+    try
+      {
+        loop();
+      }
+    catch (const ComputationError &failure)
+      {
+        // Points still are what they were before the step that failed.
+        write_pictures();
+        finish("unstable", failure.what());
+        throw;
+      }
+
+    if (signal != 0)
+      {
+        finish("stopped", "by signal " + std::to_string(signal));
+        return int(ExitCode::stopped_by_signal) + signal;
+      }
+    const auto results = checks.results();
+    const bool passed =
+      std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
+        return check.passed;
+      });
+    finish(passed ? "finished" : "check missed", "");
+    return int(passed ? ExitCode::success : ExitCode::check_missed);
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::loop()
+  {
+    record();
+    write_pictures();
+    while (state.time < problem.end_time && !stop_requested())
+      {
+        const double step = next_step();
+        integrator.advance(state.time, step);
+        state.time += step;
+        state.step_size = step;
+        ++state.step;
+        // Sums of small steps miss the times to land on by round-off.
+        for (const double target : targets)
+          if (std::abs(state.time - target) < same_time * step)
+            state.time = target;
+        points_and_steps += totals.points;
+
+        if (integrator.points_were_lost())
+          report_lost_points();
+        if (integrator.has_exchanged() &&
+            integrator.imbalance() > admitted_imbalance)
+          rebalance();
+        if (row_is_due())
+          record();
+        if (problem.output.time_interval > 0 &&
+            state.time >= next_pictures - same_time * step)
+          write_pictures();
+        show_progress();
+      }
+  }
+
+
+
+  // As long as the integrator admits, but not past a time to land on; two
+  // equal steps rather than a long one and a sliver.
+  template <int dim>
+  double
+  Simulation<dim>::next_step() const
+  {
+    const double longest = integrator.longest_step();
+    double       target  = problem.end_time;
+    if (problem.method.time_step == 0)
+      {
+        for (const double time : targets)
+          if (time > state.time)
+            target = std::min(target, time);
+        if (problem.output.time_interval > 0 && next_pictures > state.time)
+          target = std::min(target, next_pictures);
+      }
+    const double remaining = target - state.time;
+    if (remaining <= longest * (1 + same_time))
+      return remaining;
+    if (problem.method.time_step == 0 && remaining < 2 * longest)
+      return remaining / 2;
+    return longest;
+  }
+
+
+
+  template <int dim>
+  bool
+  Simulation<dim>::row_is_due() const
+  {
+    return state.step % problem.output.statistics_interval == 0 ||
+           std::find(targets.begin(), targets.end(), state.time) !=
+             targets.end();
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::record()
+  {
+    totals              = balance_of_start.evaluate(state);
+    const auto observed = observables.evaluate(state, totals);
+    checks.add(state.time, observed);
+    if (statistics)
+      statistics->add(statistics_row(state, totals, observed));
+
+    if (!(std::abs(totals.energy_drift) < problem.method.energy_growth_limit))
+      {
+        std::ostringstream text;
+        text << "The total energy has drifted by " << totals.energy_drift
+             << " of its scale, at time " << state.time << " s with step "
+             << state.step_size
+             << " s. The run is unstable: usually the step is too long or the "
+                "material too stiff for it. Set Method/Courant number to 0.4 "
+                "or below; 'Energy growth limit' is "
+             << problem.method.energy_growth_limit << ".";
+        throw ComputationError(text.str());
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::write_pictures()
+  {
+    const double interval = problem.output.time_interval;
+    if (interval <= 0)
+      return;
+    const double before = cpu_time();
+    writer.write(state);
+    while (next_pictures <= state.time * (1 + same_time))
+      next_pictures += interval;
+    output_cpu += cpu_time() - before;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::report_lost_points()
+  {
+    std::vector<std::string> own;
+    for (const auto &[body, point] : integrator.lost_points())
+      {
+        std::ostringstream text;
+        text << "Point " << point.id << " of body '" << body << "' "
+             << (point.left_the_box ? "has left the box" :
+                                      "has jumped past the cells known here")
+             << " at (" << point.position << ") with velocity ("
+             << point.momentum / point.mass << ") m/s at time " << state.time
+             << " s"
+             << (point.left_the_box ?
+                   "; a side is free there, or the motion is unstable" :
+                   "; usually the motion is unstable");
+        own.push_back(text.str());
+      }
+    for (const auto &texts : dealii::Utilities::MPI::gather(communicator, own))
+      for (const std::string &text : texts)
+        console.warn_once("lost point " +
+                            std::to_string(
+                              std::min<std::size_t>(texts.size(), 5)),
+                          text);
+
+    const auto lost =
+      dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);
+    totals.points = n_points_at_start - lost;
+    if (lost > problem.method.lost_points_limit * n_points_at_start)
+      {
+        std::ostringstream text;
+        text << lost << " of " << n_points_at_start
+             << " points are lost at time " << state.time << " s. "
+             << (own.empty() ? "They" : own.front() + ". They")
+             << " were taken out with their momentum on record. Close the side "
+                "in 'Boundaries' with slip, or raise 'Method/Lost points "
+                "limit' above "
+             << double(lost) / n_points_at_start << ".";
+        throw ComputationError(text.str());
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::rebalance()
+  {
+    balance(grid, bodies);
+    integrator.reinit();
+  }
+
+
+
+  template <int dim>
+  bool
+  Simulation<dim>::stop_requested()
+  {
+    // All ranks have to stop at the same step.
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
+      signal = caught_signal();
+    else if (state.step % 16 == 0)
+      signal = dealii::Utilities::MPI::max(caught_signal(), communicator);
+    return signal != 0;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::show_progress()
+  {
+    const double now = wall_time();
+    if (now - last_progress < problem.output.progress_interval)
+      return;
+    last_progress              = now;
+    const double       elapsed = now - start_wall;
+    std::ostringstream text;
+    text << std::setprecision(4) << "step " << state.step << "  time "
+         << state.time << " s  step size " << state.step_size << " s  points "
+         << totals.points << "  energy drift " << totals.energy_drift << "  "
+         << 1e9 * (cpu_time() - start_cpu - output_cpu) / points_and_steps *
+              dealii::Utilities::MPI::n_mpi_processes(communicator)
+         << " ns per point and step  left "
+         << elapsed * (problem.end_time / state.time - 1) << " s";
+    console.say(text.str());
+  }
+
+
+
+  template <int dim>
+  Summary
+  Simulation<dim>::summarize() const
+  {
+    using dealii::Utilities::MPI::sum;
+    Summary summary;
+    summary.steps    = state.step;
+    summary.points   = totals.points;
+    summary.ranks    = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    summary.end_time = state.time;
+    summary.wall_seconds = wall_time() - start_wall;
+    summary.cpu_seconds  = sum(cpu_time() - start_cpu, communicator);
+    const double computing =
+      sum(cpu_time() - start_cpu - output_cpu, communicator);
+    summary.ns_per_point_step =
+      1e9 * computing / std::max(1ul, points_and_steps);
+
+    rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    summary.bytes_per_point =
+      sum(1024. * usage.ru_maxrss, communicator) / n_points_at_start;
+    summary.energy_drift   = totals.energy_drift;
+    summary.momentum_error = totals.momentum_error;
+    summary.lost_points    = sum(state.ledger.lost_points, communicator);
+
+    auto   verbs = integrator.verb_seconds;
+    double all   = 0;
+    for (double &seconds : verbs)
+      all += seconds = sum(seconds, communicator);
+    for (std::size_t v = 0; v < verbs.size(); ++v)
+      summary.verbs.emplace_back(name_of(Verb(v)),
+                                 verbs[v] / std::max(all, 1e-300));
+
+    summary.checks = checks.results();
+    for (const auto &[text, count] : console.warning_counts())
+      summary.warnings.push_back(text + ": " + std::to_string(count));
+    return summary;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::finish(const std::string &verdict,
+                          const std::string &message)
+  {
+    if (statistics)
+      statistics->flush();
+    Summary summary = summarize();
+    summary.verdict = verdict;
+    summary.message = message;
+    if (statistics)
+      write_summary(problem.output.directory, summary);
+    show_summary(summary);
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::show_summary(const Summary &summary) const
+  {
+    std::ostringstream text;
+    text << std::setprecision(4) << summary.verdict << ": " << summary.steps
+         << " steps to time " << summary.end_time << " s in "
+         << summary.wall_seconds << " s; " << summary.ns_per_point_step
+         << " ns per point and step, energy drift " << summary.energy_drift
+         << ", momentum error " << summary.momentum_error << ", "
+         << summary.lost_points << " points lost\n";
+    for (const auto &[verb, share] : summary.verbs)
+      text << "  " << std::left << std::setw(18) << verb << std::right
+           << std::setw(6) << std::fixed << std::setprecision(1) << 100 * share
+           << " %\n"
+           << std::defaultfloat;
+    text << std::setprecision(6);
+    for (const CheckResult &check : summary.checks)
+      text << "  check " << check.name << ": " << check.value << ", reference "
+           << check.reference << " +- " << check.tolerance
+           << (check.passed ? ", passed\n" : ", MISSED\n");
+    text << "results in " << problem.output.directory;
+    console.say(text.str());
+  }
+
+
+
+  template class Simulation<2>;
+  template class Simulation<3>;
+} // namespace limber
