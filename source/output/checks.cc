@@ -44,9 +44,9 @@ namespace limber
   {
     for (unsigned int c = 0; c < checks.size(); ++c)
       {
+        const bool   at_end = !checks[c].at_time;
         const double distance =
-          checks[c].at_time ? std::abs(time - *checks[c].at_time) : 0;
-        const bool at_end = !checks[c].at_time;
+          at_end ? 0 : std::abs(time - *checks[c].at_time);
         if (at_end || distance < found[c].distance)
           found[c] = {distance, values[column[c]]};
       }
@@ -67,8 +67,8 @@ namespace limber
         result.value      = found[c].value;
         result.reference  = check.reference;
         result.tolerance  = check.tolerance;
-        // written such that not a number is not within
         result.passed =
+          !std::isnan(result.value) &&
           std::abs(result.value - check.reference) <= check.tolerance;
         results.push_back(result);
       }

@@ -13,7 +13,7 @@ namespace limber
   FileError
   cannot_write(const std::string &path, const std::string &reason)
   {
-    return FileError("The file " + quoted(path) + " could not be written: " +
+    return FileError("The file " + in_quotes(path) + " could not be written: " +
                      reason +
                      ". Usually the disk or the quota is full, or writing is "
                      "not permitted there. Make room, or set "

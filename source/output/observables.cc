@@ -8,9 +8,9 @@ namespace limber
 {
   namespace
   {
-    constexpr double       not_known     = std::numeric_limits<double>::quiet_NaN();
-    constexpr unsigned int not_followed  = static_cast<unsigned int>(-1);
-    constexpr unsigned int not_one_body  = static_cast<unsigned int>(-1);
+    constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+    constexpr unsigned int not_followed = static_cast<unsigned int>(-1);
+    constexpr unsigned int not_one_body = static_cast<unsigned int>(-1);
 
 
 
@@ -126,7 +126,7 @@ namespace limber
                                 const ObservablesState<dim> &memory)
     : problem(problem)
     , memory(memory)
-    , points(memory.tracked, TrackedPoints<dim>::look_for_them)
+    , points(memory.tracked)
   {
     decide_what_to_sample();
   }

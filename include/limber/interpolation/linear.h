@@ -6,6 +6,7 @@
 #include <limber/grid/grid_view.h>
 
 #include <array>
+#include <utility>
 
 namespace limber
 {
@@ -29,30 +30,21 @@ namespace limber
     static Nodes
     sign(const int d)
     {
-      Nodes result;
-      for (int i = 0; i < n_nodes; ++i)
-        result[i] = (i >> d & 1) ? 1. : -1.;
-      return result;
+      return signs[d];
     }
 
     /** One-dimensional weights in direction d at natural coordinate xi. */
     static Nodes
     weights(const int d, const double xi)
     {
-      Nodes lower;
-      for (int i = 0; i < n_nodes; ++i)
-        lower[i] = (i >> d & 1) ? 0. : 1.;
-      return lower + sign(d) * xi;
+      return lower_ends[d] + signs[d] * xi;
     }
 
     /** Exchange the lanes of the two ends of each edge in direction d. */
     static Nodes
     across(const Nodes &a, const int d)
     {
-      typename internal::PackType<n_nodes>::mask order;
-      for (int i = 0; i < n_nodes; ++i)
-        order[i] = i ^ (1 << d);
-      return __builtin_shuffle(a, order);
+      return __builtin_shuffle(a, opposites[d]);
     }
 
     /**
@@ -112,6 +104,39 @@ namespace limber
                    (c(4) + c(5) * xi[0]) + top * xi[1]}};
         }
     }
+
+  private:
+    using Numbers = typename internal::PackType<n_nodes>::mask;
+
+    // Constants that the compiler sees through: one lane per node, one entry
+    // per direction.
+    template <int... node>
+    static constexpr std::array<Nodes, dim>
+    end_values(const double lower,
+               const double upper,
+               std::integer_sequence<int, node...>)
+    {
+      std::array<Nodes, dim> result{};
+      for (int d = 0; d < dim; ++d)
+        result[d] = Nodes{(node >> d & 1 ? upper : lower)...};
+      return result;
+    }
+
+    template <int... node>
+    static constexpr std::array<Numbers, dim>
+    opposite_nodes(std::integer_sequence<int, node...>)
+    {
+      std::array<Numbers, dim> result{};
+      for (int d = 0; d < dim; ++d)
+        result[d] = Numbers{(node ^ (1 << d))...};
+      return result;
+    }
+
+    using AllNodes = std::make_integer_sequence<int, n_nodes>;
+
+    static constexpr auto signs      = end_values(-1., 1., AllNodes());
+    static constexpr auto lower_ends = end_values(1., 0., AllNodes());
+    static constexpr auto opposites  = opposite_nodes(AllNodes());
   };
 } // namespace limber
 

@@ -14,7 +14,7 @@ namespace limber
      * @p half off the diagonal.
      */
     template <int width, int half>
-    inline void
+    __attribute__((always_inline)) inline void
     exchange_blocks(std::array<Pack<width>, width> &a)
     {
       typename PackType<width>::mask low, high;
@@ -35,7 +35,7 @@ namespace limber
 
 
     template <int width>
-    inline void
+    __attribute__((always_inline)) inline void
     transpose(std::array<Pack<width>, width> &a)
     {
       exchange_blocks<width, 1>(a);
@@ -51,9 +51,10 @@ namespace limber
    * Add to the records of the nodes of a cell: lane i of values[k] goes to
    * slot first + k of node i. A transposition makes one vector addition per
    * node out of many scalar ones; the lanes beyond the last value add zero.
+   * Always inlined: a call would send all values through memory.
    */
   template <int dim, unsigned int first, std::size_t n_values>
-  inline void
+  __attribute__((always_inline)) inline void
   add_to_nodes(const CellGeometry<dim>                      &cell,
                const std::array<Pack<(1 << dim)>, n_values> &values,
                double *const                                 nodes)

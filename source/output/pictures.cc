@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/pictures.h>
+#include <limber/output/point_pressure.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace limber
+{
+  namespace
+  {
+    /** A body as the fields of its points see it. */
+    template <int dim>
+    struct SeenBody
+    {
+      const MaterialBody<dim>  &body;
+      const PointView<dim>      points;
+      const PointPressure<dim> &pressure;
+      const unsigned int        number;
+    };
+
+
+
+    template <int dim>
+    dealii::Point<dim>
+    place_of(const PointView<dim> &points, const std::size_t p)
+    {
+      dealii::Point<dim> place;
+      for (int d = 0; d < dim; ++d)
+        place[d] = points.position[d][p];
+      return place;
+    }
+
+
+
+    /** A field that a scene may name, and how a point fills it. */
+    template <int dim>
+    struct PointField
+    {
+      const char  *name, *unit;
+      unsigned int n_components;
+      void (*fill)(const SeenBody<dim> &, const std::size_t p, double *values);
+    };
+
+
+
+    template <int dim>
+    void
+    fill_displacement(const SeenBody<dim> &seen,
+                      const std::size_t    p,
+                      double *const        values)
+    {
+      const dealii::Tensor<1, dim> displacement =
+        place_of(seen.points, p) - seen.body.points.reference_position(p);
+      for (int d = 0; d < dim; ++d)
+        values[d] = displacement[d];
+    }
+
+
+
+    template <int dim>
+    void
+    fill_velocity(const SeenBody<dim> &seen,
+                  const std::size_t    p,
+                  double *const        values)
+    {
+      for (int d = 0; d < dim; ++d)
+        values[d] = seen.points.velocity[d][p];
+    }
+
+
+
+    template <int dim>
+    void
+    fill_pressure(const SeenBody<dim> &seen,
+                  const std::size_t    p,
+                  double *const        values)
+    {
+      *values = seen.pressure.pressure(p);
+    }
+
+
+
+    template <int dim>
+    void
+    fill_point_pressure(const SeenBody<dim> &seen,
+                        const std::size_t    p,
+                        double *const        values)
+    {
+      *values = seen.pressure.point_pressure(p);
+    }
+
+
+
+    template <int dim>
+    void
+    fill_stress(const SeenBody<dim> &seen,
+                const std::size_t    p,
+                double *const        values)
+    {
+      const dealii::SymmetricTensor<2, 3> stress =
+        deviator(seen.points, p) / seen.pressure.volume_ratio(p) -
+        seen.pressure.pressure(p) * dealii::unit_symmetric_tensor<3>();
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          values[3 * i + j] = stress[i][j];
+    }
+
+
+
+    /** After von Mises. */
+    template <int dim>
+    void
+    fill_equivalent_stress(const SeenBody<dim> &seen,
+                           const std::size_t    p,
+                           double *const        values)
+    {
+      *values = std::sqrt(1.5) * deviator(seen.points, p).norm() /
+                seen.pressure.volume_ratio(p);
+    }
+
+
+
+    template <int dim>
+    void
+    fill_volume_ratio(const SeenBody<dim> &seen,
+                      const std::size_t    p,
+                      double *const        values)
+    {
+      *values = seen.pressure.volume_ratio(p);
+    }
+
+
+
+    template <int dim>
+    void
+    fill_mass(const SeenBody<dim> &seen,
+              const std::size_t    p,
+              double *const        values)
+    {
+      *values = seen.points.mass[p];
+    }
+
+
+
+    template <int dim>
+    void
+    fill_body(const SeenBody<dim> &seen,
+              const std::size_t,
+              double *const values)
+    {
+      *values = seen.number;
+    }
+
+
+
+    /** The words of 'Output/Fields' and what they mean. */
+    template <int dim>
+    const std::vector<PointField<dim>> &
+    point_fields()
+    {
+      static const std::vector<PointField<dim>> fields = {
+        {"displacement", "m", dim, fill_displacement<dim>},
+        {"velocity", "m/s", dim, fill_velocity<dim>},
+        {"pressure", "Pa", 1, fill_pressure<dim>},
+        {"stress", "Pa", 9, fill_stress<dim>},
+        {"equivalent stress", "Pa", 1, fill_equivalent_stress<dim>},
+        {"volume ratio", "", 1, fill_volume_ratio<dim>},
+        {"mass", "kg", 1, fill_mass<dim>},
+        {"point pressure", "Pa", 1, fill_point_pressure<dim>},
+        {"body", "", 1, fill_body<dim>}};
+      return fields;
+    }
+
+
+
+    /** 'none' chooses nothing. */
+    template <int dim>
+    std::vector<PointField<dim>>
+    chosen_fields(const std::vector<std::string> &names)
+    {
+      std::vector<PointField<dim>> result;
+      for (const std::string &name : names)
+        {
+          if (name == "none")
+            continue;
+          const auto field =
+            std::find_if(point_fields<dim>().begin(),
+                         point_fields<dim>().end(),
+                         [&](const auto &known) { return known.name == name; });
+          if (field == point_fields<dim>().end())
+            throw std::logic_error("no point field " + name);
+          result.push_back(*field);
+        }
+      return result;
+    }
+
+
+
+    template <int dim>
+    void
+    add_body(const SeenBody<dim>                &seen,
+             const std::vector<PointField<dim>> &fields,
+             Picture<0, dim>                    &picture)
+    {
+      std::array<double, 9> values{};
+      for (std::size_t p = 0; p < seen.points.size; ++p)
+        {
+          auto &patch       = picture.patches.emplace_back();
+          patch.patch_index = picture.patches.size() - 1;
+          patch.vertices[0] = place_of(seen.points, p);
+          patch.data.reinit(picture.fields.names.size(), 1);
+          unsigned int component = 0;
+          for (const PointField<dim> &field : fields)
+            {
+              field.fill(seen, p, values.data());
+              for (unsigned int k = 0; k < field.n_components; ++k)
+                patch.data(component++, 0) = values[k];
+            }
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Picture<0, dim>
+  draw_points(const State<dim> &state)
+  {
+    const auto      fields = chosen_fields<dim>(state.problem.output.fields);
+    Picture<0, dim> picture;
+    for (const PointField<dim> &field : fields)
+      picture.fields.add(field.name, field.unit, field.n_components);
+
+    std::size_t n = 0;
+    for (const auto &body : state.bodies)
+      n += body->points.size();
+    picture.patches.reserve(n);
+
+    PointPressure<dim> pressure(state.grid);
+    for (unsigned int b = 0; b < state.bodies.size(); ++b)
+      {
+        const MaterialBody<dim> &body = *state.bodies[b];
+        pressure.compute(body);
+        add_body<dim>({body, body.points.view(), pressure, b}, fields, picture);
+      }
+    return picture;
+  }
+
+
+
+  namespace
+  {
+    /** A patch per owned cell with its corners; values still to come. */
+    template <int dim>
+    void
+    add_cells(const BackgroundGrid<dim> &grid, Picture<dim, dim> &picture)
+    {
+      picture.patches.resize(grid.n_owned_cells());
+      for (unsigned int c = 0; c < picture.patches.size(); ++c)
+        {
+          auto                    &patch = picture.patches[c];
+          const CellGeometry<dim> &cell  = grid.geometry[c];
+          patch.patch_index              = c;
+          patch.n_subdivisions           = 1;
+          patch.reference_cell = dealii::ReferenceCells::get_hypercube<dim>();
+          patch.data.reinit(picture.fields.names.size(), 1 << dim);
+          for (unsigned int i = 0; i < 1 << dim; ++i)
+            for (int d = 0; d < dim; ++d)
+              patch.vertices[i][d] =
+                cell.origin[d] + (i >> d & 1) / cell.inverse_edge[d];
+        }
+    }
+
+
+
+    /** Mass and velocity, the first 1 + dim components. */
+    template <int dim>
+    void
+    add_nodal_values(const State<dim> &state, Picture<dim, dim> &picture)
+    {
+      using Layout = NodeLayout<dim>;
+      for (unsigned int c = 0; c < picture.patches.size(); ++c)
+        for (unsigned int i = 0; i < 1 << dim; ++i)
+          {
+            const std::uint32_t offset = state.grid.geometry[c].node[i];
+            const double *const record =
+              state.nodes.record(offset / Layout::stride);
+            auto &data = picture.patches[c].data;
+            data(0, i) = record[Layout::mass];
+            for (int d = 0; d < dim; ++d)
+              data(1 + d, i) = record[Layout::velocity + d];
+          }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Picture<dim, dim>
+  draw_grid(const State<dim> &state)
+  {
+    Picture<dim, dim> picture;
+    picture.fields.add("mass", "kg", 1);
+    picture.fields.add("velocity", "m/s", dim);
+    unsigned int component = picture.fields.names.size();
+    for (const auto &body : state.bodies)
+      if (body->cell_sums)
+        {
+          picture.fields.add("pressure of " + body->description.name, "Pa", 1);
+          picture.fields.add("volume ratio of " + body->description.name,
+                             "",
+                             1);
+        }
+    add_cells(state.grid, picture);
+    add_nodal_values(state, picture);
+
+    PointPressure<dim> pressure(state.grid);
+    for (const auto &body : state.bodies)
+      if (body->cell_sums)
+        {
+          pressure.compute(*body);
+          for (unsigned int c = 0; c < picture.patches.size(); ++c)
+            {
+              const CellPressure mean = pressure.in_cell(c);
+              for (unsigned int i = 0; i < 1 << dim; ++i)
+                {
+                  auto &data             = picture.patches[c].data;
+                  data(component, i)     = mean.mean_pressure();
+                  data(component + 1, i) = mean.mean_volume_ratio();
+                }
+            }
+          component += 2;
+        }
+    return picture;
+  }
+
+
+
+  template Picture<0, 2>
+  draw_points(const State<2> &);
+  template Picture<0, 3>
+  draw_points(const State<3> &);
+  template Picture<2, 2>
+  draw_grid(const State<2> &);
+  template Picture<3, 3>
+  draw_grid(const State<3> &);
+} // namespace limber

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/files.h>
+#include <limber/output/pictures.h>
+#include <limber/output/writer.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    /** "points/points_00012.vtu", as the series names it. */
+    std::string
+    piece_name(const std::string &series, const std::size_t number)
+    {
+      char digits[24];
+      std::snprintf(digits, sizeof(digits), "%05zu", number);
+      return series + "/" + series + "_" + digits + ".vtu";
+    }
+
+
+
+    void
+    make_folder(const std::string &folder)
+    {
+      std::error_code error;
+      std::filesystem::create_directories(folder, error);
+      if (error)
+        throw cannot_write(folder, error.message());
+    }
+
+
+
+    void
+    write_series(const std::string                                 &path,
+                 const std::vector<std::pair<double, std::string>> &pieces)
+    {
+      std::ostringstream text;
+      dealii::DataOutBase::write_pvd_record(text, pieces);
+      write_whole_file(path, text.str());
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Writer<dim>::Writer(const std::string &folder, const WriterState &former)
+    : folder(folder)
+    , written(former)
+  {}
+
+
+
+  template <int dim>
+  void
+  Writer<dim>::write(const State<dim> &state)
+  {
+    const MPI_Comm    communicator = state.grid.communicator;
+    const std::size_t number       = written.points.size();
+    const std::string points       = piece_name("points", number),
+                      grid         = piece_name("grid", number);
+    on_first_rank(communicator, [&]() {
+      make_folder(folder + "/points");
+      make_folder(folder + "/grid");
+    });
+
+    {
+      const Picture<0, dim> picture = draw_points(state);
+      write_vtu(folder + "/" + points,
+                picture.patches,
+                picture.fields,
+                state.time,
+                communicator);
+    }
+    const Picture<dim, dim> picture = draw_grid(state);
+    write_vtu(folder + "/" + grid,
+              picture.patches,
+              picture.fields,
+              state.time,
+              communicator);
+
+    written.points.emplace_back(state.time, points);
+    written.grid.emplace_back(state.time, grid);
+    on_first_rank(communicator, [&]() {
+      write_series(folder + "/points.pvd", written.points);
+      write_series(folder + "/grid.pvd", written.grid);
+    });
+  }
+
+
+
+  template class Writer<2>;
+  template class Writer<3>;
+} // namespace limber

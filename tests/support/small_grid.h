@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_tests_support_small_grid_h
+#define limber_tests_support_small_grid_h
+
+#include <limber/points/point_view.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <vector>
+
+/**
+ * @file A structured grid and points made by hand, without deal.II: what the
+ * sweeps are tested on. The direct formulas of the shape functions stand here
+ * as well, written as in a textbook, to be compared with the sweeps.
+ */
+namespace limber
+{
+  namespace testing_support
+  {
+    template <int dim>
+    using Vector = std::array<double, dim>;
+
+    template <int dim>
+    using Matrix = std::array<std::array<double, dim>, dim>;
+
+
+
+    /** Random numbers that are the same in every run. */
+    class Random
+    {
+    public:
+      explicit Random(const unsigned int seed = 1)
+        : engine(seed)
+      {}
+
+      double
+      operator()(const double lower = -1, const double upper = 1)
+      {
+        return lower + (upper - lower) * (engine() * 0x1p-32);
+      }
+
+      /** One of 0, ..., n - 1. */
+      std::size_t
+      below(const std::size_t n)
+      {
+        return std::size_t(engine()) * n >> 32;
+      }
+
+      template <int dim>
+      Vector<dim>
+      vector()
+      {
+        Vector<dim> result;
+        for (double &x : result)
+          x = (*this)();
+        return result;
+      }
+
+      template <int dim>
+      Matrix<dim>
+      matrix(const double size = 1)
+      {
+        Matrix<dim> result;
+        for (auto &row : result)
+          for (double &x : row)
+            x = size * (*this)();
+        return result;
+      }
+
+      /** Used where an order is shuffled. */
+      std::mt19937 engine;
+    };
+
+
+
+    /** Edges that differ in every direction show what is scaled by which. */
+    template <int dim>
+    class SmallGrid
+    {
+    public:
+      explicit SmallGrid(const std::int64_t n_per_edge = 5)
+      {
+        const Vector<3> lowers{{-0.3, 0.2, 1.1}}, edges{{0.5, 0.25, 0.4}};
+        n_cells = n_nodes = 1;
+        for (int d = 0; d < dim; ++d)
+          {
+            lower[d]             = lowers[d];
+            edge[d]              = edges[d];
+            bins.lower[d]        = lower[d];
+            bins.inverse_edge[d] = 1 / edge[d];
+            bins.n[d]            = n_per_edge;
+            n_cells *= n_per_edge;
+            n_nodes *= n_per_edge + 1;
+          }
+        for (std::size_t c = 0; c < n_cells; ++c)
+          {
+            CellGeometry<dim>             cell;
+            std::array<std::int64_t, dim> at;
+            for (int d = 0, rest = c; d < dim; ++d, rest /= n_per_edge)
+              {
+                at[d]                = rest % n_per_edge;
+                cell.origin[d]       = lower[d] + edge[d] * at[d];
+                cell.inverse_edge[d] = 1 / edge[d];
+              }
+            for (int i = 0; i < 1 << dim; ++i)
+              {
+                std::int64_t node = 0;
+                for (int d = dim - 1; d >= 0; --d)
+                  node = node * (n_per_edge + 1) + at[d] + (i >> d & 1);
+                cell.node[i] = node * NodeLayout<dim>::stride;
+              }
+            cells.push_back(cell);
+            bin_table.push_back(c);
+          }
+        bins.table = bin_table.data();
+        nodes.resize(n_nodes * NodeLayout<dim>::stride);
+        occupied.resize(n_cells);
+        sums.resize(n_cells * CellSums<dim>::stride);
+      }
+
+      GridView<dim>
+      view()
+      {
+        GridView<dim> result;
+        result.cells    = cells.data();
+        result.nodes    = nodes.data();
+        result.bins     = bins;
+        result.occupied = occupied.data();
+        result.entered  = &entered;
+        result.left     = &left;
+        return result;
+      }
+
+      CellSums<dim>
+      cell_sums()
+      {
+        CellSums<dim> result;
+        result.data = sums.data();
+        return result;
+      }
+
+      Vector<dim>
+      place(const std::size_t node) const
+      {
+        Vector<dim> result;
+        std::size_t rest = node;
+        for (int d = 0; d < dim; ++d, rest /= bins.n[d - 1] + 1)
+          result[d] = lower[d] + edge[d] * (rest % (bins.n[d] + 1));
+        return result;
+      }
+
+      std::size_t
+      node_number(const std::uint32_t cell, const int i) const
+      {
+        return cells[cell].node[i] / NodeLayout<dim>::stride;
+      }
+
+      /** N_i at a place, of node i of a cell. */
+      double
+      shape(const std::uint32_t cell, const int i, const Vector<dim> &x) const
+      {
+        double result = 1;
+        for (int d = 0; d < dim; ++d)
+          result *= factor(cell, i, x, d);
+        return result;
+      }
+
+      /** grad N_i at a place. */
+      Vector<dim>
+      gradient(const std::uint32_t cell,
+               const int           i,
+               const Vector<dim>  &x) const
+      {
+        Vector<dim> result;
+        for (int d = 0; d < dim; ++d)
+          {
+            result[d] = ((i >> d & 1) ? 1 : -1) / edge[d];
+            for (int e = 0; e < dim; ++e)
+              if (e != d)
+                result[d] *= factor(cell, i, x, e);
+          }
+        return result;
+      }
+
+      void
+      clear()
+      {
+        std::fill(nodes.begin(), nodes.end(), 0.);
+        std::fill(sums.begin(), sums.end(), 0.);
+      }
+
+      std::size_t                    n_cells, n_nodes;
+      Vector<dim>                    lower, edge;
+      std::vector<CellGeometry<dim>> cells;
+      std::vector<double>            nodes, sums;
+      std::vector<std::uint32_t>     bin_table, entered;
+      std::vector<std::uint8_t>      occupied;
+      BinView<dim>                   bins;
+      bool                           left = false;
+
+    private:
+      double
+      factor(const std::uint32_t cell,
+             const int           i,
+             const Vector<dim>  &x,
+             const int           d) const
+      {
+        const double xi = (x[d] - cells[cell].origin[d]) / edge[d];
+        return (i >> d & 1) ? xi : 1 - xi;
+      }
+    };
+
+
+
+    /** Arrays of points with the room behind them that the sweeps demand. */
+    template <int dim>
+    class SmallPoints
+    {
+    public:
+      static constexpr std::size_t room = 1 << dim;
+
+      SmallPoints(const std::size_t  n,
+                  const bool         deviator,
+                  const unsigned int n_history,
+                  const int          volumetric,
+                  const bool         affine = true)
+        : size(n)
+        , n_history(n_history)
+        , volumetric(volumetric)
+        , has_deviator(deviator)
+        , has_affine(affine)
+        , fields(2 * dim + 2 + n_deviator<dim> + n_history + dim * dim,
+                 std::vector<double>(n + room))
+        , cell(n + room, invalid_cell)
+      {}
+
+      PointView<dim>
+      view()
+      {
+        PointView<dim> result;
+        unsigned int   k    = 0;
+        const auto     next = [&]() { return fields[k++].data(); };
+        result.size         = size;
+        for (auto &array : result.position)
+          array = next();
+        for (auto &array : result.velocity)
+          array = next();
+        result.mass     = next();
+        result.pressure = next();
+        if (has_deviator)
+          for (auto &array : result.deviator)
+            array = next();
+        for (unsigned int i = 0; i < n_history; ++i)
+          result.history[i] = next();
+        if (has_affine)
+          for (auto &array : result.affine)
+            array = next();
+        result.volumetric =
+          volumetric < 0 ? result.pressure : result.history[volumetric];
+        result.cell = cell.data();
+        return result;
+      }
+
+      Vector<dim>
+      position(const std::size_t p) const
+      {
+        Vector<dim> result;
+        for (int d = 0; d < dim; ++d)
+          result[d] = fields[d][p];
+        return result;
+      }
+
+      const std::size_t                size;
+      const unsigned int               n_history;
+      const int                        volumetric;
+      const bool                       has_deviator, has_affine;
+      std::vector<std::vector<double>> fields;
+      std::vector<std::uint32_t>       cell;
+    };
+
+
+
+    /** The whole stress of a point times J, pressure and zz included. */
+    template <int dim>
+    Matrix<3>
+    kirchhoff_stress(const PointView<dim> &points, const std::size_t p)
+    {
+      Matrix<3> t{};
+      if (points.deviator[0] != nullptr)
+        {
+          t[0][0]           = points.deviator[0][p];
+          t[1][1]           = points.deviator[1][p];
+          t[2][2]           = -t[0][0] - t[1][1];
+          t[0][1] = t[1][0] = points.deviator[2][p];
+          if constexpr (dim == 3)
+            {
+              t[1][2] = t[2][1] = points.deviator[3][p];
+              t[2][0] = t[0][2] = points.deviator[4][p];
+            }
+        }
+      for (int d = 0; d < 3; ++d)
+        t[d][d] -= points.pressure[p];
+      return t;
+    }
+
+
+
+    /**
+     * Random points in random cells: some cells empty, some holding one
+     * point, some more than two packs; stragglers that are stored away from
+     * the other points of their cell; on request in no order at all.
+     */
+    template <int dim>
+    SmallPoints<dim>
+    random_points(const SmallGrid<dim> &grid,
+                  Random               &random,
+                  const bool            deviator   = true,
+                  const unsigned int    n_history  = 0,
+                  const int             volumetric = -1,
+                  const bool            shuffled   = false)
+    {
+      std::vector<std::uint32_t> owner;
+      for (std::uint32_t c = 0; c < grid.n_cells; ++c)
+        {
+          const std::size_t kind = random.below(4);
+          const std::size_t n    = kind == 0 ? 0 :
+                                   kind == 1 ? 1 :
+                                   kind == 2 ? (1 << dim) :
+                                               random.below(5 << dim);
+          owner.insert(owner.end(), n, c);
+        }
+      const auto swap_some = [&](const std::size_t n) {
+        for (std::size_t k = 0; k < n; ++k)
+          std::swap(owner[random.below(owner.size())],
+                    owner[random.below(owner.size())]);
+      };
+      swap_some(shuffled ? 2 * owner.size() : owner.size() / 10);
+
+      SmallPoints<dim> points(owner.size(), deviator, n_history, volumetric);
+      std::copy(owner.begin(), owner.end(), points.cell.begin());
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          for (auto &field : points.fields)
+            field[p] = random();
+          for (int d = 0; d < dim; ++d)
+            points.fields[d][p] =
+              grid.cells[owner[p]].origin[d] + grid.edge[d] * random(0, 1);
+          points.view().mass[p] = random(0.5, 2);
+        }
+      return points;
+    }
+  } // namespace testing_support
+} // namespace limber
+
+#endif

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/pack.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+using namespace limber;
+
+namespace
+{
+  template <class Number>
+  class PackOf : public testing::Test
+  {
+  public:
+    static constexpr int width = pack_width<Number>;
+
+    /** 1, -2, 3, -4, ... */
+    static Number
+    alternating()
+    {
+      std::vector<double> values(width);
+      for (int i = 0; i < width; ++i)
+        values[i] = (i % 2 ? -1 : 1) * (i + 1);
+      return load<Number>(values.data());
+    }
+  };
+
+  using Widths = testing::Types<double, Pack<2>, Pack<4>, Pack<8>>;
+  TYPED_TEST_SUITE(PackOf, Widths);
+} // namespace
+
+
+
+TYPED_TEST(PackOf, LoadsAndStoresWhereNothingIsAligned)
+{
+  constexpr int       width = TestFixture::width;
+  std::vector<double> from(width + 1), to(width + 2, 7.);
+  for (int i = 0; i <= width; ++i)
+    from[i] = i;
+  store(load<TypeParam>(from.data() + 1), to.data() + 1);
+  for (int i = 0; i < width; ++i)
+    EXPECT_EQ(to[i + 1], i + 1.);
+  EXPECT_EQ(to.front(), 7.);
+  EXPECT_EQ(to.back(), 7.);
+}
+
+
+
+TYPED_TEST(PackOf, ReductionsAndSelectionsGoLaneByLane)
+{
+  constexpr int   width = TestFixture::width;
+  const TypeParam a     = TestFixture::alternating();
+  EXPECT_EQ(sum(a), width == 1 ? 1. : -width / 2.);
+  EXPECT_EQ(maximum(a), width == 1 ? 1. : width - 1.);
+  EXPECT_EQ(sum(broadcast<TypeParam>(0.25)), 0.25 * width);
+
+  const TypeParam positive = magnitude(a), root = square_root(positive * a * a);
+  const TypeParam floor = larger(a, broadcast<TypeParam>(-1.5));
+  for (int i = 0; i < width; ++i)
+    {
+      EXPECT_EQ(lane(positive, i), i + 1.);
+      EXPECT_EQ(lane(root, i), std::sqrt((i + 1.) * (i + 1.) * (i + 1.)));
+      EXPECT_EQ(lane(floor, i), i % 2 ? -1.5 : i + 1.);
+    }
+}
+
+
+
+TYPED_TEST(PackOf, FirstLanesAreChosen)
+{
+  constexpr int width = TestFixture::width;
+  for (int n = 0; n <= width; ++n)
+    {
+      const auto      chosen = first_lanes<TypeParam>(n);
+      const TypeParam a =
+        chosen ? broadcast<TypeParam>(1.) : broadcast<TypeParam>(2.);
+      for (int i = 0; i < width; ++i)
+        EXPECT_EQ(lane(a, i), i < n ? 1. : 2.);
+    }
+}
+
+
+
+TYPED_TEST(PackOf, InverseCubeRootIsGoodToRoundOff)
+{
+  double worst = 0;
+  for (int k = -60000; k <= 60000; ++k)
+    {
+      const double    x = std::pow(10., k * 1e-4);
+      const TypeParam root =
+        inverse_cube_root(broadcast<TypeParam>(x) *
+                          TypeParam(broadcast<TypeParam>(1.)));
+      for (int i = 0; i < pack_width<TypeParam>; ++i)
+        worst = std::max(worst, std::abs(lane(root, i) * std::cbrt(x) - 1));
+    }
+  EXPECT_LT(worst, 1e-15);
+}
+
+
+
+TYPED_TEST(PackOf, InverseCubeRootOfOneIsOne)
+{
+  const TypeParam one = inverse_cube_root(broadcast<TypeParam>(1.));
+  for (int i = 0; i < pack_width<TypeParam>; ++i)
+    EXPECT_NEAR(lane(one, i), 1., 2e-16);
+}
