@@ -91,23 +91,30 @@ namespace limber
         if (!(mass > 0))
           continue;
 
-        auto velocity = read<dim>(record + Layout::velocity);
+        const auto free_velocity = read<dim>(record + Layout::velocity);
+        const auto old_velocity =
+          free_velocity - read<dim>(record + Layout::increment);
+        auto                                        velocity = free_velocity;
+        std::array<dealii::Tensor<1, dim>, 2 * dim> change;
         for (unsigned int side = 0; side < 2 * dim; ++side)
           {
             const auto before = velocity;
-            if ((nodes.grid.sides_of_node[node] >> side & 1) == 0 ||
-                !act(
-                  side, nodes.grid.node_places[node], time, velocity, nullptr))
-              continue;
-            const auto change = velocity - before;
+            if (nodes.grid.sides_of_node[node] >> side & 1)
+              act(side, nodes.grid.node_places[node], time, velocity, nullptr);
+            change[side] = velocity - before;
+          }
+
+        // An impulse does work with the mean of the velocities at the ends of
+        // the step.
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          if (change[side] != dealii::Tensor<1, dim>())
             account(side,
-                    mass * change,
-                    0.5 * mass * (change * (velocity + before)));
-            for (int d = 0; d < dim; ++d)
-              {
-                record[Layout::increment + d] += change[d];
-                record[Layout::velocity + d] = velocity[d];
-              }
+                    mass * change[side],
+                    0.5 * mass * (change[side] * (old_velocity + velocity)));
+        for (int d = 0; d < dim; ++d)
+          {
+            record[Layout::increment + d] += velocity[d] - free_velocity[d];
+            record[Layout::velocity + d] = velocity[d];
           }
       }
   }

@@ -14,9 +14,8 @@ namespace limber
   {
     for (const Check &check : checks)
       {
-        const auto place = std::find(observables.begin(),
-                                     observables.end(),
-                                     check.observable);
+        const auto place =
+          std::find(observables.begin(), observables.end(), check.observable);
         if (place == observables.end())
           throw std::logic_error("no observable " + check.observable);
         column.push_back(place - observables.begin());

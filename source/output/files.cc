@@ -13,8 +13,8 @@ namespace limber
   FileError
   cannot_write(const std::string &path, const std::string &reason)
   {
-    return FileError("The file " + in_quotes(path) + " could not be written: " +
-                     reason +
+    return FileError("The file " + in_quotes(path) +
+                     " could not be written: " + reason +
                      ". Usually the disk or the quota is full, or writing is "
                      "not permitted there. Make room, or set "
                      "'Output/Directory' to another folder.");
@@ -75,8 +75,7 @@ namespace limber
 
 
   void
-  on_first_rank(const MPI_Comm               communicator,
-                const std::function<void()> &task)
+  on_first_rank(const MPI_Comm communicator, const std::function<void()> &task)
   {
     std::optional<Failure> failure;
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)

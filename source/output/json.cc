@@ -9,7 +9,8 @@ namespace limber::json
 {
   namespace
   {
-    /** Length of the UTF-8 character that begins at @p i; 0 if there is none. */
+    /** Length of the UTF-8 character that begins at @p i; 0 if there is none.
+     */
     std::size_t
     utf8_length(const std::string &text, const std::size_t i)
     {
@@ -17,11 +18,11 @@ namespace limber::json
         return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
       };
       const unsigned int first  = byte(i);
-      const std::size_t  length = first < 0x80               ? 1 :
-                                  first >> 5 == 0b110u       ? 2 :
-                                  first >> 4 == 0b1110u      ? 3 :
-                                  first >> 3 == 0b11110u     ? 4 :
-                                                               0;
+      const std::size_t  length = first < 0x80           ? 1 :
+                                  first >> 5 == 0b110u   ? 2 :
+                                  first >> 4 == 0b1110u  ? 3 :
+                                  first >> 3 == 0b11110u ? 4 :
+                                                           0;
       for (std::size_t k = 1; k < length; ++k)
         if (byte(i + k) >> 6 != 0b10u)
           return 0;
@@ -57,7 +58,10 @@ namespace limber::json
       if (static_cast<unsigned char>(c) >= 0x20)
         return std::string(1, c);
       char code[8];
-      std::snprintf(code, sizeof(code), "\\u%04x", static_cast<unsigned int>(c));
+      std::snprintf(code,
+                    sizeof(code),
+                    "\\u%04x",
+                    static_cast<unsigned int>(c));
       return code;
     }
 

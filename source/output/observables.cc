@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+    constexpr double       not_known = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int not_followed = static_cast<unsigned int>(-1);
     constexpr unsigned int not_one_body = static_cast<unsigned int>(-1);
 
@@ -79,24 +79,25 @@ namespace limber
 
 
 
-    /** The largest coordinate times the sign on this rank, half a spacing in. */
+    /** The largest coordinate times the sign on this rank, half a spacing in.
+     */
     template <int dim>
     double
     extreme_of_body(const MaterialBody<dim>    &body,
                     const GridDescription<dim> &grid,
                     const Observable<dim>      &observable)
     {
-      const unsigned int   axis   = observable.axis;
-      const double         sign   = observable.positive ? 1 : -1;
-      const PointView<dim> points = body.points.view();
-      double largest = -std::numeric_limits<double>::infinity();
+      const unsigned int   axis    = observable.axis;
+      const double         sign    = observable.positive ? 1 : -1;
+      const PointView<dim> points  = body.points.view();
+      double               largest = -std::numeric_limits<double>::infinity();
       for (std::size_t p = 0; p < points.size; ++p)
         if (sign * points.position[axis][p] > largest &&
             is_within(points, p, observable))
           largest = sign * points.position[axis][p];
-      const double spacing =
-        (grid.upper[axis] - grid.lower[axis]) / grid.cells[axis] /
-        body.description.points_per_cell_edge[axis];
+      const double spacing = (grid.upper[axis] - grid.lower[axis]) /
+                             grid.cells[axis] /
+                             body.description.points_per_cell_edge[axis];
       return largest + 0.5 * spacing;
     }
   } // namespace
@@ -227,11 +228,10 @@ namespace limber
 
   template <int dim>
   double
-  Observables<dim>::value(
-    const Observable<dim>               &observable,
-    const unsigned int                   number,
-    const Totals<dim>                   &totals,
-    const std::vector<PointSample<dim>> &samples) const
+  Observables<dim>::value(const Observable<dim>               &observable,
+                          const unsigned int                   number,
+                          const Totals<dim>                   &totals,
+                          const std::vector<PointSample<dim>> &samples) const
   {
     const unsigned int     axis = observable.axis;
     const BodyTotals<dim>  body = totals_of(observable, totals);
@@ -300,16 +300,14 @@ namespace limber
                   state.grid.communicator);
     for (unsigned int i = 0; i < values.size(); ++i)
       if (std::isfinite(largest[i]))
-        values[i] =
-          problem.observables[i].positive ? largest[i] : -largest[i];
+        values[i] = problem.observables[i].positive ? largest[i] : -largest[i];
   }
 
 
 
   template <int dim>
   std::vector<double>
-  Observables<dim>::evaluate(const State<dim>  &state,
-                             const Totals<dim> &totals)
+  Observables<dim>::evaluate(const State<dim> &state, const Totals<dim> &totals)
   {
     update_side_forces(state.time, totals);
     const auto          samples = points.sample(state, with_stress);
@@ -317,8 +315,8 @@ namespace limber
     for (unsigned int i = 0; i < values.size(); ++i)
       {
         const Observable<dim> &observable = problem.observables[i];
-        const double sign = observable.positive ? 1 : -1;
-        values[i]         = sign * value(observable, i, totals, samples);
+        const double           sign       = observable.positive ? 1 : -1;
+        values[i] = sign * value(observable, i, totals, samples);
       }
     if (has_extremes)
       fill_extremes(state, values);

@@ -84,7 +84,7 @@ namespace limber
   {
     sums.clear(touched);
     // Points may sit in ghost cells, and those of other ranks in cells here.
-    touched = grid.shared_cells();
+    touched            = grid.shared_cells();
     double *const data = sums.view().data;
     for (std::size_t p = 0; p < points.size; ++p)
       {

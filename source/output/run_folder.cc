@@ -112,8 +112,8 @@ namespace limber
     void
     refuse(const std::string &folder, const std::string &trace)
     {
-      throw InputError("The folder " + in_quotes(folder) + " holds a run: " +
-                       in_quotes(trace) +
+      throw InputError("The folder " + in_quotes(folder) +
+                       " holds a run: " + in_quotes(trace) +
                        " is in it ('Output/Directory'). Usually the scene has "
                        "been run before. Set 'Output/Replace = true' to "
                        "overwrite it, or choose another 'Output/Directory'.");

@@ -195,7 +195,11 @@ namespace limber
   template std::vector<Column>
   statistics_columns(const Observables<3> &);
   template std::vector<double>
-  statistics_row(const State<2> &, const Totals<2> &, const std::vector<double> &);
+  statistics_row(const State<2> &,
+                 const Totals<2> &,
+                 const std::vector<double> &);
   template std::vector<double>
-  statistics_row(const State<3> &, const Totals<3> &, const std::vector<double> &);
+  statistics_row(const State<3> &,
+                 const Totals<3> &,
+                 const std::vector<double> &);
 } // namespace limber

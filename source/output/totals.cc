@@ -96,11 +96,8 @@ namespace limber
           const PointView<dim>     points = body.points.view();
           constexpr std::size_t    block  = 512;
           for (std::size_t p = 0; p < points.size; p += block)
-            add_points(points,
-                       p,
-                       std::min(p + block, points.size),
-                       sums.body(b),
-                       sums);
+            add_points(
+              points, p, std::min(p + block, points.size), sums.body(b), sums);
           sums.points() += points.size;
 
           const StateSummary summary = body.stress->summarize(points);
@@ -166,9 +163,10 @@ namespace limber
       totals.largest_speed   = std::sqrt(sums.largest[0]);
       totals.largest_volume  = sums.largest[1];
       totals.smallest_volume = -sums.largest[2];
-      totals.points       = static_cast<unsigned long>(sums.points() + 0.5);
-      totals.active_nodes = static_cast<unsigned long>(sums.active_nodes() + 0.5);
-      totals.cells        = state.grid.triangulation.n_global_active_cells();
+      totals.points          = static_cast<unsigned long>(sums.points() + 0.5);
+      totals.active_nodes =
+        static_cast<unsigned long>(sums.active_nodes() + 0.5);
+      totals.cells = state.grid.triangulation.n_global_active_cells();
       return totals;
     }
   } // namespace
@@ -193,12 +191,12 @@ namespace limber
   template <int dim>
   Balance<dim>::Balance(const State<dim> &state)
   {
-    RowSums<dim>          sums   = sum_all(state);
-    const BodyTotals<dim> all    = totals_from(sums, state).all;
-    start.kinetic_energy         = all.kinetic_energy;
-    start.strain_energy          = all.strain_energy;
-    start.gravitational_energy   = all.gravitational_energy;
-    start.momentum               = all.momentum;
+    RowSums<dim>          sums = sum_all(state);
+    const BodyTotals<dim> all  = totals_from(sums, state).all;
+    start.kinetic_energy       = all.kinetic_energy;
+    start.strain_energy        = all.strain_energy;
+    start.gravitational_energy = all.gravitational_energy;
+    start.momentum             = all.momentum;
   }
 
 
@@ -214,9 +212,9 @@ namespace limber
   Totals<dim>
   Balance<dim>::evaluate(const State<dim> &state)
   {
-    RowSums<dim>      sums   = sum_all(state);
-    const Ledger<dim> ledger = state.ledger.sum_over_ranks(
-      state.grid.communicator);
+    RowSums<dim>      sums = sum_all(state);
+    const Ledger<dim> ledger =
+      state.ledger.sum_over_ranks(state.grid.communicator);
     Totals<dim> totals          = totals_from(sums, state);
     totals.lost_points          = ledger.lost_points;
     totals.dissipated           = ledger.viscous;
@@ -236,17 +234,16 @@ namespace limber
   Balance<dim>::balance_energy(const Ledger<dim> &ledger, Totals<dim> &totals)
   {
     const BodyTotals<dim> &all = totals.all;
-    totals.removed_by_transfer = start.kinetic_energy + ledger.grid_kinetic -
-                                 ledger.lost_kinetic - all.kinetic_energy;
+    totals.removed_by_transfer = ledger.transfer;
 
     // Differences from the start first: potentials can be large numbers.
     const double potential_change =
       all.gravitational_energy - start.gravitational_energy;
-    const double gain = ledger.grid_kinetic +
+    const double gain = (all.kinetic_energy - start.kinetic_energy) +
                         (all.strain_energy - start.strain_energy) +
-                        potential_change + ledger.viscous + ledger.history +
-                        ledger.lost_other - ledger.boundary_work -
-                        ledger.load_work;
+                        potential_change + ledger.transfer + ledger.viscous +
+                        ledger.history + ledger.lost_energy -
+                        ledger.boundary_work - ledger.load_work;
     start.energy_scale =
       std::max(start.energy_scale,
                all.kinetic_energy + std::abs(all.strain_energy) +
@@ -264,10 +261,9 @@ namespace limber
                                  const double       absolute_momentum,
                                  Totals<dim>       &totals)
   {
-    dealii::Tensor<1, dim> unexplained = totals.all.momentum - start.momentum +
-                                         ledger.lost_momentum -
-                                         ledger.gravity_impulse -
-                                         ledger.load_impulse;
+    dealii::Tensor<1, dim> unexplained =
+      totals.all.momentum - start.momentum + ledger.lost_momentum -
+      ledger.gravity_impulse - ledger.load_impulse;
     double scale = std::max({absolute_momentum,
                              ledger.gravity_impulse.norm(),
                              ledger.load_impulse.norm()});

@@ -86,8 +86,8 @@ namespace limber
                                      const dealii::Point<dim> &place)
   {
     const MaterialPoints<dim> &owner = state.bodies[body]->points;
-    const Candidate<dim>       own   = nearest_here(
-      owner.view(), owner, place, 1e-9 * state.grid.smallest_edge);
+    const Candidate<dim>       own =
+      nearest_here(owner.view(), owner, place, 1e-9 * state.grid.smallest_edge);
     std::vector<Candidate<dim>> all(
       dealii::Utilities::MPI::n_mpi_processes(state.grid.communicator));
     MPI_Allgather(own.data(),
@@ -158,10 +158,9 @@ namespace limber
         if (index[t] == nowhere)
           continue;
         const MaterialBody<dim> &body = *state.bodies[tracked[t].body];
-        const PointView<dim>     point =
-          part_of(body.points.view(), index[t], 1);
-        double *const record = records.data() + t * T::stride;
-        record[T::found]     = 1;
+        const PointView<dim> point  = part_of(body.points.view(), index[t], 1);
+        double *const        record = records.data() + t * T::stride;
+        record[T::found]            = 1;
         for (int d = 0; d < dim; ++d)
           {
             record[T::position + d] = *point.position[d];

@@ -78,8 +78,7 @@ namespace limber
     {
       unsigned long       offset = 0;
       const unsigned long length = text.size();
-      MPI_Exscan(
-        &length, &offset, 1, MPI_UNSIGNED_LONG, MPI_SUM, communicator);
+      MPI_Exscan(&length, &offset, 1, MPI_UNSIGNED_LONG, MPI_SUM, communicator);
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         offset = 0;
 
@@ -99,7 +98,7 @@ namespace limber
       for (std::size_t begin = 0; begin < text.size() && error == MPI_SUCCESS;
            begin += most)
         {
-          const int  n = std::min(most, text.size() - begin);
+          const int  n         = std::min(most, text.size() - begin);
           int        n_written = 0;
           MPI_Status status;
           error = MPI_File_write_at(
@@ -146,11 +145,10 @@ namespace limber
     const MPI_Comm                                                 communicator)
   {
     const std::string partial = path + ".part";
-    const int         error =
-      write_pieces(partial,
-                   piece_of_file(
-                     patches, fields, flags_for(fields, time), communicator),
-                   communicator);
+    const int         error   = write_pieces(
+      partial,
+      piece_of_file(patches, fields, flags_for(fields, time), communicator),
+      communicator);
     std::optional<Failure> failure;
     if (error != MPI_SUCCESS)
       failure.emplace(cannot_write(path, reason_of(error)));

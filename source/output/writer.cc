@@ -38,6 +38,7 @@ namespace limber
                  const std::vector<std::pair<double, std::string>> &pieces)
     {
       std::ostringstream text;
+      text.precision(16); // times, of which six digits are not enough
       dealii::DataOutBase::write_pvd_record(text, pieces);
       write_whole_file(path, text.str());
     }

@@ -111,6 +111,9 @@ namespace limber
     write_pictures();
     while (state.time < problem.end_time && !stop_requested())
       {
+        if (integrator.reorganise() &&
+            integrator.imbalance() > admitted_imbalance)
+          rebalance();
         const double step = next_step();
         integrator.advance(state.time, step);
         state.time += step;
@@ -124,9 +127,6 @@ namespace limber
 
         if (integrator.points_were_lost())
           report_lost_points();
-        if (integrator.has_exchanged() &&
-            integrator.imbalance() > admitted_imbalance)
-          rebalance();
         if (row_is_due())
           record();
         if (problem.output.time_interval > 0 &&

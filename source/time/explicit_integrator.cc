@@ -255,7 +255,7 @@ namespace limber
     for (int d = 0; d < dim; ++d)
       gravity_step[d] = step * problem.loads.gravity[d];
 
-    double kinetic = 0, total_mass = 0, checked_speed = 0, all = 0;
+    double total_mass = 0, checked_speed = 0, all = 0;
     // A node that only touches the material may be fast for a moment.
     const double checked_mass = 0.1 * largest_mass;
     largest_mass              = 0;
@@ -266,7 +266,7 @@ namespace limber
         if (!(mass > 0))
           continue;
         const double inverse = 1 / mass;
-        double       gain = 0, squared = 0;
+        double       squared = 0;
         for (int d = 0; d < dim; ++d)
           {
             const double before = record[Layout::momentum + d] * inverse;
@@ -275,33 +275,16 @@ namespace limber
             const double after            = before + change;
             record[Layout::increment + d] = change;
             record[Layout::velocity + d]  = after;
-            gain += change * (before + after);
             squared += after * after;
           }
-        kinetic += 0.5 * mass * gain;
         total_mass += mass;
         largest_mass = std::max(largest_mass, mass);
         all += squared;
         if (mass > checked_mass)
           checked_speed = std::max(checked_speed, squared);
       }
-    ledger.grid_kinetic += kinetic;
     for (int d = 0; d < dim; ++d)
       ledger.gravity_impulse[d] += total_mass * gravity_step[d];
-
-    if (loads.any())
-      for (const std::uint32_t node : nodes.active_nodes())
-        {
-          const double *const record = nodes.record(node);
-          if (!(record[Layout::mass] > 0))
-            continue;
-          const auto force = loads.on_node(node);
-          ledger.load_impulse += step * force;
-          for (int d = 0; d < dim; ++d)
-            ledger.load_work += step * force[d] *
-                                (record[Layout::velocity + d] -
-                                 0.5 * record[Layout::increment + d]);
-        }
 
     check_nodes(std::sqrt(checked_speed), std::isfinite(all));
     lap(Verb::advance_nodes);
@@ -336,6 +319,28 @@ namespace limber
 
 
 
+  // Forces do work with the mean of the velocities at the ends of the step.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::account_loads()
+  {
+    using Layout = NodeLayout<dim>;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        const double *const record = nodes.record(node);
+        if (!(record[Layout::mass] > 0))
+          continue;
+        const auto force = loads.on_node(node);
+        ledger.load_impulse += step * force;
+        for (int d = 0; d < dim; ++d)
+          ledger.load_work += step * force[d] *
+                              (record[Layout::velocity + d] -
+                               0.5 * record[Layout::increment + d]);
+      }
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::apply_boundaries()
@@ -347,8 +352,9 @@ namespace limber
                             const double                  work) {
                        ledger.side_impulse[side] += impulse;
                        ledger.boundary_work += work;
-                       ledger.grid_kinetic += work;
                      });
+    if (loads.any())
+      account_loads();
     lap(Verb::apply_boundaries);
   }
 
@@ -409,6 +415,7 @@ namespace limber
           limber::grid_to_points<dim>(body->points.view(), nodes.view(), what);
         speed_squared = std::max(speed_squared, found.speed_squared);
         displacement  = std::max(displacement, found.displacement);
+        ledger.transfer += found.removed;
       }
     lap(Verb::grid_to_points);
   }
@@ -482,25 +489,32 @@ namespace limber
       remove_lost_points();
     nodes.add_entered();
 
-    exchanged = false;
-    if (parallel)
-      {
-        travelled += displacement;
-        // The next step may be somewhat longer than this one.
-        exchanged = travelled + 1.5 * displacement > travel_limit;
-      }
-    if (exchanged)
-      exchange_points();
+    travelled += displacement;
+    if (n_batches > n_batches_sorted)
+      excess_batches += n_batches - n_batches_sorted;
+    lap(Verb::relocate);
+  }
 
+
+
+  template <int dim>
+  bool
+  ExplicitIntegrator<dim>::reorganise()
+  {
+    stopwatch.start();
+    // The next step may be somewhat longer than the last one.
+    const bool exchange =
+      parallel && travelled + 1.5 * displacement > travel_limit;
     // A sort costs about as much as the detours of n / 4 surplus batches.
     std::size_t n_points = 0;
     for (const auto &body : bodies)
       n_points += body->points.size();
-    if (n_batches > n_batches_sorted)
-      excess_batches += n_batches - n_batches_sorted;
-    if (excess_batches > n_points / 4)
+    if (exchange)
+      exchange_points();
+    else if (excess_batches > n_points / 4)
       sort_points();
     lap(Verb::relocate);
+    return exchange;
   }
 
 
@@ -521,14 +535,14 @@ namespace limber
             ++ledger.lost_points;
             ledger.lost_mass += point.mass;
             ledger.lost_momentum += point.momentum;
-            ledger.lost_kinetic +=
+            ledger.lost_energy +=
               0.5 * point.momentum.norm_square() / point.mass;
             for (int d = 0; d < dim; ++d)
-              ledger.lost_other -=
+              ledger.lost_energy -=
                 point.mass * problem.loads.gravity[d] * point.position[d];
             lost.emplace_back(body->description.name, point);
           }
-        ledger.lost_other += before - strain_energy();
+        ledger.lost_energy += before - strain_energy();
       }
   }
 

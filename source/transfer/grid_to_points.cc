@@ -57,7 +57,7 @@ namespace limber
       using Kernel = Linear<dim>;
       using Layout = NodeLayout<dim>;
 
-      Number speed_squared{}, displacement{};
+      Number speed_squared{}, displacement{}, removed{};
 
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
@@ -71,11 +71,14 @@ namespace limber
             const BatchLanes<dim> lanes(batch, p);
             const auto            xi = lanes.natural(points, cell);
 
-            Number squared{};
+            Number squared{}, kept_squared{};
             for (int d = 0; d < dim; ++d)
               {
-                const auto grid_velocity = nodal.component(dim + d);
-                Number     velocity;
+                const auto   grid_velocity = nodal.component(dim + d);
+                const Number flip =
+                  lanes.load(points.velocity[d]) +
+                  Kernel::template value<Number>(nodal.component(d), xi);
+                Number velocity = flip;
                 if constexpr (affine)
                   {
                     velocity =
@@ -86,17 +89,11 @@ namespace limber
                       lanes.store(gradient[e] * cell.inverse_edge[e],
                                   points.affine[d * dim + e]);
                   }
-                else
-                  {
-                    velocity =
-                      lanes.load(points.velocity[d]) +
-                      Kernel::template value<Number>(nodal.component(d), xi);
-                    if (what.flip_share != 1.)
-                      velocity +=
-                        (1. - what.flip_share) *
-                        (Kernel::template value<Number>(grid_velocity, xi) -
-                         velocity);
-                  }
+                else if (what.flip_share != 1.)
+                  velocity +=
+                    (1. - what.flip_share) *
+                    (Kernel::template value<Number>(grid_velocity, xi) - flip);
+                kept_squared += flip * flip;
                 lanes.store(velocity, points.velocity[d]);
                 squared += velocity * velocity;
                 if constexpr (moves)
@@ -113,6 +110,9 @@ namespace limber
                   }
               }
             speed_squared = larger(speed_squared, lanes.only_active(squared));
+            if (affine || what.flip_share != 1.)
+              removed += lanes.only_active(lanes.load(points.mass)) *
+                         (kept_squared - squared);
           }
 
         if constexpr (remap)
@@ -120,7 +120,9 @@ namespace limber
         if constexpr (moves)
           locate(points, grid, batch.cell, batch.begin, batch.end);
       });
-      return {maximum(speed_squared), maximum(displacement)};
+      return {maximum(speed_squared),
+              maximum(displacement),
+              0.5 * sum(removed)};
     }
   } // namespace
 

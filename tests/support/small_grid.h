@@ -291,9 +291,9 @@ namespace limber
       Matrix<3> t{};
       if (points.deviator[0] != nullptr)
         {
-          t[0][0]           = points.deviator[0][p];
-          t[1][1]           = points.deviator[1][p];
-          t[2][2]           = -t[0][0] - t[1][1];
+          t[0][0] = points.deviator[0][p];
+          t[1][1] = points.deviator[1][p];
+          t[2][2] = -t[0][0] - t[1][1];
           t[0][1] = t[1][0] = points.deviator[2][p];
           if constexpr (dim == 3)
             {

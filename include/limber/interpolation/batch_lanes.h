@@ -15,7 +15,9 @@ namespace limber
 
   /**
    * A few points of a batch as lanes of a pack. The last pack of a batch may
-   * reach beyond it: what is stored there is what was there before.
+   * reach beyond it. The lanes there repeat the first point, so that nothing
+   * can be computed in them that could not be computed in the others; what is
+   * stored there is what was there before.
    */
   template <int dim>
   class BatchLanes
@@ -33,7 +35,9 @@ namespace limber
     Number
     load(const double *const array) const
     {
-      return limber::load<Number>(array + first);
+      const Number values = limber::load<Number>(array + first);
+      return n == width ? values :
+                          (active ? values : broadcast<Number>(array[first]));
     }
 
     void
@@ -42,7 +46,8 @@ namespace limber
       if (n == width)
         limber::store(values, array + first);
       else
-        limber::store(active ? values : load(array), array + first);
+        limber::store(active ? values : limber::load<Number>(array + first),
+                      array + first);
     }
 
     /** The values of the points of the batch, zero in the other lanes. */

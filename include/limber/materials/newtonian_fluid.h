@@ -64,7 +64,8 @@ namespace limber
       , bulk_modulus(values[1])
       , viscosity(values[2])
       , tension_cutoff(values[3] != 0)
-      , tait(values[4] != 0)
+      // with the exponent one the two are the same, and only one has an energy
+      , tait(values[4] != 0 && values[5] != 1)
       , exponent(values[5])
     {}
 

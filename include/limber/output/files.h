@@ -20,7 +20,8 @@ namespace limber
   void
   write_whole_file(const std::string &path, const std::string &text);
 
-  /** What to throw where writing to @p path failed; names the system's reason. */
+  /** What to throw where writing to @p path failed; names the system's reason.
+   */
   FileError
   cannot_write(const std::string &path, const std::string &reason);
 

@@ -17,7 +17,9 @@ namespace limber
   /** Points [begin, begin + size) of a view. */
   template <int dim>
   PointView<dim>
-  part_of(PointView<dim> points, const std::size_t begin, const std::size_t size);
+  part_of(PointView<dim>    points,
+          const std::size_t begin,
+          const std::size_t size);
 
 
 

@@ -15,17 +15,17 @@ namespace limber
   {
     std::string   verdict; // "finished", "unstable", "stopped", "check missed"
     std::string   message; // why, where it did not finish
-    unsigned long steps               = 0;
-    unsigned long points              = 0; // at the end
-    unsigned long lost_points         = 0;
-    unsigned int  ranks               = 1;
-    double        end_time            = 0; // reached, s
-    double        wall_seconds        = 0;
-    double        cpu_seconds         = 0; // sum over ranks
-    double        ns_per_point_step   = 0; // wall time of a core, output excluded
-    double        bytes_per_point     = 0;
-    double        energy_drift        = 0;
-    double        momentum_error      = 0;
+    unsigned long steps             = 0;
+    unsigned long points            = 0; // at the end
+    unsigned long lost_points       = 0;
+    unsigned int  ranks             = 1;
+    double        end_time          = 0; // reached, s
+    double        wall_seconds      = 0;
+    double        cpu_seconds       = 0; // sum over ranks
+    double        ns_per_point_step = 0; // wall time of a core, output excluded
+    double        bytes_per_point   = 0;
+    double        energy_drift      = 0;
+    double        momentum_error    = 0;
     // Share of the time that each verb of the step took
     std::vector<std::pair<std::string, double>> verbs;
     std::vector<CheckResult>                    checks;

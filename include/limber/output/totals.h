@@ -15,9 +15,9 @@ namespace limber
   template <int dim>
   struct BodyTotals
   {
-    double                 mass = 0;    // kg
-    dealii::Tensor<1, dim> momentum;    // kg m/s
-    dealii::Tensor<1, dim> mass_moment; // sum of m x, kg m
+    double                 mass = 0;                 // kg
+    dealii::Tensor<1, dim> momentum;                 // kg m/s
+    dealii::Tensor<1, dim> mass_moment;              // sum of m x, kg m
     double                 kinetic_energy       = 0; // J
     double                 strain_energy        = 0; // J
     double                 gravitational_energy = 0; // -sum of m g.x, J
@@ -80,16 +80,15 @@ namespace limber
 
   /**
    * Holds the present state against that at the start. The ledger knows what
-   * the grid, the sides, the loads, viscosity and lost points have done to
-   * energy and momentum; what it cannot account for is
+   * the sides, the loads, damping transfers, viscosity and lost points have
+   * done to energy and momentum; what it cannot account for is
    *
    *   drift = (E - E_0) / scale,
-   *   E = T_0 + dT_grid + U + V + viscous + history + lost - W_sides - W_loads
+   *   E = T + U + V + transfer + viscous + history + lost - W_sides - W_loads
    *
    * with T kinetic, U strain and V gravitational energy: the error of the
-   * integration in time and of points that cross cells. The loss of the
-   * transfers is T_0 + dT_grid - T - lost, known without being measured. The
-   * scale is the largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far.
+   * integration in time and of points that cross cells. The scale is the
+   * largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far.
    */
   template <int dim>
   class Balance

@@ -41,11 +41,12 @@ namespace limber
    */
   template <int patch_dim, int dim>
   void
-  write_vtu(const std::string                                             &path,
-            const std::vector<dealii::DataOutBase::Patch<patch_dim, dim>> &patches,
-            const PictureFields &fields,
-            const double         time,
-            MPI_Comm             communicator);
+  write_vtu(
+    const std::string                                             &path,
+    const std::vector<dealii::DataOutBase::Patch<patch_dim, dim>> &patches,
+    const PictureFields                                           &fields,
+    const double                                                   time,
+    MPI_Comm communicator);
 } // namespace limber
 
 #endif

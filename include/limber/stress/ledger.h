@@ -13,15 +13,12 @@ namespace limber
    * What has happened to energy and momentum since the start, summed step by
    * step on this rank; sum_over_ranks() completes it. Energies in J,
    * impulses in kg m/s.
-   *
-   * The kinetic energy of points changes by what the grid gained,
-   * grid_kinetic, less what the transfers between points and grid removed;
-   * that loss is therefore known without being measured.
    */
   template <int dim>
   struct Ledger
   {
-    double grid_kinetic  = 0; // change of kinetic energy on the grid
+    // Kinetic energy that FLIP would have kept and the transfer did not
+    double transfer      = 0;
     double boundary_work = 0; // done on the material by the sides of the box
     double load_work     = 0; // by body force formulas and face loads
     double viscous       = 0; // turned into heat by viscosity
@@ -32,9 +29,8 @@ namespace limber
     // From each side of the box on the material, in deal.II's order.
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
 
-    double                 lost_mass    = 0; // kg
-    double                 lost_kinetic = 0;
-    double                 lost_other   = 0; // strain and gravity energy
+    double                 lost_mass   = 0; // kg
+    double                 lost_energy = 0; // kinetic, strain, gravity
     dealii::Tensor<1, dim> lost_momentum;
     unsigned long          lost_points = 0;
 
@@ -44,12 +40,8 @@ namespace limber
       static_assert(sizeof(Ledger) % sizeof(double) == 0);
       constexpr int n = (sizeof(Ledger) - sizeof(lost_points)) / sizeof(double);
       Ledger        result;
-      MPI_Allreduce(&grid_kinetic,
-                    &result.grid_kinetic,
-                    n,
-                    MPI_DOUBLE,
-                    MPI_SUM,
-                    communicator);
+      MPI_Allreduce(
+        &transfer, &result.transfer, n, MPI_DOUBLE, MPI_SUM, communicator);
       result.lost_points =
         dealii::Utilities::MPI::sum(lost_points, communicator);
       return result;

@@ -47,6 +47,13 @@ namespace limber
                        Ledger<dim>                                     &ledger);
 
     /**
+     * To be called before each step: exchange points between ranks or sort
+     * them, where due. Returns whether ranks have exchanged points.
+     */
+    bool
+    reorganise();
+
+    /**
      * One step from @p time over @p step seconds; collective. Throws
      * ComputationError when the step cannot be done; where nodal velocities
      * show it, points still are what they were.
@@ -65,13 +72,6 @@ namespace limber
     /** Share of all points on the fullest rank times the number of ranks. */
     double
     imbalance() const;
-
-    /** Whether ranks have exchanged points at the end of the last step. */
-    bool
-    has_exchanged() const
-    {
-      return exchanged;
-    }
 
     /** Whether any rank has lost points in the last step. */
     bool
@@ -112,6 +112,8 @@ namespace limber
     check_nodes(double largest_speed, bool finite) const;
     void
     apply_boundaries();
+    void
+    account_loads();
     void
     divide_remapped(unsigned int momentum);
     void
@@ -161,8 +163,7 @@ namespace limber
     double                                              largest_mass  = 1e300;
     std::vector<std::pair<std::string, LostPoint<dim>>> lost;
 
-    double any_lost  = 0;
-    bool   exchanged = false;
+    double any_lost = 0;
 
     // Sum of largest displacements since ranks exchanged points, in cells
     double travelled = 0;

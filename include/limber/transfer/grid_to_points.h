@@ -24,6 +24,7 @@ namespace limber
   {
     double speed_squared = 0; // the largest, m^2/s^2
     double displacement  = 0; // the largest over the edge of its cell
+    double removed       = 0; // kinetic energy that FLIP would have kept, J
   };
 
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/interpolation/linear.h>
 #include <limber/interpolation/batch_lanes.h>
+#include <limber/interpolation/linear.h>
 
 #include <gtest/gtest.h>
-
 #include <support/small_grid.h>
 
 using namespace limber;

@@ -88,10 +88,9 @@ TYPED_TEST(PackOf, InverseCubeRootIsGoodToRoundOff)
   double worst = 0;
   for (int k = -60000; k <= 60000; ++k)
     {
-      const double    x = std::pow(10., k * 1e-4);
-      const TypeParam root =
-        inverse_cube_root(broadcast<TypeParam>(x) *
-                          TypeParam(broadcast<TypeParam>(1.)));
+      const double    x    = std::pow(10., k * 1e-4);
+      const TypeParam root = inverse_cube_root(
+        broadcast<TypeParam>(x) * TypeParam(broadcast<TypeParam>(1.)));
       for (int i = 0; i < pack_width<TypeParam>; ++i)
         worst = std::max(worst, std::abs(lane(root, i) * std::cbrt(x) - 1));
     }

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/timing.h>
+#include <limber/problem/read_problem.h>
+#include <limber/simulation/set_up.h>
+#include <limber/transfer/grid_to_points.h>
+#include <limber/transfer/points_to_grid.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <sstream>
+
+/**
+ * @file Time per point of each sweep over a block that fills its cells, 2^dim
+ * points in each: the best and the median of many repetitions. The argument,
+ * if any, is their number.
+ */
+using namespace limber;
+
+namespace
+{
+  unsigned int n_repetitions = 40;
+
+
+
+  /** A block at rest: the material, treatment and transfer are of choice. */
+  template <int dim>
+  SceneFile
+  block(const std::string &law,
+        const std::string &law_section,
+        const bool         projected,
+        const bool         apic)
+  {
+    const unsigned int n    = dim == 2 ? 100 : 30;
+    const auto         each = [](const double value) {
+      std::ostringstream text;
+      for (int d = 0; d < dim; ++d)
+        text << (d ? ", " : "") << value;
+      return text.str();
+    };
+    std::ostringstream text;
+    text << "set Dimension = " << dim << "\n"
+         << "set Bodies = block\n"
+         << "subsection Body block\n"
+         << "  set Shape = box\n"
+         << "  subsection Box\n"
+         << "    set Lower corner = " << each(1) << "\n"
+         << "    set Upper corner = " << each(1 + n) << "\n"
+         << "  end\n"
+         << "  set Points per cell edge = 2\n"
+         << "  set Material = " << law << "\n"
+         << law_section
+         << "  set Locking treatment = " << (projected ? "cell" : "none")
+         << "\n"
+         << "end\n"
+         << "subsection Grid\n"
+         << "  set Lower corner = " << each(0) << "\n"
+         << "  set Upper corner = " << each(2 + n) << "\n"
+         << "  set Cells = " << each(2 + n) << "\n"
+         << "end\n"
+         << "subsection Method\n"
+         << "  set Transfer = " << (apic ? "apic" : "flip") << "\n"
+         << "end\n";
+    return SceneFile(ParameterText{text.str(), FileFormat::prm, "block"});
+  }
+
+
+
+  /** A block with everything that the sweeps need, and a stopwatch. */
+  template <int dim>
+  class Bench
+  {
+  public:
+    explicit Bench(const SceneFile &scene)
+      : problem(read_problem<dim>(scene))
+      , grid(problem.grid, MPI_COMM_WORLD)
+      , bodies(set_up_bodies(problem, grid))
+      , nodes(grid)
+      , body(*bodies[0])
+    {
+      body.points.sort_by_cell();
+      body.points.collect_cells(cells);
+      auto occupied = cells;
+      nodes.set_occupied(std::move(occupied));
+      if (body.cell_sums)
+        sums = body.cell_sums->view();
+      // something to sum over before the sweeps that need it
+      GiveToGrid what;
+      what.inverse_density = 1 / body.stress->density();
+      clear();
+      points_to_grid<dim>(body.points.view(),
+                          nodes.view(),
+                          what,
+                          sums_or_none());
+    }
+
+    /** Zero records, which is not part of what is measured. */
+    void
+    clear()
+    {
+      nodes.clear();
+      if (body.cell_sums)
+        body.cell_sums->clear(cells);
+    }
+
+    /** Motion so slow that many repetitions leave the points where they are. */
+    void
+    set_motion()
+    {
+      for (const std::uint32_t node : nodes.active_nodes())
+        for (unsigned int k = 1; k < NodeLayout<dim>::stride; ++k)
+          nodes.record(node)[k] = 1e-9 * ((node * 7 + k * 13) % 101 - 50.);
+    }
+
+    const CellSums<dim> *
+    sums_or_none() const
+    {
+      return body.cell_sums ? &sums : nullptr;
+    }
+
+    template <class Prepare, class Sweep>
+    void
+    measure(const char *name, const Prepare &prepare, const Sweep &sweep)
+    {
+      std::vector<double> seconds;
+      for (unsigned int k = 0; k < n_repetitions + 3; ++k)
+        {
+          prepare();
+          const double start = wall_time();
+          sweep();
+          if (k >= 3) // caches are warm
+            seconds.push_back(wall_time() - start);
+        }
+      std::sort(seconds.begin(), seconds.end());
+      const double scale = 1e9 / body.points.size();
+      std::printf("  %-44s %8.2f %8.2f\n",
+                  name,
+                  scale * seconds[0],
+                  scale * seconds[seconds.size() / 2]);
+      std::fflush(stdout);
+    }
+
+    const Problem<dim>                              problem;
+    BackgroundGrid<dim>                             grid;
+    std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
+    NodalFields<dim>                                nodes;
+    MaterialBody<dim>                              &body;
+    std::vector<std::uint32_t>                      cells;
+    CellSums<dim>                                   sums;
+  };
+
+
+
+  template <int dim>
+  void
+  measure_transfers(const bool projected, const bool apic)
+  {
+    Bench<dim> bench(block<dim>("linear elastic", "", projected, apic));
+    const auto points = bench.body.points.view();
+    const auto nodes  = bench.nodes.view();
+
+    GiveToGrid give;
+    give.affine          = apic;
+    give.inverse_density = 1e-3;
+    bench.measure(
+      apic      ? "points to grid, apic" :
+      projected ? "points to grid, projected" :
+                  "points to grid",
+      [&]() { bench.clear(); },
+      [&]() {
+        points_to_grid<dim>(points, nodes, give, bench.sums_or_none());
+      });
+    if (projected)
+      bench.measure(
+        "add projected pressure",
+        [] {},
+        [&]() {
+          add_projected_pressure<dim>(bench.cells.data(),
+                                      bench.cells.size(),
+                                      nodes,
+                                      bench.sums);
+        });
+    else
+      {
+        TakeFromGrid take;
+        take.affine        = apic;
+        const auto prepare = [&]() { bench.set_motion(); };
+        const auto sweep = [&]() { grid_to_points<dim>(points, nodes, take); };
+        bench.measure(apic ? "grid to points, apic" : "grid to points",
+                      prepare,
+                      sweep);
+        take.remap = true;
+        bench.measure(apic ? "grid to points, apic, re-map" :
+                             "grid to points, re-map",
+                      prepare,
+                      sweep);
+        take.remap = false;
+        take.move  = 1e-9;
+        bench.measure(apic ? "grid to points, apic, move" :
+                             "grid to points, move",
+                      prepare,
+                      sweep);
+      }
+    if (!projected && !apic)
+      bench.measure(
+        "sort by cell", [] {}, [&]() { bench.body.points.sort_by_cell(); });
+  }
+
+
+
+  template <int dim>
+  void
+  measure_law(const std::string &name,
+              const std::string &law,
+              const std::string &section)
+  {
+    for (const bool projected : {false, true})
+      {
+        Bench<dim> bench(block<dim>(law, section, projected, false));
+        bench.set_motion();
+        StressSweep what;
+        what.step        = 1e-9;
+        what.remapped    = true;
+        what.move        = true;
+        const auto sweep = [&]() {
+          bench.body.stress->update(bench.body.points.view(),
+                                    bench.nodes.view(),
+                                    bench.sums_or_none(),
+                                    what);
+        };
+        const auto label = "stress, " + name + (projected ? ", cell" : "");
+        bench.measure(
+          label.c_str(), [] {}, sweep);
+        if (projected)
+          {
+            what.relaxation = 1;
+            bench.measure((label + ", replace").c_str(), [] {}, sweep);
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  measure_all()
+  {
+    std::printf(
+      "\n%dd: ns per point %28s %8s %8s\n", dim, "", "best", "median");
+    measure_transfers<dim>(false, false);
+    measure_transfers<dim>(true, false);
+    measure_transfers<dim>(false, true);
+
+    const auto fluid = [](const std::string &entries) {
+      return "subsection Newtonian fluid\nset Bulk modulus = 1e6\n" + entries +
+             "end\n";
+    };
+    measure_law<dim>("linear elastic", "linear elastic", "");
+    measure_law<dim>("neo-Hookean", "neo hookean", "");
+    measure_law<dim>("fluid", "newtonian fluid", fluid(""));
+    measure_law<dim>("viscous fluid",
+                     "newtonian fluid",
+                     fluid("set Viscosity = 1\n"));
+    measure_law<dim>("fluid, Tait",
+                     "newtonian fluid",
+                     fluid("set Equation of state = tait\n"));
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **argv)
+{
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  if (argc > 1)
+    n_repetitions = std::max(1, std::atoi(argv[1]));
+  measure_all<2>();
+  measure_all<3>();
+  return 0;
+}

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_tests_support_sample_laws_h
+#define limber_tests_support_sample_laws_h
+
+#include <limber/materials/law_list.h>
+
+#include <gtest/gtest.h>
+#include <support/small_grid.h>
+
+#include <vector>
+
+/**
+ * @file Laws with parameters for tests. Every law in the list needs samples
+ * here: without them the typed suites do not compile.
+ */
+namespace limber
+{
+  namespace testing_support
+  {
+    /** All parameters of the sample laws of one type, in the order of entries.
+     */
+    template <class Law>
+    std::vector<std::array<double, Law::parameters.size()>>
+    sample_parameters()
+    {
+      if constexpr (std::is_same_v<Law, LinearElastic> ||
+                    std::is_same_v<Law, NeoHookean>)
+        return {{{1000, 1e6, 0.3}}, {{1200, 2e5, 0.49}}, {{900, 3e6, 0.}}};
+      else
+        {
+          static_assert(std::is_same_v<Law, NewtonianFluid<false>> ||
+                          std::is_same_v<Law, NewtonianFluid<true>>,
+                        "a law needs samples");
+          const double mu = Law::has_deviator ? 3. : 0.;
+          return {{{1000, 2e5, mu, 0, 0, 7}},
+                  {{1000, 2e5, mu, 0, 1, 7}},
+                  {{800, 1e6, mu, 0, 1, 1.4}}};
+        }
+    }
+
+
+
+    template <class Law>
+    std::vector<Law>
+    samples()
+    {
+      const auto parameters = sample_parameters<Law>();
+      return {parameters.begin(), parameters.end()};
+    }
+
+
+
+    template <class LawType, int dimension>
+    struct LawCase
+    {
+      using Law                = LawType;
+      static constexpr int dim = dimension;
+      using State =
+        PointState<dimension, double, LawType::template n_history<dimension>>;
+    };
+
+
+
+    template <class Laws>
+    struct LawCases;
+
+    template <class... Laws>
+    struct LawCases<std::tuple<Laws...>>
+    {
+      using types = testing::Types<LawCase<Laws, 2>..., LawCase<Laws, 3>...>;
+    };
+
+    /** All laws in the list in two and three dimensions. */
+    using AllLawCases = LawCases<LawList>::types;
+
+
+
+    /** @p step long by default: then viscous stress is nothing. */
+    template <int dim>
+    MotionIncrement<dim, double>
+    motion_of(const Matrix<dim> &gradient, const double step = 1e30)
+    {
+      MotionIncrement<dim, double> motion;
+      motion.gradient   = gradient;
+      motion.volumetric = motion.trace();
+      motion.step       = step;
+      return motion;
+    }
+
+
+
+    /** A state that random motions of a given size have led to. */
+    template <class Case>
+    typename Case::State
+    random_state(const typename Case::Law &law,
+                 Random                   &random,
+                 const double              size = 0.1)
+    {
+      constexpr int dim = Case::dim;
+      auto          state =
+        law.template initialise<dim>(0.02 * law.bulk_modulus * random(-1, 1));
+      for (int k = 0; k < 5; ++k)
+        law.template update<dim>(
+          motion_of<dim>(random.template matrix<dim>(size)), state);
+      return state;
+    }
+
+
+
+    /** J times the stress as a full matrix. */
+    template <int dim, class State>
+    Matrix<3>
+    kirchhoff_stress_of(const State &state)
+    {
+      const auto &s = state.deviator;
+      Matrix<3>   t{};
+      t[0][0] = s[0];
+      t[1][1] = s[1];
+      t[2][2] = -s[0] - s[1];
+      t[0][1] = t[1][0] = s[2];
+      if constexpr (dim == 3)
+        {
+          t[1][2] = t[2][1] = s[3];
+          t[2][0] = t[0][2] = s[4];
+        }
+      for (int d = 0; d < 3; ++d)
+        t[d][d] -= state.pressure;
+      return t;
+    }
+  } // namespace testing_support
+} // namespace limber
+
+#endif

@@ -1,0 +1,448 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <support/sample_laws.h>
+
+#include <cmath>
+
+/**
+ * @file What every law in the list has to satisfy, whatever it is.
+ */
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  template <class Case>
+  class EveryLaw : public testing::Test
+  {
+  public:
+    static constexpr int dim = Case::dim;
+    using Law                = typename Case::Law;
+    using State              = typename Case::State;
+
+    static constexpr bool linear    = std::is_same_v<Law, LinearElastic>;
+    static constexpr bool fluid     = Law::dissipates;
+    static constexpr bool pointwise = Law::volumetric < 0;
+
+    static double
+    stiffness(const Law &law)
+    {
+      return law.density * law.template wave_speed_squared<dim>(
+                             law.template initialise<dim>(0));
+    }
+
+    static State
+    moved(const Law &law, State state, const Matrix<dim> &gradient)
+    {
+      law.template update<dim>(motion_of<dim>(gradient), state);
+      return state;
+    }
+
+    static Matrix<dim>
+    times(const double factor, Matrix<dim> a)
+    {
+      for (auto &row : a)
+        for (double &x : row)
+          x *= factor;
+      return a;
+    }
+
+    /** J sigma : grad v. */
+    static double
+    power(const State &state, const Matrix<dim> &gradient)
+    {
+      const auto t      = kirchhoff_stress_of<dim>(state);
+      double     result = 0;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          result += t[i][j] * gradient[i][j];
+      return result;
+    }
+
+    /** The variable of the state that holds the volumetric history. */
+    static double &
+    volumetric(State &state)
+    {
+      if constexpr (pointwise)
+        return state.pressure;
+      else
+        return state.history[Law::volumetric];
+    }
+
+    Random random;
+  };
+
+  TYPED_TEST_SUITE(EveryLaw, AllLawCases);
+} // namespace
+
+
+
+TYPED_TEST(EveryLaw, SamplesAreServedByThisVariant)
+{
+  for (const auto &values : sample_parameters<typename TestFixture::Law>())
+    EXPECT_TRUE(TestFixture::Law::accepts(values));
+}
+
+
+
+// dW = J sigma : grad v dt; of a viscous fluid only pressure stores energy.
+TYPED_TEST(EveryLaw, StressIsTheDerivativeOfStrainEnergy)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    for (int k = 0; k < 20; ++k)
+      {
+        const auto state = random_state<TypeParam>(law, this->random);
+        const auto a     = this->random.template matrix<dim>();
+
+        const double h      = 1e-5;
+        const auto   energy = [&](const double t) {
+          return law.template strain_energy<dim>(
+            this->moved(law, state, this->times(t, a)));
+        };
+        // The first step of a central difference of second order in h
+        EXPECT_NEAR((energy(h) - energy(-h)) / (2 * h),
+                    this->power(state, a),
+                    1e-7 * this->stiffness(law));
+      }
+}
+
+
+
+TYPED_TEST(EveryLaw, EnergyIsZeroAtRestAndPositiveElsewhere)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    {
+      EXPECT_NEAR(law.template strain_energy<dim>(
+                    law.template initialise<dim>(0)),
+                  0.,
+                  1e-15 * this->stiffness(law));
+      for (int k = 0; k < 20; ++k)
+        EXPECT_GT(law.template strain_energy<dim>(
+                    random_state<TypeParam>(law, this->random)),
+                  0.);
+    }
+}
+
+
+
+// Stress turns with the material. Incremental updates reach that with an error
+// of second order in the step at least. Linear elasticity is for small strain
+// and rotation and exempt: there, stress keeps its direction in space.
+TYPED_TEST(EveryLaw, RigidRotationTurnsTheStress)
+{
+  constexpr int dim   = TestFixture::dim;
+  const double  angle = 0.8;
+  Matrix<dim>   spin{}; // by one radian about z, or about a skew axis in 3d
+  Matrix<3>     q{{{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
+  {
+    Vector<3> axis{{0, 0, 1}};
+    if (dim == 3)
+      axis = {{2. / 7, 3. / 7, 6. / 7}};
+    const Matrix<3> w{{{{0, -axis[2], axis[1]}},
+                       {{axis[2], 0, -axis[0]}},
+                       {{-axis[1], axis[0], 0}}}};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        {
+          q[i][j] += std::sin(angle) * w[i][j];
+          for (int k = 0; k < 3; ++k)
+            q[i][j] += (1 - std::cos(angle)) * w[i][k] * w[k][j];
+          if (i < dim && j < dim)
+            spin[i][j] = w[i][j];
+        }
+  }
+
+  for (const auto &law : samples<typename TestFixture::Law>())
+    {
+      const auto state  = random_state<TypeParam>(law, this->random);
+      const auto before = kirchhoff_stress_of<dim>(state);
+      Matrix<3>  turned{};
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+          for (int k = 0; k < 3; ++k)
+            for (int l = 0; l < 3; ++l)
+              turned[i][j] += q[i][k] * before[k][l] * q[j][l];
+
+      const auto error = [&](const int n_steps) {
+        auto now = state;
+        for (int s = 0; s < n_steps; ++s)
+          now = this->moved(law, now, this->times(angle / n_steps, spin));
+        const auto  after  = kirchhoff_stress_of<dim>(now);
+        const auto &wanted = this->linear ? before : turned;
+        double      result = 0;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j)
+            result = std::max(result, std::abs(after[i][j] - wanted[i][j]));
+        return result / this->stiffness(law);
+      };
+
+      if (this->linear || this->fluid)
+        {
+          EXPECT_LT(error(20), 1e-14);
+        }
+      else
+        {
+          const double coarse = error(20), fine = error(40);
+          EXPECT_LT(coarse, 1e-3);
+          EXPECT_GT(coarse / fine, 3.8); // J is of third order
+        }
+    }
+}
+
+
+
+TYPED_TEST(EveryLaw, WaveSpeedAtRestIsThatOfTheModuli)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    {
+      const auto   rest    = law.template initialise<dim>(0);
+      const double squared = law.template wave_speed_squared<dim>(rest);
+      double       modulus = law.bulk_modulus;
+      if constexpr (!TestFixture::fluid)
+        modulus += 4. / 3. * law.shear_modulus;
+      EXPECT_DOUBLE_EQ(squared, modulus / law.density);
+
+      const double h = 1e-5;
+      Matrix<dim>  stretch{};
+      stretch[0][0]      = 1;
+      const auto tension = [&](const double t) {
+        return kirchhoff_stress_of<dim>(
+          this->moved(law, rest, this->times(t, stretch)))[0][0];
+      };
+      EXPECT_NEAR((tension(h) - tension(-h)) / (2 * h * law.density),
+                  squared,
+                  1e-8 * squared);
+    }
+}
+
+
+
+// rho_0 c^2 = m . A m with the acoustic tensor A of any direction n; in states
+// under stress the law may answer with a bound.
+TYPED_TEST(EveryLaw, WaveSpeedBoundsTheAcousticTensor)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    for (int k = 0; k < 200; ++k)
+      {
+        const auto   state   = random_state<TypeParam>(law, this->random, 0.15);
+        const double squared = law.template wave_speed_squared<dim>(state);
+        EXPECT_GT(squared, 0.);
+
+        auto n = this->random.template vector<dim>(),
+             m = k % 2 ? n : this->random.template vector<dim>();
+        for (auto *a : {&n, &m})
+          {
+            double norm = 0;
+            for (const double x : *a)
+              norm += x * x;
+            for (double &x : *a)
+              x /= std::sqrt(norm);
+          }
+        Matrix<dim> a;
+        for (int i = 0; i < dim; ++i)
+          for (int j = 0; j < dim; ++j)
+            a[i][j] = m[i] * n[j];
+        double along = 0;
+        for (int i = 0; i < dim; ++i)
+          along += m[i] * n[i];
+
+        // m . (tau f^-T) n with f = 1 + t m n; small strain does not tell tau
+        // from the nominal stress
+        const double h       = 1e-5;
+        const auto   nominal = [&](const double t) {
+          const double turn = this->linear ? 0 : t * along / (1 + t * along);
+          const auto   stress = kirchhoff_stress_of<dim>(
+            this->moved(law, state, this->times(t, a)));
+          double result = 0;
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              result += m[i] * stress[i][j] * (1 - turn) * n[j];
+          return result;
+        };
+        EXPECT_LT((nominal(h) - nominal(-h)) / (2 * h),
+                  (1 + 1e-6) * law.density * squared);
+      }
+}
+
+
+
+TYPED_TEST(EveryLaw, InitialStateIsAtRestUnderThePressure)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    for (const double ratio : {-0.05, 0., 1e-6, 0.03, 0.4})
+      {
+        const double pressure = ratio * law.bulk_modulus;
+        auto         state    = law.template initialise<dim>(pressure);
+        const double J        = law.template volume_ratio<dim>(state);
+        // Small strain does not tell J p from p.
+        EXPECT_NEAR(state.pressure,
+                    (this->linear ? 1 : J) * pressure,
+                    1e-15 * law.bulk_modulus);
+        for (const double s : state.deviator)
+          EXPECT_EQ(s, 0.);
+
+        // nothing moves: nothing changes
+        const auto before = state;
+        law.template update<dim>(motion_of<dim>({}), state);
+        EXPECT_NEAR(state.pressure, before.pressure, 1e-15 * law.bulk_modulus);
+        for (std::size_t k = 0; k < state.history.size(); ++k)
+          EXPECT_NEAR(state.history[k], before.history[k], 1e-15);
+        for (const double s : state.deviator)
+          EXPECT_NEAR(s, 0., 1e-15 * this->stiffness(law));
+      }
+}
+
+
+
+// The derivative is -p in J; of the energy in p, where p is the history, it
+// is p / K.
+TYPED_TEST(EveryLaw, VolumetricEnergyBelongsToThePressure)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    for (const double ratio : {-0.05, 1e-3, 0.1, 0.4})
+      {
+        auto state     = law.template initialise<dim>(ratio * law.bulk_modulus);
+        const double J = law.template volume_ratio<dim>(state);
+        double      &x = this->volumetric(state);
+        const double h = 1e-5 * (this->pointwise ? law.bulk_modulus : 1);
+        const double slope =
+          (law.volumetric_energy(x + h) - law.volumetric_energy(x - h)) /
+          (2 * h);
+        const double expected = this->pointwise ?
+                                  state.pressure / law.bulk_modulus :
+                                  -state.pressure / J;
+        EXPECT_NEAR(slope,
+                    expected,
+                    1e-7 * (this->pointwise ? 1 : law.bulk_modulus));
+        EXPECT_NEAR(law.volumetric_energy(x),
+                    law.template strain_energy<dim>(state),
+                    1e-14 * law.bulk_modulus);
+      }
+}
+
+
+
+// Averages over cells replace the volumetric part of the motion only.
+TYPED_TEST(EveryLaw, VolumetricMotionActsOnThePressureAlone)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    {
+      const auto before = random_state<TypeParam>(law, this->random);
+      auto motion = motion_of<dim>(this->random.template matrix<dim>(0.05));
+      auto own = before, averaged = before;
+      law.template update<dim>(motion, own);
+      motion.volumetric += 0.01;
+      law.template update<dim>(motion, averaged);
+      EXPECT_LT(averaged.pressure, own.pressure);
+      for (std::size_t k = 0; k < own.deviator.size(); ++k)
+        EXPECT_NEAR(own.deviator[k],
+                    averaged.deviator[k],
+                    1e-20 * this->stiffness(law));
+      for (int k = 0; k < int(own.history.size()); ++k)
+        if (k != TestFixture::Law::volumetric)
+          {
+            EXPECT_EQ(own.history[k], averaged.history[k]);
+          }
+    }
+}
+
+
+
+TYPED_TEST(EveryLaw, ConstantWaveSpeedIsConstant)
+{
+  constexpr int dim = TestFixture::dim;
+  for (const auto &law : samples<typename TestFixture::Law>())
+    if (law.has_constant_wave_speed())
+      for (int k = 0; k < 10; ++k)
+        {
+          EXPECT_EQ(law.template wave_speed_squared<dim>(
+                      random_state<TypeParam>(law, this->random)),
+                    law.template wave_speed_squared<dim>(
+                      typename TestFixture::State()));
+        }
+}
+
+
+
+namespace
+{
+  // Many states in the lanes of packs, and each on its own
+  template <class Case, int width>
+  void
+  compare_with_packs(const typename Case::Law &law, Random &random)
+  {
+    constexpr int dim = Case::dim;
+    using Number      = Pack<width>;
+    constexpr int n   = Case::Law::template n_history<dim>;
+
+    PointState<dim, Number, n>                      packed;
+    MotionIncrement<dim, Number>                    packed_motion;
+    std::array<typename Case::State, width>         states;
+    std::array<MotionIncrement<dim, double>, width> motions;
+    packed_motion.step = 0.5;
+    for (int i = 0; i < width; ++i)
+      {
+        states[i]  = random_state<Case>(law, random);
+        motions[i] = motion_of<dim>(random.template matrix<dim>(0.1), 0.5);
+        motions[i].volumetric += random(-0.01, 0.01);
+        packed.pressure[i]          = states[i].pressure;
+        packed_motion.volumetric[i] = motions[i].volumetric;
+        for (std::size_t k = 0; k < packed.deviator.size(); ++k)
+          packed.deviator[k][i] = states[i].deviator[k];
+        for (int k = 0; k < n; ++k)
+          packed.history[k][i] = states[i].history[k];
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            packed_motion.gradient[d][e][i] = motions[i].gradient[d][e];
+      }
+
+    const Number before  = law.template strain_energy<dim>(packed);
+    const auto   heat    = law.template update<dim>(packed_motion, packed);
+    const Number after   = law.template strain_energy<dim>(packed);
+    const Number squared = law.template wave_speed_squared<dim>(packed);
+    const Number J       = law.template volume_ratio<dim>(packed);
+    const double scale   = law.density * maximum(squared);
+    for (int i = 0; i < width; ++i)
+      {
+        auto &state = states[i];
+        EXPECT_NEAR(before[i],
+                    law.template strain_energy<dim>(state),
+                    1e-14 * scale);
+        const auto own_heat = law.template update<dim>(motions[i], state);
+        EXPECT_NEAR(after[i],
+                    law.template strain_energy<dim>(state),
+                    1e-14 * scale);
+        EXPECT_NEAR(squared[i],
+                    law.template wave_speed_squared<dim>(state),
+                    1e-14 * squared[i]);
+        EXPECT_NEAR(J[i], law.template volume_ratio<dim>(state), 1e-14);
+        EXPECT_NEAR(heat.viscous[i], own_heat.viscous, 1e-14 * scale);
+        EXPECT_NEAR(heat.cutoff[i], own_heat.cutoff, 1e-14 * scale);
+        EXPECT_NEAR(packed.pressure[i], state.pressure, 1e-14 * scale);
+        for (std::size_t k = 0; k < packed.deviator.size(); ++k)
+          EXPECT_NEAR(packed.deviator[k][i], state.deviator[k], 1e-14 * scale);
+        for (int k = 0; k < n; ++k)
+          EXPECT_NEAR(packed.history[k][i], state.history[k], 1e-14);
+      }
+  }
+} // namespace
+
+
+
+TYPED_TEST(EveryLaw, PacksGiveWhatNumbersGive)
+{
+  for (const auto &law : samples<typename TestFixture::Law>())
+    for (int k = 0; k < 10; ++k)
+      {
+        compare_with_packs<TypeParam, 2>(law, this->random);
+        compare_with_packs<TypeParam, 4>(law, this->random);
+        compare_with_packs<TypeParam, 8>(law, this->random);
+      }
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/observables.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sample_run.h"
+
+namespace limber::test
+{
+  namespace
+  {
+    Observable<2>
+    observe(const ObservableKind kind, const unsigned int axis = 0)
+    {
+      Observable<2> observable;
+      observable.name     = "probe";
+      observable.kind     = kind;
+      observable.body     = "block";
+      observable.axis     = axis;
+      observable.location = dealii::Point<2>(0.44, 0.95);
+      return observable;
+    }
+  } // namespace
+
+
+
+  TEST(Frequency, OfASineIsFoundFromItsZeros)
+  {
+    ZeroCrossings crossings;
+    const double  frequency = 3.7, step = 1e-3;
+    for (unsigned int i = 0; i < 2000; ++i)
+      {
+        const double time = i * step;
+        crossings.add(time,
+                      std::sin(2 * dealii::numbers::PI * frequency * time));
+        EXPECT_EQ(std::isnan(crossings.frequency()), time < 1 / frequency);
+      }
+    EXPECT_NEAR(crossings.frequency(), frequency, 1e-6);
+  }
+
+
+
+  TEST(Frequency, DoesNotCountRestAtZeroNorWhatIsNotANumber)
+  {
+    ZeroCrossings crossings;
+    crossings.add(0, 0);
+    crossings.add(1, 2);
+    crossings.add(2, std::numeric_limits<double>::quiet_NaN());
+    crossings.add(3, -2);
+    crossings.add(4, 0);
+    crossings.add(5, 0);
+    crossings.add(6, 1);
+    EXPECT_EQ(crossings.count, 2u);
+    EXPECT_DOUBLE_EQ(crossings.first, 2);
+    EXPECT_DOUBLE_EQ(crossings.last, 5);
+  }
+
+
+
+  TEST(Observables, FollowTheNearestPointWhereverItIsSorted)
+  {
+    SampleRun<2> run(false);
+    run.problem.observables = {observe(ObservableKind::displacement, 0),
+                               observe(ObservableKind::position, 1),
+                               observe(ObservableKind::velocity, 0),
+                               observe(ObservableKind::pressure),
+                               observe(ObservableKind::stress, 0)};
+    run.problem.observables[2].positive = false;
+    Observables<2> observables(run.state);
+    EXPECT_EQ(observables.state().tracked.size(), 1u);
+
+    PointView<2> points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.velocity[0][p] = points.position[0][p];
+        points.position[0][p] += 0.05;
+        points.pressure[p]    = 1e5;
+        points.deviator[0][p] = 2e5;
+      }
+    for (unsigned int round = 0; round < 3; ++round)
+      {
+        const auto   values = observables.evaluate(run.state, run.totals);
+        const double J      = 1 - 1e5 / run.bulk_modulus;
+        EXPECT_NEAR(values[0], 0.05, 1e-14);
+        EXPECT_NEAR(values[1], 0.9375, 1e-14);
+        EXPECT_NEAR(values[2], -0.4375, 1e-14);
+        EXPECT_NEAR(values[3], 1e5 / J, 1e-8);
+        EXPECT_NEAR(values[4], 1e5 / J, 1e-8);
+        if (round == 0)
+          run.points().synchronise();
+        else
+          run.points().sort_by_cell();
+      }
+  }
+
+
+
+  TEST(Observables, ContinueFromACheckpoint)
+  {
+    SampleRun<2> run(false);
+    run.problem.observables = {observe(ObservableKind::displacement, 1)};
+    const Observables<2> before(run.state);
+    PointView<2>         points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.position[1][p] -= 0.01;
+    Observables<2> after(run.problem, before.state());
+    EXPECT_NEAR(after.evaluate(run.state, run.totals)[0], -0.01, 1e-14);
+  }
+
+
+
+  TEST(Observables, OfALostPointAreNotNumbers)
+  {
+    SampleRun<2> run(false);
+    run.problem.observables = {observe(ObservableKind::displacement),
+                               observe(ObservableKind::pressure)};
+    Observables<2> observables(run.state);
+    PointView<2>   points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.cell[p] = invalid_cell;
+    run.points().remove_lost();
+    for (unsigned int row = 0; row < 2; ++row)
+      for (const double value : observables.evaluate(run.state, run.totals))
+        EXPECT_TRUE(std::isnan(value));
+    EXPECT_TRUE(observables.state().tracked[0].lost);
+  }
+
+
+
+  TEST(Observables, ExtremesReachHalfASpacingBeyondThePoints)
+  {
+    SampleRun<2> run(false);
+    auto         lowest = observe(ObservableKind::extreme_coordinate, 0);
+    lowest.positive     = false;
+    auto within         = observe(ObservableKind::extreme_coordinate, 0);
+    within.within =
+      std::make_pair(dealii::Point<2>(0, 0), dealii::Point<2>(0.2, 1));
+    auto nothing = within;
+    nothing.within =
+      std::make_pair(dealii::Point<2>(0.8, 0), dealii::Point<2>(1, 1));
+    run.problem.observables = {observe(ObservableKind::extreme_coordinate, 0),
+                               lowest,
+                               within,
+                               nothing};
+    const auto values =
+      Observables<2>(run.state).evaluate(run.state, run.totals);
+    EXPECT_NEAR(values[0], 0.5, 1e-14);
+    EXPECT_NEAR(values[1], 0, 1e-14);
+    EXPECT_NEAR(values[2], 0.25, 1e-14);
+    EXPECT_TRUE(std::isnan(values[3]));
+  }
+
+
+
+  TEST(Observables, ReactionForceIsTheMeanSinceTheRowBefore)
+  {
+    SampleRun<2> run(false);
+    auto         force      = observe(ObservableKind::reaction_force, 1);
+    force.side              = 2;
+    run.problem.observables = {force};
+    Observables<2> observables(run.state);
+
+    Totals<2> totals          = run.totals;
+    totals.side_impulse[2][1] = 7;
+    EXPECT_EQ(observables.evaluate(run.state, totals)[0], 0);
+    run.state.time            = 0.5;
+    totals.side_impulse[2][1] = 10;
+    EXPECT_NEAR(observables.evaluate(run.state, totals)[0], -6, 1e-14);
+  }
+
+
+
+  TEST(Observables, FrequencyIsThatOfTheNamedObservable)
+  {
+    SampleRun<2>  run(false);
+    Observable<2> frequency = observe(ObservableKind::frequency);
+    frequency.name          = "tone";
+    frequency.observable    = "probe";
+    run.problem.observables = {frequency, observe(ObservableKind::velocity, 1)};
+    Observables<2> observables(run.state);
+    PointView<2>   points = run.points().view();
+    double         found  = 0;
+    for (unsigned int i = 0; i <= 200; ++i)
+      {
+        run.state.time = 0.01 * i;
+        for (std::size_t p = 0; p < points.size; ++p)
+          points.velocity[1][p] = std::cos(10 * run.state.time);
+        found = observables.evaluate(run.state, run.totals)[0];
+      }
+    EXPECT_NEAR(found, 10 / (2 * dealii::numbers::PI), 1e-4);
+  }
+} // namespace limber::test

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/totals.h>
+
+#include <gtest/gtest.h>
+
+#include "sample_run.h"
+
+namespace limber::test
+{
+  TEST(Totals, SumsOverTheBodyAreThoseOfItsPoints)
+  {
+    SampleRun<2> run(false);
+    run.problem.loads.gravity[1] = -10;
+    PointView<2> points          = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.velocity[0][p] = 2;
+        points.pressure[p]    = 1000;
+      }
+    const Totals<2> totals = Balance<2>(run.state).evaluate(run.state);
+
+    EXPECT_EQ(totals.points, 32u);
+    EXPECT_EQ(totals.cells, 16u);
+    EXPECT_NEAR(totals.all.mass, 500, 1e-10);
+    EXPECT_NEAR(totals.all.momentum[0], 1000, 1e-10);
+    EXPECT_NEAR(totals.all.kinetic_energy, 1000, 1e-10);
+    EXPECT_NEAR(totals.centre_of_mass[0], 0.25, 1e-14);
+    EXPECT_NEAR(totals.centre_of_mass[1], 0.5, 1e-14);
+    EXPECT_NEAR(totals.all.gravitational_energy, 2500, 1e-10);
+    EXPECT_NEAR(totals.all.strain_energy,
+                0.5 * 1e6 / (2 * run.bulk_modulus),
+                1e-10);
+    EXPECT_NEAR(totals.largest_speed, 2, 1e-14);
+    EXPECT_NEAR(totals.smallest_volume, 1 - 1000 / run.bulk_modulus, 1e-14);
+    EXPECT_EQ(totals.energy_drift, 0);
+    EXPECT_EQ(totals.momentum_error, 0);
+  }
+
+
+
+  TEST(Totals, NothingMovesAndNothingIsDividedByZero)
+  {
+    SampleRun<3>    run(false);
+    const Totals<3> totals = Balance<3>(run.state).evaluate(run.state);
+    EXPECT_EQ(totals.energy_drift, 0);
+    EXPECT_EQ(totals.momentum_error, 0);
+    EXPECT_EQ(totals.active_nodes, 0u);
+  }
+
+
+
+  /** Free fall: what gravity does is accounted for, a loss is noticed. */
+  TEST(Totals, BalanceClosesInFreeFallAndTellsALossFromADrift)
+  {
+    SampleRun<2> run(false);
+    run.problem.loads.gravity[1] = -10;
+    Balance<2> balance(run.state);
+
+    const double time = 0.02, fall = 0.5 * 10 * time * time;
+    PointView<2> points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.velocity[1][p] = -10 * time;
+        points.position[1][p] -= fall;
+      }
+    const double own_mass               = run.points().size() * run.point_mass;
+    run.state.ledger.gravity_impulse[1] = -own_mass * 10 * time;
+    Totals<2> totals                    = balance.evaluate(run.state);
+    EXPECT_NEAR(totals.energy_drift, 0, 1e-12);
+    EXPECT_NEAR(totals.momentum_error, 0, 1e-14);
+    EXPECT_NEAR(totals.removed_by_transfer, 0, 1e-10);
+
+    // Points that lose what the ledger does not name: that is drift.
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.velocity[1][p] *= 0.5;
+    const double loss = 0.75 * 500 * 10 * fall;
+    EXPECT_LT(balance.evaluate(run.state).energy_drift, -0.1);
+
+    // The same loss, named: by the transfer.
+    run.state.ledger.transfer = own_mass * loss / 500;
+    totals                    = balance.evaluate(run.state);
+    EXPECT_NEAR(totals.energy_drift, 0, 1e-12);
+    EXPECT_NEAR(totals.removed_by_transfer, loss, 1e-10);
+    EXPECT_NEAR(totals.momentum_error, 0.5, 1e-12);
+    EXPECT_NEAR(balance.state().momentum_scale, 500 * 10 * time, 1e-10);
+  }
+} // namespace limber::test

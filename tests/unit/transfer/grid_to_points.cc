@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/points/locate.h>
+#include <limber/transfer/grid_to_points.h>
+
+#include <gtest/gtest.h>
+#include <support/small_grid.h>
+
+#include <cmath>
+#include <limits>
+
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  template <class Dimension>
+  class GridToPoints : public testing::Test
+  {
+  public:
+    static constexpr int dim = Dimension::value;
+    using Layout             = NodeLayout<dim>;
+
+    /** Values at the nodes of a linear field a + A x, from a slot on. */
+    void
+    set_field(const unsigned int slot,
+              const Vector<dim> &a,
+              const Matrix<dim> &A)
+    {
+      for (std::size_t n = 0; n < grid.n_nodes; ++n)
+        for (int d = 0; d < dim; ++d)
+          grid.nodes[n * Layout::stride + slot + d] =
+            value(a, A, grid.place(n))[d];
+    }
+
+    static Vector<dim>
+    value(const Vector<dim> &a, const Matrix<dim> &A, const Vector<dim> &x)
+    {
+      Vector<dim> result = a;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          result[d] += A[d][e] * x[e];
+      return result;
+    }
+
+    Random         random;
+    SmallGrid<dim> grid;
+  };
+
+  using Dimensions = testing::Types<std::integral_constant<int, 2>,
+                                    std::integral_constant<int, 3>>;
+  TYPED_TEST_SUITE(GridToPoints, Dimensions);
+} // namespace
+
+
+
+TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  const auto a      = this->random.template vector<dim>(),
+             b      = this->random.template vector<dim>();
+  const auto A      = this->random.template matrix<dim>(),
+             B      = this->random.template matrix<dim>();
+  this->set_field(Layout::increment, a, A);
+  this->set_field(Layout::velocity, b, B);
+
+  for (int variant = 0; variant < 8; ++variant)
+    {
+      TakeFromGrid what;
+      what.flip_share = std::array{1., 0.9, 0., 1.}[variant % 4];
+      what.affine     = variant % 4 == 3;
+      auto points =
+        random_points<dim>(this->grid, this->random, true, 0, -1, variant >= 4);
+      const auto before = points;
+      const auto summary =
+        grid_to_points<dim>(points.view(), this->grid.view(), what);
+
+      double largest = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto increment = this->value(a, A, points.position(p)),
+                     velocity  = this->value(b, B, points.position(p));
+          double squared       = 0;
+          for (int d = 0; d < dim; ++d)
+            {
+              const double flip  = before.fields[dim + d][p] + increment[d];
+              const double alpha = what.affine ? 0 : what.flip_share;
+              EXPECT_NEAR(points.fields[dim + d][p],
+                          alpha * flip + (1 - alpha) * velocity[d],
+                          1e-14);
+              squared += std::pow(points.fields[dim + d][p], 2);
+              for (int e = 0; e < dim; ++e)
+                {
+                  const double kept = points.view().affine[d * dim + e][p];
+                  EXPECT_NEAR(kept,
+                              what.affine ?
+                                B[d][e] :
+                                before.fields[2 * dim + 2 + n_deviator<dim> +
+                                              d * dim + e][p],
+                              1e-13);
+                }
+            }
+          largest = std::max(largest, squared);
+        }
+      EXPECT_NEAR(summary.speed_squared, largest, 1e-13);
+      EXPECT_EQ(summary.displacement, 0.);
+
+      // everything else, and what lies behind the points, is as it was
+      EXPECT_EQ(points.cell, before.cell);
+      for (std::size_t k = 0; k < points.fields.size(); ++k)
+        {
+          const bool velocity = k >= dim && k < 2 * dim;
+          const bool affine   = k >= 2 * dim + 2 + n_deviator<dim>;
+          if (!velocity && !(affine && what.affine))
+            {
+              EXPECT_EQ(points.fields[k], before.fields[k]);
+            }
+          for (std::size_t p = points.size; p < points.fields[k].size(); ++p)
+            EXPECT_EQ(points.fields[k][p], before.fields[k][p]);
+        }
+    }
+}
+
+
+
+// The new momentum goes back with the weights of the old places.
+TYPED_TEST(GridToPoints, RemapIsTheDirectSum)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  for (int variant = 0; variant < 4; ++variant)
+    {
+      for (double &value : this->grid.nodes)
+        value = this->random();
+      for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+        for (int d = 0; d < dim; ++d)
+          this->grid.nodes[n * Layout::stride + Layout::remapped + d] = 0;
+
+      auto own =
+        random_points<dim>(this->grid, this->random, false, 0, -1, variant & 2);
+      TakeFromGrid what;
+      what.affine       = variant & 1;
+      what.remap        = true;
+      auto       wanted = this->grid.nodes;
+      const auto points = own.view();
+      grid_to_points<dim>(points, this->grid.view(), what);
+
+      for (std::size_t p = 0; p < points.size; ++p)
+        for (int i = 0; i < 1 << dim; ++i)
+          {
+            const auto cell = points.cell[p];
+            const auto x    = own.position(p);
+            const auto node = this->grid.node_number(cell, i);
+            const auto x_i  = this->grid.place(node);
+            for (int d = 0; d < dim; ++d)
+              {
+                double v = points.velocity[d][p];
+                if (what.affine)
+                  for (int e = 0; e < dim; ++e)
+                    v += points.affine[d * dim + e][p] * (x_i[e] - x[e]);
+                wanted[node * Layout::stride + Layout::remapped + d] +=
+                  points.mass[p] * this->grid.shape(cell, i, x) * v;
+              }
+          }
+      for (std::size_t k = 0; k < wanted.size(); ++k)
+        ASSERT_NEAR(this->grid.nodes[k], wanted[k], 1e-11);
+    }
+}
+
+
+
+TYPED_TEST(GridToPoints, PointsMoveWithTheGrid)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  const auto b      = this->random.template vector<dim>();
+  const auto B      = this->random.template matrix<dim>();
+  this->set_field(Layout::velocity, b, B);
+  for (const bool affine : {false, true})
+    {
+      TakeFromGrid what;
+      what.affine       = affine;
+      what.move         = 0.05;
+      auto       points = random_points<dim>(this->grid, this->random);
+      const auto before = points;
+      const auto summary =
+        grid_to_points<dim>(points.view(), this->grid.view(), what);
+      double largest = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto v = this->value(b, B, before.position(p));
+          for (int d = 0; d < dim; ++d)
+            {
+              EXPECT_NEAR(points.fields[d][p],
+                          before.fields[d][p] + what.move * v[d],
+                          1e-14);
+              largest =
+                std::max(largest,
+                         std::abs(what.move * v[d]) / this->grid.edge[d]);
+            }
+          const auto cell = this->grid.bins.cell_at(points.position(p));
+          EXPECT_EQ(points.cell[p], cell);
+        }
+      EXPECT_NEAR(summary.displacement, largest, 1e-14);
+    }
+}
+
+
+
+TYPED_TEST(GridToPoints, LocateFindsCellsAndReportsThem)
+{
+  constexpr int       dim  = TestFixture::dim;
+  auto               &grid = this->grid;
+  SmallPoints<dim>    points(200, false, 0, -1);
+  const auto          view = points.view();
+  const std::uint32_t home = grid.n_cells / 2;
+  grid.occupied[home]      = 1;
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      points.cell[p] = home;
+      for (int d = 0; d < dim; ++d)
+        view.position[d][p] =
+          grid.cells[home].origin[d] + grid.edge[d] * this->random(-1, 2);
+    }
+  // the first and the last stay outside the range that is asked for
+  locate<dim>(view, grid.view(), home, 1, points.size - 1);
+  EXPECT_EQ(points.cell[0], home);
+  EXPECT_EQ(points.cell[points.size - 1], home);
+
+  std::vector<std::uint8_t> found(grid.n_cells);
+  found[home] = 1;
+  for (std::size_t p = 1; p < points.size - 1; ++p)
+    {
+      ASSERT_LT(points.cell[p], grid.n_cells);
+      const auto &cell = grid.cells[points.cell[p]];
+      for (int d = 0; d < dim; ++d)
+        {
+          const double xi =
+            (view.position[d][p] - cell.origin[d]) * cell.inverse_edge[d];
+          EXPECT_GE(xi, 0.);
+          EXPECT_LE(xi, 1.);
+        }
+      found[points.cell[p]] = 1;
+    }
+  EXPECT_EQ(grid.occupied, found);
+  EXPECT_FALSE(grid.left);
+
+  // each new cell is reported once
+  auto entered = grid.entered;
+  std::sort(entered.begin(), entered.end());
+  EXPECT_EQ(std::unique(entered.begin(), entered.end()), entered.end());
+  EXPECT_EQ(entered.size() + 1,
+            std::size_t(std::count(found.begin(), found.end(), 1)));
+}
+
+
+
+TYPED_TEST(GridToPoints, LocateSeesPointsLeave)
+{
+  constexpr int dim = TestFixture::dim;
+  const double  nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double outside : {-1e-9, 1 + 1e-9, 1e300, -1e300, nan})
+    for (int d = 0; d < dim; ++d)
+      {
+        SmallGrid<dim>   grid(3);
+        SmallPoints<dim> points(1, false, 0, -1);
+        for (int e = 0; e < dim; ++e)
+          points.fields[e][0] = grid.lower[e] + 1.5 * grid.edge[e];
+        points.cell[0]      = grid.n_cells / 2;
+        points.fields[d][0] = grid.lower[d] + 3 * outside * grid.edge[d];
+        locate<dim>(points.view(), grid.view(), points.cell[0], 0, 1);
+        EXPECT_EQ(points.cell[0], invalid_cell);
+        EXPECT_TRUE(grid.left);
+        EXPECT_TRUE(grid.entered.empty());
+      }
+}
