@@ -104,13 +104,19 @@ namespace limber
             change[side] = velocity - before;
           }
 
-        // An impulse does work with the mean of the velocities at the ends of
-        // the step.
+        // An impulse does work with the velocity that the side leaves. Where
+        // the stress bears against the side, it does no work; what the points
+        // bring to the node against the side is lost, as in an impact.
+        const auto step_change = velocity - old_velocity;
         for (unsigned int side = 0; side < 2 * dim; ++side)
           if (change[side] != dealii::Tensor<1, dim>())
-            account(side,
-                    mass * change[side],
-                    0.5 * mass * (change[side] * (old_velocity + velocity)));
+            {
+              double work = change[side] * velocity;
+              for (int d = 0; d < dim; ++d)
+                if (change[side][d] != 0)
+                  work -= 0.5 * step_change[d] * step_change[d];
+              account(side, mass * change[side], mass * work);
+            }
         for (int d = 0; d < dim; ++d)
           {
             record[Layout::increment + d] += velocity[d] - free_velocity[d];

@@ -22,8 +22,11 @@ namespace limber
     parallel = dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1;
     is_occupied.assign(grid.n_cells(), 0);
     is_active.assign(grid.n_nodes(), 0);
+    // What was active belongs to the numbers of the former mesh.
     occupied.clear();
     entered.clear();
+    active_owned.clear();
+    active_boundary.clear();
     set_occupied({});
   }
 

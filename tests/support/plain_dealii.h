@@ -6,7 +6,6 @@
 
 #include <deal.II/particles/particle_handler.h>
 
-#include <limber/materials/linear_elastic.h>
 #include <limber/problem/read_problem.h>
 #include <limber/simulation/set_up.h>
 #include <limber/time/explicit_integrator.h>
@@ -49,8 +48,9 @@ namespace limber
            << "    set Upper corner = " << each(3. + n_cells) << "\n"
            << "  end\n"
            << "  set Points per cell edge = 2\n"
-           << "  set Initial velocity = 8 + 4*sin(x/5)*y/" << n_cells
-           << "; 6 - 3*cos(y/7)" << (dim == 3 ? "; 2 + sin(x + z)" : "") << "\n"
+           << "  set Initial velocity = 80 + 0.4*sin(x/5)*y/" << n_cells
+           << "; 80 - 0.3*cos(y/7)" << (dim == 3 ? "; 80 + 0.2*sin(x + z)" : "")
+           << "\n"
            << "  set Material = linear elastic\n"
            << "  subsection Linear elastic\n"
            << "    set Density = 1000\n"
@@ -70,7 +70,7 @@ namespace limber
            << "subsection Method\n"
            << "  set Stress update = last\n"
            << "  set Transfer = flip\n"
-           << "  set Time step = 2e-3\n"
+           << "  set Time step = 5e-4\n"
            << "end\n";
       return SceneFile(ParameterText{text.str(), FileFormat::prm, "block"});
     }
@@ -97,9 +97,10 @@ namespace limber
         : grid(grid)
         , gravity(problem.loads.gravity)
         , density(body.stress->density())
-        , law({{body.description.linear_elastic.density,
-                body.description.linear_elastic.young_modulus,
-                body.description.linear_elastic.poisson_ratio}})
+        , bulk(body.description.linear_elastic.young_modulus / 3 /
+               (1 - 2 * body.description.linear_elastic.poisson_ratio))
+        , shear(body.description.linear_elastic.young_modulus / 2 /
+                (1 + body.description.linear_elastic.poisson_ratio))
         , handler(grid.triangulation, grid.mapping, n_properties)
         , mass(grid.node_handler.n_dofs())
         , momentum(dim, mass)
@@ -245,11 +246,10 @@ namespace limber
             const auto extents = extents_of(cell);
             for (auto &particle : handler.particles_in_cell(cell))
               {
-                const auto         values = particle.get_properties();
-                const auto         xi     = particle.get_reference_location();
-                dealii::Point<dim> place  = particle.get_location();
-                MotionIncrement<dim, double> motion{};
-                motion.step = step;
+                const auto             values = particle.get_properties();
+                const auto             xi = particle.get_reference_location();
+                dealii::Point<dim>     place = particle.get_location();
+                dealii::Tensor<2, dim> motion; // dt grad v
                 for (unsigned int i = 0; i < fe.dofs_per_cell; ++i)
                   {
                     const double N        = fe.shape_value(i, xi);
@@ -260,20 +260,25 @@ namespace limber
                         values[velocity + d] += N * force[d](dofs[i]);
                         place[d] += step * N * v;
                         for (int e = 0; e < dim; ++e)
-                          motion.gradient[d][e] +=
-                            step * v * gradient[e] / extents[e];
+                          motion[d][e] += step * v * gradient[e] / extents[e];
                       }
                   }
-                motion.volumetric = motion.trace();
 
-                LinearElastic::State<dim, double> state;
-                state.pressure = values[pressure];
-                for (unsigned int k = 0; k < n_deviator<dim>; ++k)
-                  state.deviator[k] = values[deviator + k];
-                law.template update<dim>(motion, state);
-                values[pressure] = state.pressure;
-                for (unsigned int k = 0; k < n_deviator<dim>; ++k)
-                  values[deviator + k] = state.deviator[k];
+                const auto   strain     = dealii::symmetrize(motion);
+                const double volumetric = dealii::trace(strain);
+                const auto   add = [&](const unsigned int k, int i, int j) {
+                  values[deviator + k] +=
+                    2 * shear * (strain[i][j] - (i == j ? volumetric / 3 : 0));
+                };
+                values[pressure] -= bulk * volumetric;
+                add(0, 0, 0);
+                add(1, 1, 1);
+                add(2, 0, 1);
+                if constexpr (dim == 3)
+                  {
+                    add(3, 1, 2);
+                    add(4, 0, 2);
+                  }
                 particle.set_location(place);
               }
           }
@@ -309,7 +314,7 @@ namespace limber
       const BackgroundGrid<dim>              &grid;
       const dealii::Tensor<1, dim>            gravity;
       const double                            density;
-      const LinearElastic                     law;
+      const double                            bulk, shear; // K, G, Pa
       dealii::Particles::ParticleHandler<dim> handler;
       dealii::Vector<double>                  mass;
       std::vector<dealii::Vector<double>>     momentum, force;

@@ -48,6 +48,7 @@ namespace limber
     {
       for (unsigned int n = 0; n < n_steps; ++n, ++n_done)
         {
+          integrator.reorganise();
           integrator.advance(time, step);
           time += step;
         }

@@ -75,7 +75,7 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
       const auto summary =
         grid_to_points<dim>(points.view(), this->grid.view(), what);
 
-      double largest = 0;
+      double largest = 0, removed = 0;
       for (std::size_t p = 0; p < points.size; ++p)
         {
           const auto increment = this->value(a, A, points.position(p)),
@@ -89,6 +89,8 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
                           alpha * flip + (1 - alpha) * velocity[d],
                           1e-14);
               squared += std::pow(points.fields[dim + d][p], 2);
+              removed += 0.5 * points.view().mass[p] *
+                         (flip * flip - std::pow(points.fields[dim + d][p], 2));
               for (int e = 0; e < dim; ++e)
                 {
                   const double kept = points.view().affine[d * dim + e][p];
@@ -103,6 +105,7 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
           largest = std::max(largest, squared);
         }
       EXPECT_NEAR(summary.speed_squared, largest, 1e-13);
+      EXPECT_NEAR(summary.removed, removed, 1e-11);
       EXPECT_EQ(summary.displacement, 0.);
 
       // everything else, and what lies behind the points, is as it was
