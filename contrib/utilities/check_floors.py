@@ -17,11 +17,13 @@ from pathlib import Path
 
 FLOORS = [
     ["base"],
-    ["materials", "problem"],
+    ["materials"],
+    ["problem"],
     ["grid", "fem"],
     ["points"],
     ["interpolation"],
     ["transfer", "stress"],
+    ["state"],
     ["time", "output"],
     ["simulation"],
     ["study"],

@@ -154,7 +154,7 @@ namespace limber
 
       // A solid under initial stress needs a reference state that the scene
       // cannot describe; a fluid has only its volume ratio.
-      if (body.law != LawKind::newtonian_fluid)
+      if (!read_word(section, "Material", law_words()).takes_pressure)
         throw InputError("The pressure " + in_quotes(section.text(entry)) +
                          " in " + section.where(entry) +
                          " is for fluids only; solids start without stress. "

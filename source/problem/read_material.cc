@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/law_parameter.h>
 #include <limber/base/text.h>
+#include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -12,74 +13,36 @@ namespace limber
 {
   namespace
   {
-    void
-    declare_density(Parameters &parameters)
+    bool
+    is_choice(const LawParameter &parameter)
     {
-      parameters.declare("Density",
-                         "1000",
-                         admissible::positive_number("1000"),
-                         law_parameters::density.text + std::string("."));
+      return std::string(parameter.words).find('|') != std::string::npos;
     }
 
 
 
-    void
-    declare_solid(Parameters        &parameters,
-                  const std::string &section,
-                  const std::string &file)
+    Admissible
+    admissible_values(const LawParameter &parameter)
     {
-      const LawParameter &nu = law_parameters::poisson_ratio;
-      parameters.enter_subsection(section);
-      declare_density(parameters);
-      parameters.declare("Young's modulus",
-                         "1e6",
-                         admissible::positive_number("1e6"),
-                         law_parameters::young_modulus.text +
-                           std::string("; the law is in ") + file + ".");
-      parameters.declare("Poisson's ratio",
-                         "0.3",
-                         admissible::number_between(nu.lowest,
-                                                    nu.highest,
-                                                    "0.3"),
-                         nu.text + std::string("."));
-      parameters.leave_subsection();
-    }
+      const std::string words   = parameter.words;
+      const std::string example = brief(parameter.standard);
+      if (words == "false|true")
+        return admissible::flag();
+      if (is_choice(parameter))
+        return admissible::one_of(split(words, '|'));
 
-
-
-    void
-    declare_fluid(Parameters &parameters)
-    {
-      parameters.enter_subsection("Newtonian fluid");
-      declare_density(parameters);
-      parameters.declare("Bulk modulus",
-                         "2e9",
-                         admissible::positive_number("2e9").or_word("auto"),
-                         "K, Pa; 'auto': the softest one that keeps the Mach "
-                         "number below 0.1, K = rho_0 c^2 with c = 10 v, v = "
-                         "sqrt(2 |g| H) + the largest initial speed, H the "
-                         "extent of the body along gravity.");
-      parameters.declare("Viscosity",
-                         "0",
-                         admissible::non_negative_number("1e-3"),
-                         "mu, Pa s; deviatoric stress 2 mu dev(D), see "
-                         "materials/newtonian_fluid.h.");
-      parameters.declare("Tension cutoff",
-                         "false",
-                         admissible::flag(),
-                         "Whether negative pressure is set to zero, so that "
-                         "the fluid parts freely.");
-      declare_word(parameters,
-                   "Equation of state",
-                   "linear",
-                   equation_of_state_words(),
-                   "Pressure p from the volume ratio J: K (1/J - 1) or K/gamma "
-                   "(J^-gamma - 1).");
-      parameters.declare("Tait exponent",
-                         "7",
-                         admissible::positive_number("7"),
-                         "gamma, no unit, for 'tait'.");
-      parameters.leave_subsection();
+      const bool bounded = parameter.highest < 1e299;
+      Admissible result =
+        bounded ?
+          (parameter.closed ? admissible::number_from_to(parameter.lowest,
+                                                         parameter.highest,
+                                                         example) :
+                              admissible::number_between(parameter.lowest,
+                                                         parameter.highest,
+                                                         example)) :
+        parameter.closed ? admissible::non_negative_number(example) :
+                           admissible::positive_number(example);
+      return words.empty() ? result : result.or_word(words);
     }
   } // namespace
 
@@ -88,27 +51,25 @@ namespace limber
   void
   declare_material_sections(Parameters &parameters)
   {
-    declare_solid(parameters, "Linear elastic", "materials/linear_elastic.h");
-    declare_solid(parameters, "Neo hookean", "materials/neo_hookean.h");
-    declare_fluid(parameters);
+    for (const LawDescription &law : describe_laws())
+      {
+        parameters.enter_subsection(law.section());
+        for (const LawParameter &parameter : law.parameters)
+          parameters.declare(parameter.name,
+                             is_choice(parameter) ?
+                               split(parameter.words,
+                                     '|')[std::size_t(parameter.standard)] :
+                               brief(parameter.standard),
+                             admissible_values(parameter),
+                             parameter.text + std::string("."));
+        parameters.leave_subsection();
+      }
   }
 
 
 
   namespace
   {
-    LinearElasticParameters
-    read_solid(const Section &section)
-    {
-      LinearElasticParameters result;
-      result.density       = section.number("Density");
-      result.young_modulus = section.number("Young's modulus");
-      result.poisson_ratio = section.number("Poisson's ratio");
-      return result;
-    }
-
-
-
     /** On a lattice inside the body; where the formula is undefined, skipped.
      */
     template <int dim>
@@ -169,7 +130,7 @@ namespace limber
                          "instance 2e9.");
 
       const double sound   = 10 * speed;
-      const double modulus = body.newtonian_fluid.density * sound * sound;
+      const double modulus = body.density() * sound * sound;
       problem.notes.push_back(
         "Body " + in_quotes(body.name) + ": bulk modulus 'auto' is " +
         brief(modulus) + " Pa, for velocities up to " + brief(speed) +
@@ -179,20 +140,17 @@ namespace limber
 
 
 
-    NewtonianFluidParameters
-    read_fluid(const Section &section)
+    /** A number as it is; a word as its place among the words. */
+    double
+    read_value(const Section &section, const LawParameter &parameter)
     {
-      NewtonianFluidParameters result;
-      result.density   = section.number("Density");
-      result.viscosity = section.number("Viscosity");
-      result.bulk_modulus =
-        to_number(section.text("Bulk modulus")).value_or(-1);
-      result.tension_cutoff = section.flag("Tension cutoff");
-      result.tait =
-        read_word(section, "Equation of state", equation_of_state_words()) ==
-        EquationOfState::tait;
-      result.tait_exponent = section.number("Tait exponent");
-      return result;
+      const std::string text = section.text(parameter.name);
+      if (!is_choice(parameter))
+        return section.number(parameter.name);
+      if (parameter.words == std::string("false|true"))
+        return section.flag(parameter.name);
+      const auto words = split(parameter.words, '|');
+      return std::find(words.begin(), words.end(), text) - words.begin();
     }
   } // namespace
 
@@ -202,16 +160,14 @@ namespace limber
   void
   read_material(const Section &section, Body<dim> &body, Problem<dim> &problem)
   {
-    body.law            = read_word(section, "Material", law_words());
-    body.linear_elastic = read_solid(section.subsection("Linear elastic"));
-    body.neo_hookean    = read_solid(section.subsection("Neo hookean"));
-
-    const Section fluid  = section.subsection("Newtonian fluid");
-    body.newtonian_fluid = read_fluid(fluid);
-    if (body.law == LawKind::newtonian_fluid &&
-        body.newtonian_fluid.bulk_modulus < 0)
-      body.newtonian_fluid.bulk_modulus =
-        automatic_bulk_modulus(fluid, body, problem);
+    const LawDescription law = read_word(section, "Material", law_words());
+    const Section        own = section.subsection(law.section());
+    body.law                 = law.name;
+    body.material.clear();
+    for (const LawParameter &parameter : law.parameters)
+      body.material.push_back(own.text(parameter.name) == "auto" ?
+                                automatic_bulk_modulus(own, body, problem) :
+                                read_value(own, parameter));
   }
 
 

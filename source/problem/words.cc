@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/materials/law_list.h>
 #include <limber/problem/words.h>
 
 namespace limber
@@ -24,15 +25,15 @@ namespace limber
 
 
 
-  const Words<LawKind> &
+  const Words<LawDescription> &
   law_words()
   {
-    static const Words<LawKind> words = {
-      {"linear elastic", LawKind::linear_elastic, "small strains"},
-      {"neo hookean", LawKind::neo_hookean, "elastic, large deformation"},
-      {"newtonian fluid",
-       LawKind::newtonian_fluid,
-       "viscous, weakly compressible"}};
+    static const Words<LawDescription> words = []() {
+      Words<LawDescription> result;
+      for (const LawDescription &law : describe_laws())
+        result.push_back({law.name, law, law.text});
+      return result;
+    }();
     return words;
   }
 
@@ -129,17 +130,6 @@ namespace limber
       {"replace",
        HistoryTreatment::replace,
        "it is set to the mean of the cell in every step"}};
-    return words;
-  }
-
-
-
-  const Words<EquationOfState> &
-  equation_of_state_words()
-  {
-    static const Words<EquationOfState> words = {
-      {"linear", EquationOfState::linear, "pressure linear in density"},
-      {"tait", EquationOfState::tait, "a power of the density"}};
     return words;
   }
 

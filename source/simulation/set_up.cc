@@ -9,41 +9,6 @@ namespace limber
 {
   namespace
   {
-    /** The law of a body by name, and the values of its entries in order. */
-    template <int dim>
-    std::unique_ptr<const StressUpdate<dim>>
-    make_stress_update(const Body<dim> &body)
-    {
-      const bool projected = body.treatment == LockingTreatment::cell;
-      const auto solid     = [](const LinearElasticParameters &p) {
-        return std::vector<double>{p.density, p.young_modulus, p.poisson_ratio};
-      };
-      switch (body.law)
-        {
-          case LawKind::linear_elastic:
-            return limber::make_stress_update<dim>("linear elastic",
-                                                   solid(body.linear_elastic),
-                                                   projected);
-          case LawKind::neo_hookean:
-            return limber::make_stress_update<dim>("neo hookean",
-                                                   solid(body.neo_hookean),
-                                                   projected);
-          case LawKind::newtonian_fluid:
-            break;
-        }
-      const NewtonianFluidParameters &p = body.newtonian_fluid;
-      return limber::make_stress_update<dim>("newtonian fluid",
-                                             {p.density,
-                                              p.bulk_modulus,
-                                              p.viscosity,
-                                              double(p.tension_cutoff),
-                                              double(p.tait),
-                                              p.tait_exponent},
-                                             projected);
-    }
-
-
-
     /** Initial Cauchy pressure of a body at a place, Pa. */
     template <int dim>
     double
@@ -102,7 +67,10 @@ namespace limber
 
     for (const Body<dim> &body : problem.bodies)
       {
-        auto        stress = make_stress_update(body);
+        auto stress =
+          make_stress_update<dim>(body.law,
+                                  body.material,
+                                  body.treatment == LockingTreatment::cell);
         PointLayout layout;
         layout.deviator   = stress->has_deviator();
         layout.n_history  = stress->n_history();

@@ -6,45 +6,6 @@
 
 namespace limber
 {
-  namespace
-  {
-    template <class Function, std::size_t... index>
-    void
-    for_each_law(const Function &function, std::index_sequence<index...>)
-    {
-      (function(static_cast<std::tuple_element_t<index, LawList> *>(nullptr)),
-       ...);
-    }
-
-
-
-    template <class Function>
-    void
-    for_each_law(const Function &function)
-    {
-      for_each_law(function,
-                   std::make_index_sequence<std::tuple_size_v<LawList>>());
-    }
-  } // namespace
-
-
-
-  std::vector<LawDescription>
-  describe_laws()
-  {
-    std::vector<LawDescription> result;
-    for_each_law([&](auto *const law) {
-      using Law = std::remove_pointer_t<decltype(law)>;
-      static_assert(sizeof(CheckLaw<Law>) > 0);
-      if (result.empty() || result.back().name != Law::name)
-        result.push_back(
-          {Law::name, {Law::parameters.begin(), Law::parameters.end()}});
-    });
-    return result;
-  }
-
-
-
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_stress_update(const std::string         &name,

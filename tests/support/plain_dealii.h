@@ -97,10 +97,10 @@ namespace limber
         : grid(grid)
         , gravity(problem.loads.gravity)
         , density(body.stress->density())
-        , bulk(body.description.linear_elastic.young_modulus / 3 /
-               (1 - 2 * body.description.linear_elastic.poisson_ratio))
-        , shear(body.description.linear_elastic.young_modulus / 2 /
-                (1 + body.description.linear_elastic.poisson_ratio))
+        , bulk(body.description.material[1] / 3 /
+               (1 - 2 * body.description.material[2]))
+        , shear(body.description.material[1] / 2 /
+                (1 + body.description.material[2]))
         , handler(grid.triangulation, grid.mapping, n_properties)
         , mass(grid.node_handler.n_dofs())
         , momentum(dim, mass)

@@ -2,6 +2,7 @@
 #ifndef limber_base_law_parameter_h
 #define limber_base_law_parameter_h
 
+#include <cctype>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,21 @@ namespace limber
   /** What the scene needs to know of a law: its name and its entries. */
   struct LawDescription
   {
-    std::string               name;
-    std::vector<LawParameter> parameters;
+    std::string name;
+    std::string text; // one line
+    // Whether a body may start under pressure: its volume ratio then says
+    // all there is to say about its initial state.
+    bool                      takes_pressure;
+    std::vector<LawParameter> parameters; // the first is the density
+
+    /** The section of the scene that holds the entries. */
+    std::string
+    section() const
+    {
+      std::string result = name;
+      result[0]          = static_cast<char>(std::toupper(result[0]));
+      return result;
+    }
   };
 
 

@@ -104,7 +104,9 @@ namespace limber
 
   /**
    * The contract, checked when a law enters the list. A law has
-   *  - name, what the scene calls it, and parameters, what its section holds;
+   *  - name, what the scene calls it; text, one line about it; parameters,
+   *    what its section holds, the density first; takes_pressure, whether a
+   *    body may start under pressure;
    *  - n_history<dim>, how many doubles a point keeps besides the stress;
    *  - has_deviator, whether it bears shear;
    *  - dissipates, whether update() may return dissipated energy;

@@ -6,7 +6,9 @@
 #include <limber/materials/neo_hookean.h>
 #include <limber/materials/newtonian_fluid.h>
 
+#include <string>
 #include <tuple>
+#include <vector>
 
 namespace limber
 {
@@ -19,6 +21,33 @@ namespace limber
                              NeoHookean,
                              NewtonianFluid<false>,
                              NewtonianFluid<true>>;
+
+
+
+  /** Every law in the list, once: its name, its entries in the scene. */
+  const std::vector<LawDescription> &
+  describe_laws();
+
+
+
+  /** Call a generic function with a null pointer to each law in turn. */
+  template <class Function, std::size_t... index>
+  void
+  for_each_law(const Function &function, std::index_sequence<index...>)
+  {
+    (function(static_cast<std::tuple_element_t<index, LawList> *>(nullptr)),
+     ...);
+  }
+
+
+
+  template <class Function>
+  void
+  for_each_law(const Function &function)
+  {
+    for_each_law(function,
+                 std::make_index_sequence<std::tuple_size_v<LawList>>());
+  }
 } // namespace limber
 
 #endif

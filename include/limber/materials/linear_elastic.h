@@ -18,10 +18,13 @@ namespace limber
   class LinearElastic
   {
   public:
-    static constexpr const char *name = "linear elastic";
-    static constexpr std::array  parameters{law_parameters::density,
-                                           law_parameters::young_modulus,
-                                           law_parameters::poisson_ratio};
+    static constexpr const char *name           = "linear elastic";
+    static constexpr const char *text           = "small strain and rotation";
+    static constexpr bool        takes_pressure = false;
+    static constexpr std::array<LawParameter, 3> parameters{
+      {law_parameters::density,
+       law_parameters::young_modulus,
+       law_parameters::poisson_ratio}};
 
     template <int>
     static constexpr int  n_history    = 0;

@@ -24,10 +24,13 @@ namespace limber
   class NeoHookean
   {
   public:
-    static constexpr const char *name = "neo hookean";
-    static constexpr std::array  parameters{law_parameters::density,
-                                           law_parameters::young_modulus,
-                                           law_parameters::poisson_ratio};
+    static constexpr const char *name           = "neo hookean";
+    static constexpr const char *text           = "elastic, at any deformation";
+    static constexpr bool        takes_pressure = false;
+    static constexpr std::array<LawParameter, 3> parameters{
+      {law_parameters::density,
+       law_parameters::young_modulus,
+       law_parameters::poisson_ratio}};
 
     template <int dim>
     static constexpr int  n_history    = dim == 2 ? 4 : 6;

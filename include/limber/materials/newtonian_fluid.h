@@ -23,32 +23,34 @@ namespace limber
   {
   public:
     static constexpr const char *name = "newtonian fluid";
-    static constexpr std::array  parameters{
-      law_parameters::density,
-      LawParameter{"Bulk modulus",
-                   2e9,
-                   0,
-                   1e300,
-                   false,
-                   "K, Pa; 'auto' takes the softest one that keeps the Mach "
+    static constexpr const char *text = "viscous, weakly compressible";
+    static constexpr bool        takes_pressure = true;
+    static constexpr std::array<LawParameter, 6> parameters{
+      {law_parameters::density,
+       LawParameter{"Bulk modulus",
+                    2e9,
+                    0,
+                    1e300,
+                    false,
+                    "K, Pa; 'auto' takes the softest one that keeps the Mach "
                     "number below 0.1",
-                   "auto"},
-      LawParameter{"Viscosity", 0, 0, 1e300, true, "mu, Pa s"},
-      LawParameter{"Tension cutoff",
-                   0,
-                   0,
-                   1,
-                   true,
-                   "whether negative pressure is set to zero, with J = 1",
-                   "false|true"},
-      LawParameter{"Equation of state",
-                   0,
-                   0,
-                   1,
-                   true,
-                   "linear: p = K (1/J - 1); tait: p = K/gamma (J^-gamma - 1)",
-                   "linear|tait"},
-      LawParameter{"Tait exponent", 7, 0, 100, false, "gamma, for tait"}};
+                    "auto"},
+       LawParameter{"Viscosity", 0, 0, 1e300, true, "mu, Pa s"},
+       LawParameter{"Tension cutoff",
+                    0,
+                    0,
+                    1,
+                    true,
+                    "whether negative pressure is set to zero, with J = 1",
+                    "false|true"},
+       LawParameter{"Equation of state",
+                    0,
+                    0,
+                    1,
+                    true,
+                    "linear: p = K (1/J - 1); tait: p = K/gamma (J^-gamma - 1)",
+                    "linear|tait"},
+       LawParameter{"Tait exponent", 7, 0, 100, false, "gamma, for tait"}}};
 
     template <int>
     static constexpr int  n_history    = 1;

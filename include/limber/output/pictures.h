@@ -3,7 +3,7 @@
 #define limber_output_pictures_h
 
 #include <limber/output/vtu.h>
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 /** @file What is seen in a picture, as patches for write_vtu(). */
 namespace limber

@@ -4,7 +4,7 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 #include <vector>
 

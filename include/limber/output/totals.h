@@ -2,7 +2,7 @@
 #ifndef limber_output_totals_h
 #define limber_output_totals_h
 
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 #include <vector>
 

@@ -3,7 +3,7 @@
 #define limber_output_writer_h
 
 #include <limber/output/vtu.h>
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 #include <string>
 #include <utility>

@@ -65,33 +65,6 @@ namespace limber
     velocity
   };
 
-  struct LinearElasticParameters
-  {
-    double density         = 1000; // rho, kg/m^3
-    double young_modulus   = 1e6;  // E, Pa
-    double poisson_ratio   = 0.3;  // nu, -1 < nu < 0.5
-  };
-
-  /** The same constants; the law is another. */
-  using NeoHookeanParameters = LinearElasticParameters;
-
-  struct NewtonianFluidParameters
-  {
-    double density        = 1000; // rho, kg/m^3
-    double bulk_modulus   = 2e9;  // K, Pa; negative: 'auto'
-    double viscosity      = 0;    // mu, Pa s
-    bool   tension_cutoff = false;
-    bool   tait           = false; // false: p linear in density; true: Tait
-    double tait_exponent  = 7;     // gamma
-  };
-
-  enum class LawKind
-  {
-    linear_elastic,
-    neo_hookean,
-    newtonian_fluid
-  };
-
   /** A pressure or a traction on one initial face of a box body. */
   template <int dim>
   struct FaceLoad
@@ -106,24 +79,23 @@ namespace limber
   template <int dim>
   struct Body
   {
-    std::string               name;
+    std::string                       name;
     std::shared_ptr<const Shape<dim>> shape;
     std::array<unsigned int, dim>     points_per_cell_edge{};
-    Placement                 placement = Placement::regular;
-    Formula<dim>              initial_velocity; // dim components, m/s
-    bool                      hydrostatic = false;
-    std::optional<Formula<dim>> initial_pressure; // 1 component, Pa
+    Placement                         placement = Placement::regular;
+    Formula<dim>                      initial_velocity; // dim components, m/s
+    bool                              hydrostatic = false;
+    std::optional<Formula<dim>>       initial_pressure; // 1 component, Pa
 
-    LawKind                  law = LawKind::linear_elastic;
-    LinearElasticParameters  linear_elastic;
-    NeoHookeanParameters     neo_hookean;
-    NewtonianFluidParameters newtonian_fluid; // bulk modulus already resolved
+    std::string         law;      // by name, as in the list of laws
+    std::vector<double> material; // its entries, in its order
 
     LockingTreatment treatment       = LockingTreatment::none;
     HistoryTreatment history         = HistoryTreatment::keep;
     double           relaxation_time = 0; // s, for HistoryTreatment::relax
 
-    double density() const;
+    double
+    density() const;
   };
 
   template <int dim>
@@ -137,9 +109,9 @@ namespace limber
   template <int dim>
   struct Side
   {
-    SideCondition condition   = SideCondition::slip;
-    double        friction    = 0; // Coulomb coefficient
-    Formula<dim>  velocity;        // dim components, m/s
+    SideCondition condition = SideCondition::slip;
+    double        friction  = 0; // Coulomb coefficient
+    Formula<dim>  velocity;      // dim components, m/s
   };
 
   template <int dim>
@@ -155,21 +127,21 @@ namespace limber
   {
     StressUpdateOrder order    = StressUpdateOrder::last_remapped;
     Transfer          transfer = Transfer::flip;
-    double damping_time   = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
-    double courant_number = 0.4; // C
-    double time_step      = 0;   // s; 0: from the Courant number
-    double lost_points_limit = 0; // share of all points that may be lost
+    double damping_time        = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
+    double courant_number      = 0.4; // C
+    double time_step           = 0;   // s; 0: from the Courant number
+    double lost_points_limit   = 0;   // share of all points that may be lost
     double energy_growth_limit = 1; // drift over energy scale that stops a run
   };
 
   struct OutputRequest
   {
-    std::string directory              = "output";
-    bool        replace                = false; // an existing run folder
-    double      time_interval          = 0; // s; 0: statistics only
-    std::vector<std::string> fields;   // names of point fields
-    unsigned int statistics_interval   = 1; // steps
-    double       progress_interval     = 5; // s of wall time
+    std::string              directory     = "output";
+    bool                     replace       = false;   // an existing run folder
+    double                   time_interval = 0;       // s; 0: statistics only
+    std::vector<std::string> fields;                  // names of point fields
+    unsigned int             statistics_interval = 1; // steps
+    double                   progress_interval   = 5; // s of wall time
   };
 
   enum class ObservableKind
@@ -219,16 +191,16 @@ namespace limber
   template <int dim>
   struct Problem
   {
-    double                       end_time = 1; // s
-    std::vector<Body<dim>>       bodies;
-    GridDescription<dim>         grid;
+    double                         end_time = 1; // s
+    std::vector<Body<dim>>         bodies;
+    GridDescription<dim>           grid;
     std::array<Side<dim>, 2 * dim> sides;
-    Loads<dim>                   loads;
-    Method                       method;
-    OutputRequest                output;
-    std::vector<Observable<dim>> observables;
-    std::vector<Check>           checks;
-    std::vector<std::string>     notes; // what the reader decided, for the log
+    Loads<dim>                     loads;
+    Method                         method;
+    OutputRequest                  output;
+    std::vector<Observable<dim>>   observables;
+    std::vector<Check>             checks;
+    std::vector<std::string> notes; // what the reader decided, for the log
   };
 } // namespace limber
 

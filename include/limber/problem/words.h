@@ -3,6 +3,7 @@
 #define limber_problem_words_h
 
 #include <limber/base/exceptions.h>
+#include <limber/base/law_parameter.h>
 #include <limber/base/parameters.h>
 #include <limber/base/text.h>
 #include <limber/problem/problem.h>
@@ -48,16 +49,11 @@ namespace limber
     linear
   };
 
-  enum class EquationOfState
-  {
-    linear,
-    tait
-  };
-
   const Words<ShapeKind> &
   shape_words();
 
-  const Words<LawKind> &
+  /** From the list of laws. */
+  const Words<LawDescription> &
   law_words();
 
   const Words<KernelKind> &
@@ -80,9 +76,6 @@ namespace limber
 
   const Words<HistoryTreatment> &
   history_words();
-
-  const Words<EquationOfState> &
-  equation_of_state_words();
 
   const Words<SideCondition> &
   side_condition_words();

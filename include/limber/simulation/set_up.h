@@ -2,7 +2,7 @@
 #ifndef limber_simulation_set_up_h
 #define limber_simulation_set_up_h
 
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 namespace limber
 {

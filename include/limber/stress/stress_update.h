@@ -2,7 +2,6 @@
 #ifndef limber_stress_stress_update_h
 #define limber_stress_stress_update_h
 
-#include <limber/base/law_parameter.h>
 #include <limber/points/point_view.h>
 
 #include <memory>
@@ -97,10 +96,6 @@ namespace limber
   };
 
 
-
-  /** Every law in the list: its name and the entries of its section. */
-  std::vector<LawDescription>
-  describe_laws();
 
   /**
    * The sweep for the law of that name; @p values in the order of its

@@ -4,7 +4,7 @@
 
 #include <limber/base/timing.h>
 #include <limber/grid/boundary_conditions.h>
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 #include <limber/time/loads.h>
 
 #include <array>

@@ -4,7 +4,7 @@
 
 #include <deal.II/lac/la_parallel_vector.h>
 
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 #include <unordered_map>
 

@@ -3,7 +3,7 @@
 #define limber_tests_unit_output_sample_run_h
 
 #include <limber/output/totals.h>
-#include <limber/stress/material_body.h>
+#include <limber/state/material_body.h>
 
 #include <filesystem>
 #include <fstream>

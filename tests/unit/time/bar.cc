@@ -117,6 +117,8 @@ namespace
 
 
 
+// The displacement of all points, and the velocity away from the wall: in the
+// cell next to it FLIP points keep an error of the order of h.
 TEST(Bar, SecondOrderInSpace)
 {
   const double time = 0.85 * period;
@@ -130,42 +132,75 @@ TEST(Bar, SecondOrderInSpace)
           const auto points = motion(n, order, time, 20 * n * n);
           all.push_back(errors(points, time));
           inside.push_back(errors(points, time, length / 8));
-          printf("%s n %u u %.3e v %.3e inside u %.3e v %.3e\n", order.c_str(), n, all.back()[0], all.back()[1], inside.back()[0],inside.back()[1]);
         }
       for (unsigned int i = 0; i < 2; ++i)
         {
           EXPECT_GE(all[i][0] / all[i + 1][0], 3.2);
           EXPECT_GE(inside[i][1] / inside[i + 1][1], 3.2);
         }
+      EXPECT_LT(all[2][0], 1e-3);
+      EXPECT_LT(inside[2][1], 2e-3);
     }
 }
 
 
 
-TEST(Bar, OrderInTime)
+// Symplectic Euler: the velocity of a point is that of the middle of a step,
+// so it is of first order. The displacement is, too, with USF; with USL and
+// MUSL what remains of it is a hundred times smaller.
+TEST(Bar, FirstOrderInTime)
 {
   const double time = 0.85 * period;
   for (const std::string &order : stress_update_orders)
     {
+      SCOPED_TRACE(order);
       std::vector<Motion> m;
       for (const unsigned int n : {200u, 400u, 800u, 1600u})
         m.push_back(first_mode(motion(16, order, time, n)));
       for (unsigned int i = 0; i < 2; ++i)
-        printf("%s ratio u %.3f v %.3f   du %.2e dv %.2e\n", order.c_str(),(m[i][0]-m[i+1][0])/(m[i+1][0]-m[i+2][0]),
-       (m[i][1]-m[i+1][1])/(m[i+1][1]-m[i+2][1]), m[i][0]-m[i+1][0],m[i][1]-m[i+1][1]);
+        {
+          const double shape_error = m[i][0] - m[i + 1][0];
+          const double ratio =
+            (m[i][1] - m[i + 1][1]) / (m[i + 1][1] - m[i + 2][1]);
+          EXPECT_NEAR(ratio, 2, 0.1);
+          if (order == "first")
+            EXPECT_NEAR(shape_error / (m[i + 1][0] - m[i + 2][0]), 2, 0.1);
+          else
+            EXPECT_LT(std::abs(shape_error),
+                      0.05 * std::abs(m[i][1] - m[i + 1][1]));
+        }
     }
 }
 
-TEST(Bar, Energy)
+
+
+// Theory, 6.9. The wall does no work; what little the ledger books is lost by
+// points whose velocity is against the wall. What the balance leaves swings
+// with the bar, as it does with symplectic Euler, and does not grow.
+TEST(Bar, EnergyIsKeptForTenPeriods)
 {
   for (const std::string &order : stress_update_orders)
-   for (unsigned n : {8u,16u,32u})
     {
-    SceneRun<2> run(bar(n), {"Method/Stress update=" + order});
-    double e0=run.totals().all.total_energy();
-    for (int k=0;k<3;++k){
-    run.advance(0.3*length/n/10, (unsigned) std::lround(2*n*20/3./.3));
-    auto t=run.totals();
-    printf("%s n %u t %.3f E/E0 %.5f boundary %.3e transfer %.3e drift %.3e mom %.2e\n",order.c_str(),n,run.time/period,t.all.total_energy()/e0,t.boundary_work/e0,t.removed_by_transfer/e0,t.energy_drift, t.momentum_error);}
+      SCOPED_TRACE(order);
+      std::vector<double> largest_drift;
+      for (const double courant_number : {0.4, 0.2})
+        {
+          SceneRun<2>  run(bar(32), {"Method/Stress update=" + order});
+          const double start = run.totals().all.total_energy();
+          const double step  = courant_number * length / 32 / wave_speed;
+          largest_drift.push_back(0);
+          while (run.time < 10 * period)
+            {
+              run.advance(step, 5);
+              largest_drift.back() = std::max(
+                largest_drift.back(), std::abs(run.totals().energy_drift));
+            }
+          const auto totals = run.totals();
+          EXPECT_LT(std::abs(totals.boundary_work), 1e-4 * start);
+          EXPECT_LT(totals.momentum_error, 1e-12);
+          const double half_step_angle = 0.5 * omega * step;
+          EXPECT_LT(largest_drift.back(), 1.2 * half_step_angle);
+        }
+      EXPECT_NEAR(largest_drift[0] / largest_drift[1], 2, 0.2);
     }
 }

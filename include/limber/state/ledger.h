@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_stress_ledger_h
-#define limber_stress_ledger_h
+#ifndef limber_state_ledger_h
+#define limber_state_ledger_h
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/tensor.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_stress_material_body_h
-#define limber_stress_material_body_h
+#ifndef limber_state_material_body_h
+#define limber_state_material_body_h
 
 #include <limber/grid/nodal_fields.h>
 #include <limber/points/material_points.h>
-#include <limber/stress/ledger.h>
+#include <limber/state/ledger.h>
 #include <limber/stress/stress_update.h>
 
 #include <memory>

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+/**
+ * @file Sides and loads: impulses, work, and the motions that they must cause,
+ * on blocks that rest on or slide along the lowest side of the box.
+ */
+
+using namespace limber;
+
+namespace
+{
+  // 2 m x 1 m on the floor, 2000 kg/m
+  const std::string block = R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 1, 0
+        set Upper corner = 3, 1
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+      end
+    end
+    subsection Grid
+      set Upper corner = 6, 3
+      set Cells = 24, 12
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set top = free
+      subsection Side bottom
+        set Friction coefficient = 0.3
+        set Velocity = 0.5; 0
+      end
+    end)";
+
+  constexpr double mass = 2000, g = 10;
+
+  // 4 m x 1 m held at the left, without Poisson's effect
+  const std::string bar = R"(
+    set Bodies = bar
+    subsection Body bar
+      subsection Box
+        set Upper corner = 4, 1
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Grid
+      set Upper corner = 5, 1
+      set Cells = 20, 4
+    end
+    subsection Boundaries
+      set right = free
+    end
+    subsection Loads
+      set Face loads = pull
+      subsection Face load pull
+        set Body = bar
+        set Face = right
+        set Constants = p = 100, period = 0.50596442562694)";
+
+
+
+  /** Mean displacement over X over one period after a slow rise. */
+  double
+  mean_strain(const std::string &load)
+  {
+    SceneRun<2>  run(bar + "\n" + load + "\nend\nend\n");
+    const auto   start  = run.positions();
+    const double period = 16 / std::sqrt(1000.);
+    run.advance_to(4 * period);
+    double             sum = 0;
+    const unsigned int n   = 200;
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        run.advance(period / n);
+        const auto now    = run.positions();
+        double     strain = 0;
+        for (std::size_t p = 0; p < now.size(); ++p)
+          strain += (now[p] - start[p])[0] / start[p][0] / now.size();
+        sum += strain / n;
+      }
+    EXPECT_LT(run.totals().momentum_error, 1e-12);
+    EXPECT_LT(std::abs(run.totals().energy_drift), 0.05);
+    return sum;
+  }
+} // namespace
+
+
+
+TEST(Balances, DropOnSlipFloor)
+{
+  for (const std::string &order : stress_update_orders)
+    for (const std::string treatment : {"none", "cell"})
+      {
+        SCOPED_TRACE(order + ", " + treatment);
+        std::vector<double> drift;
+        for (const double courant_number : {0.4, 0.1})
+          {
+            SceneRun<2> run(block,
+                            {"Body block/Box/Lower corner=1, 1",
+                             "Body block/Box/Upper corner=3, 2",
+                             "Body block/Locking treatment=" + treatment,
+                             "Loads/Gravity=0, -10",
+                             "Method/Stress update=" + order,
+                             "Method/Courant number=" +
+                               digits(courant_number)});
+            drift.push_back(0);
+            double error = 0, lowest = 1e300;
+            run.advance_to(0.8, [&]() {
+              const auto totals = run.totals();
+              drift.back() =
+                std::max(drift.back(), std::abs(totals.energy_drift));
+              error  = std::max(error, totals.momentum_error);
+              lowest = std::min(lowest, totals.centre_of_mass[1]);
+            });
+            EXPECT_LT(error, 1e-12);
+            EXPECT_LT(lowest, 0.55); // it did arrive
+            EXPECT_EQ(run.totals().lost_points, 0u);
+          }
+        printf("%s %s drift %.4f %.4f\n", order.c_str(), treatment.c_str(), drift[0], drift[1]);
+        EXPECT_LT(drift[0], 0.1);
+        EXPECT_LT(drift[1], 0.5 * drift[0]);
+      }
+}
+
+
+
+TEST(Balances, FrictionDecelerates)
+{
+  for (const std::string &order : stress_update_orders)
+    {
+      SCOPED_TRACE(order);
+      SceneRun<2> run(block,
+                      {"Body block/Initial velocity=2; 0",
+                       "Boundaries/bottom=friction",
+                       "Loads/Gravity=0, -10",
+                       "Method/Damping time=0.02",
+                       "Method/Stress update=" + order});
+      run.advance_to(0.1);
+      const double before = run.totals().all.momentum[0];
+      run.advance_to(0.4);
+      const double after = run.totals().all.momentum[0];
+      printf("%s friction %.5f\n", order.c_str(),(before - after) / (mass * 0.3));
+      EXPECT_NEAR((before - after) / (mass * 0.3), 0.3 * g, 0.02 * 0.3 * g);
+      EXPECT_LT(run.totals().momentum_error, 1e-12);
+
+      // 2 m/s are used up after 0.67 s; then it stays.
+      run.advance_to(1.5);
+      EXPECT_NEAR(run.totals().all.momentum[0] / mass, 0, 0.02);
+    }
+}
+
+
+
+TEST(Balances, MovingAndStickingFloorsTakeTheBlockAlong)
+{
+  for (const std::string &order : stress_update_orders)
+    for (const std::string floor : {"velocity", "no slip"})
+      {
+        SCOPED_TRACE(order + ", " + floor);
+        SceneRun<2> run(block,
+                        {"Body block/Initial velocity=0.2; 0",
+                         "Boundaries/bottom=" + floor,
+                         "Method/Damping time=0.005",
+                         "Method/Stress update=" + order});
+        run.advance_to(3);
+        double sum = 0;
+        for (unsigned int k = 0; k < 1000; ++k)
+          {
+            run.advance(1e-3);
+            sum += run.totals().all.momentum[0] / mass / 1000;
+          }
+        printf("%s %s v %.5f\n",order.c_str(),floor.c_str(), sum);
+        EXPECT_NEAR(sum, floor == "velocity" ? 0.5 : 0, 0.005);
+        EXPECT_LT(run.totals().momentum_error, 1e-12);
+      }
+}
+
+
+
+TEST(Balances, ReactionOfARestingBlockIsItsWeight)
+{
+  for (const std::string &order : stress_update_orders)
+    {
+      SCOPED_TRACE(order);
+      SceneRun<2> run(block,
+                      {"Loads/Gravity=0, -10",
+                       "Method/Damping time=0.005",
+                       "Method/Stress update=" + order});
+      run.advance_to(2);
+      const double before = run.totals().side_impulse[2][1];
+      run.advance_to(3);
+      const double reaction = run.totals().side_impulse[2][1] - before;
+      printf("%s reaction/weight %.5f\n", order.c_str(), reaction/(mass*g));
+      EXPECT_NEAR(reaction, mass * g, 0.01 * mass * g);
+    }
+}
+
+
+
+// F L / (E A), free of oscillation after a rise over whole periods.
+TEST(Balances, TractionAndPressureStrainABar)
+{
+  const double pull =
+    mean_strain("set Traction = p*min(t/(4*period), 1); 0");
+  const double push = mean_strain("set Pressure = p*min(t/(4*period), 1)");
+  printf("pull %.6e push %.6e\n", pull, push);
+  EXPECT_NEAR(pull, 1e-4, 1e-6);
+  EXPECT_NEAR(push, -1e-4, 1e-6);
+}
+
+
+
+TEST(Balances, ConstantBodyForceIsGravity)
+{
+  for (const std::string &order : stress_update_orders)
+    {
+      SceneRun<2> gravity(block,
+                          {"Loads/Gravity=1, -10",
+                           "Method/Stress update=" + order});
+      SceneRun<2> formula(block,
+                          {"Loads/Body force=1; -10",
+                           "Method/Stress update=" + order});
+      gravity.advance(1e-3, 300);
+      formula.advance(1e-3, 300);
+      const auto a = gravity.positions(), b = formula.positions();
+      for (std::size_t p = 0; p < a.size(); ++p)
+        EXPECT_NEAR((a[p] - b[p]).norm(), 0, 1e-11);
+
+      // The work of the formula is what gravity gives up.
+      const auto with = gravity.totals(), without = formula.totals();
+      EXPECT_NEAR(without.energy_drift, with.energy_drift, 0.02);
+      EXPECT_LT(without.momentum_error, 1e-12);
+    }
+}
