@@ -94,8 +94,12 @@ namespace limber
     HistoryTreatment history         = HistoryTreatment::keep;
     double           relaxation_time = 0; // s, for HistoryTreatment::relax
 
+    /** Mass per volume in the reference state, kg/m^3. */
     double
-    density() const;
+    density() const
+    {
+      return material.front();
+    }
   };
 
   template <int dim>
