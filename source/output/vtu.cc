@@ -151,7 +151,10 @@ namespace limber
       communicator);
     std::optional<Failure> failure;
     if (error != MPI_SUCCESS)
-      failure.emplace(cannot_write(path, reason_of(error)));
+      {
+        failure.emplace(cannot_write(path, reason_of(error)));
+        std::remove(partial.c_str()); // makes room on a full disk
+      }
     throw_together(failure, communicator);
 
     on_first_rank(communicator, [&]() {

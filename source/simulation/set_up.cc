@@ -9,27 +9,57 @@ namespace limber
 {
   namespace
   {
+    /**
+     * The pressure at rest under a head rho_0 g z of material, Pa: dp/dz =
+     * rho_0 g / J(p), integrated by Runge and Kutta's classical method. For
+     * a real liquid it is rho_0 g z; a soft one is denser at the bottom, and
+     * would start to bounce without this.
+     */
+    template <int dim>
+    double
+    hydrostatic_pressure(const StressUpdate<dim> &law, const double head)
+    {
+      constexpr unsigned int n_steps = 16;
+      const double           step    = head / n_steps;
+      const auto             slope   = [&](const double p) {
+        return 1 / law.volume_ratio_at_rest(p);
+      };
+      double p = 0;
+      for (unsigned int i = 0; i < n_steps; ++i)
+        {
+          const double a = slope(p);
+          const double b = slope(p + 0.5 * step * a);
+          const double c = slope(p + 0.5 * step * b);
+          const double d = slope(p + step * c);
+          p += step / 6 * (a + 2 * b + 2 * c + d);
+        }
+      return p;
+    }
+
+
+
     /** Initial Cauchy pressure of a body at a place, Pa. */
     template <int dim>
     double
     initial_pressure(const Problem<dim>       &problem,
                      const Body<dim>          &body,
+                     const StressUpdate<dim>  &law,
                      const dealii::Point<dim> &place)
     {
       if (body.initial_pressure)
         return body.initial_pressure->value(place, 0);
       if (!body.hydrostatic)
         return 0;
-      // rho g times the depth below the highest place of the body
+      // the head rho_0 g z below the highest place of the body
       const auto &gravity = problem.loads.gravity;
       const auto  box     = body.shape->bounding_box();
-      double      result  = 0;
+      double      head    = 0;
       for (int d = 0; d < dim; ++d)
         {
           const double top = gravity[d] < 0 ? box.second[d] : box.first[d];
-          result += body.density() * gravity[d] * (place[d] - top);
+          head += body.density() * gravity[d] * (place[d] - top);
         }
-      return result;
+      return hydrostatic_pressure(law, head);
     }
 
 
@@ -45,7 +75,9 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             place[d] = points.position[d][p];
           body.stress->initialise(
-            points, p, initial_pressure(problem, body.description, place));
+            points,
+            p,
+            initial_pressure(problem, body.description, *body.stress, place));
           if (body.description.initial_velocity.empty())
             continue;
           const auto velocity =
@@ -91,8 +123,9 @@ namespace limber
           body,
           grid,
           [&](const dealii::Point<dim> &place) {
-            return body.density() / law.volume_ratio_at_rest(
-                                      initial_pressure(problem, body, place));
+            return body.density() /
+                   law.volume_ratio_at_rest(
+                     initial_pressure(problem, body, law, place));
           },
           bodies.back()->points);
         set_initial_state(problem, *bodies.back());

@@ -97,6 +97,7 @@ namespace limber
         : grid(grid)
         , gravity(problem.loads.gravity)
         , density(body.stress->density())
+        // entries of the law: density, Young's modulus, Poisson's ratio
         , bulk(body.description.material[1] / 3 /
                (1 - 2 * body.description.material[2]))
         , shear(body.description.material[1] / 2 /

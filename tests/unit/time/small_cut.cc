@@ -40,13 +40,23 @@ namespace
       set top = free
     end)";
 
-  constexpr double cell = 0.25, xi = 1e-4, end_time = 8;
+  constexpr double cell = 0.25, xi = 1e-4;
 
 
 
-  /** Largest and last deviation of the energy from that at the start. */
-  std::pair<double, double>
-  energy_errors(const std::string &order, const double courant_number)
+  /** Largest deviations so far. */
+  struct EnergyErrors
+  {
+    double kept     = 0; // of kinetic and strain energy from those at the start
+    double balanced = 0; // with what the wall has taken
+  };
+
+
+
+  EnergyErrors
+  energy_errors(const std::string &order,
+                const double       courant_number,
+                const double       end_time)
   {
     SceneRun<2> run(cantilever,
                     {"Method/Stress update=" + order,
@@ -54,29 +64,34 @@ namespace
     // rows of points at 1/4 and 3/4 of a cell
     run.translate(dealii::Tensor<1, 2>({0., (0.25 + xi) * cell}));
 
-    const double start   = run.totals().all.total_energy();
-    double       largest = 0, last = 0;
+    const double start = run.totals().all.total_energy();
+    EnergyErrors result;
     run.advance_to(end_time, [&]() {
-      if (run.n_done % 10 != 0)
-        return;
-      last    = std::abs(run.totals().all.total_energy() / start - 1);
-      largest = std::max(largest, last);
-      if (!(largest < 10))
-        throw ComputationError("grown");
+      const auto totals = run.totals();
+      result.kept =
+        std::max(result.kept,
+                 std::abs(totals.all.total_energy() / start - 1));
+      result.balanced =
+        std::max(result.balanced, std::abs(totals.energy_drift));
+      if (!(result.kept < 10))
+        throw ComputationError("The energy has grown tenfold.");
     });
-    return {largest, last};
+    return result;
   }
 } // namespace
 
 
 
+// The clamped wall takes some 0.02 % per second with the velocity that points
+// next to it have against it; the balance knows that.
 TEST(SmallCut, UsfAndMuslKeepTheEnergy)
 {
   for (const std::string order : {"first", "last, remapped"})
     {
-      const auto e = energy_errors(order, 0.6);
-      printf("%s largest %.5f last %.5f\n", order.c_str(), e.first, e.second);
-      EXPECT_LT(e.first, 0.002) << order;
+      SCOPED_TRACE(order);
+      EXPECT_LT(energy_errors(order, 0.6, 3).kept, 0.002);
+      EXPECT_LT(energy_errors(order, 0.6, 8).balanced, 0.002);
+      printf("%s %.5f %.5f %.5f\n", order.c_str(), energy_errors(order, 0.6, 3).kept, energy_errors(order, 0.6, 8).kept, energy_errors(order, 0.6, 8).balanced);
     }
 }
 
@@ -84,6 +99,6 @@ TEST(SmallCut, UsfAndMuslKeepTheEnergy)
 
 TEST(SmallCut, UslBlowsUpAboveItsLimit)
 {
-  EXPECT_THROW(energy_errors("last", 0.6), ComputationError);
-  EXPECT_THROW(energy_errors("last", 0.05), ComputationError);
+  for (const double courant_number : {0.6, 0.05})
+    EXPECT_THROW(energy_errors("last", courant_number, 8), ComputationError);
 }
