@@ -120,6 +120,10 @@ main(int argc, char *argv[])
     {
       if (first)
         std::cerr << "Error: " << failure.what() << std::endl;
+      // A full disk is met by the rank that writes; the others wait for it.
+      if (failure.code == ExitCode::file_error &&
+          dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        MPI_Abort(MPI_COMM_WORLD, int(failure.code));
       return int(failure.code);
     }
   catch (const std::exception &failure)

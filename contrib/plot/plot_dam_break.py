@@ -21,7 +21,7 @@ import numpy as np
 import run_folder
 
 WIDTH, HEIGHT = 1, 2  # of the column, m
-SNAPSHOTS = (0, 1, 2, 3)  # T
+SNAPSHOTS = (1, 2, 3)  # T
 
 MARTIN_MOYCE_FRONT = np.array([
     (0.41, 1.11), (0.84, 1.22), (1.19, 1.44), (1.43, 1.67), (1.63, 1.89),
@@ -50,7 +50,7 @@ def draw_snapshots(axes, folder, parameters, largest_pressure):
         nearest = np.argmin(abs(scaled - wanted))
         cloud = run_folder.points(files[nearest])
         x, y = cloud["position"][:, 0], cloud["position"][:, 1]
-        dots = axis.scatter(x, y, c=cloud["pressure"] / 1e3, s=2, linewidths=0,
+        dots = axis.scatter(x, y, c=cloud["pressure"] / 1e3, s=3, linewidths=0,
                             vmin=-largest_pressure / 1e3,
                             vmax=largest_pressure / 1e3, cmap="coolwarm")
         axis.set_title(f"T = {scaled[nearest]:.2f}")
@@ -72,7 +72,7 @@ def draw_curve(axis, folders, column, scale, experiment, mast, label):
     axis.set_ylabel(label)
     axis.set_xlim(0, 3.2)
     axis.grid(alpha=0.3)
-    axis.legend()
+    axis.legend(fontsize=9)
 
 
 def main():
@@ -83,8 +83,8 @@ def main():
         folders["Limber, locked"] = Path(sys.argv[2])
 
     rows = len(folders)
-    figure = plt.figure(figsize=(16, 2.6 * rows + 4), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=[2.6 * rows, 4])
+    figure = plt.figure(figsize=(12, 1.9 * rows + 3.6), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=[1.9 * rows, 3.6])
     grid = above.subplots(rows, len(SNAPSHOTS), squeeze=False)
     for axes, (name, folder) in zip(grid, folders.items()):
         parameters = run_folder.parameters(folder)
@@ -101,7 +101,7 @@ def main():
                MAST_HEIGHT, "height at the wall $y/h_0$")
 
     path = folders["Limber"] / "dam_break.png"
-    figure.savefig(path, dpi=110)
+    figure.savefig(path, dpi=80)
     print(path)
 
 

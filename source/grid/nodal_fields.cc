@@ -233,10 +233,21 @@ namespace limber
 
   template <int dim>
   void
-  CellFields<dim>::sum_shared()
+  CellFields<dim>::sum_shared(const unsigned int first, const unsigned int last)
   {
-    if (parallel)
-      values.compress(dealii::VectorOperation::add);
+    if (!parallel)
+      return;
+    // Ghosts may hold copies in other slots, which must not be added again.
+    constexpr unsigned int stride = CellSums<dim>::stride;
+    for (std::uint32_t cell = grid.n_owned_cells(); cell < grid.n_cells();
+         ++cell)
+      {
+        double *const ghost = values.begin() + std::size_t(cell) * stride;
+        std::fill(ghost, ghost + first, 0.);
+        std::fill(ghost + last, ghost + stride, 0.);
+      }
+    values.set_ghost_state(false);
+    values.compress(dealii::VectorOperation::add);
   }
 
 

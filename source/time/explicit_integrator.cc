@@ -115,12 +115,15 @@ namespace limber
 
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/false);
+    sum_shared_cells(0, CellSums<dim>::stride);
+    average_cells(/*add_force=*/false);
     sum_shared_nodes(0, Layout::stride);
     divide_remapped(Layout::momentum);
     share_nodes();
     update_stress(/*remapped=*/true, /*move=*/false);
 
     points_to_grid(/*momentum=*/false, /*force=*/true);
+    sum_shared_cells(CellSums<dim>::pressure, CellSums<dim>::pressure + 1);
     add_mean_pressure();
     sum_shared_nodes(Layout::force, Layout::force + dim);
     add_loads();
@@ -142,7 +145,8 @@ namespace limber
 
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/true);
-    add_mean_pressure();
+    sum_shared_cells(0, CellSums<dim>::stride);
+    average_cells(/*add_force=*/true);
     sum_shared_nodes(0, Layout::stride);
     add_loads();
     advance_nodes();
@@ -202,7 +206,39 @@ namespace limber
 
 
 
-  // Sums of cells are complete only after ranks have added theirs.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::sum_shared_cells(const unsigned int first,
+                                            const unsigned int last)
+  {
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        body->cell_sums->sum_shared(first, last);
+    lap(Verb::sum_shared_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::average_cells(const bool add_force)
+  {
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        {
+          const auto &cells = nodes.owned_occupied_cells();
+          limber::average_cells<dim>(cells.data(),
+                                     cells.size(),
+                                     nodes.view(),
+                                     body->cell_sums->view(),
+                                     add_force);
+        }
+    lap(Verb::points_to_grid);
+  }
+
+
+
+  // For forces that follow after the cells have been averaged.
   template <int dim>
   void
   ExplicitIntegrator<dim>::add_mean_pressure()
@@ -210,7 +246,6 @@ namespace limber
     for (auto &body : bodies)
       if (body->cell_sums)
         {
-          body->cell_sums->sum_shared();
           const auto &cells = nodes.owned_occupied_cells();
           add_projected_pressure<dim>(cells.data(),
                                       cells.size(),

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/batch_lanes.h>
-#include <limber/points/locate.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/grid_to_points.h>
 
@@ -65,60 +64,50 @@ namespace limber
         const NodalCoefficients<dim, Layout::increment, 2 * dim> nodal(
           cell, grid.nodes);
 
-        for (std::size_t p = batch.begin; p < batch.end;
-             p += BatchLanes<dim>::width)
-          {
-            const BatchLanes<dim> lanes(batch, p);
-            const auto            xi = lanes.natural(points, cell);
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          const auto xi = lanes.natural(points, cell);
 
-            Number squared{}, kept_squared{};
-            for (int d = 0; d < dim; ++d)
-              {
-                const auto   grid_velocity = nodal.component(dim + d);
-                const Number flip =
-                  lanes.load(points.velocity[d]) +
-                  Kernel::template value<Number>(nodal.component(d), xi);
-                Number velocity = flip;
-                if constexpr (affine)
-                  {
-                    velocity =
-                      Kernel::template value<Number>(grid_velocity, xi);
-                    const auto gradient =
-                      Kernel::template gradient<Number>(grid_velocity, xi);
-                    for (int e = 0; e < dim; ++e)
-                      lanes.store(gradient[e] * cell.inverse_edge[e],
-                                  points.affine[d * dim + e]);
-                  }
-                else if (what.flip_share != 1.)
-                  velocity +=
-                    (1. - what.flip_share) *
-                    (Kernel::template value<Number>(grid_velocity, xi) - flip);
-                kept_squared += flip * flip;
-                lanes.store(velocity, points.velocity[d]);
-                squared += velocity * velocity;
-                if constexpr (moves)
-                  {
-                    const Number shift =
-                      what.move *
-                      Kernel::template value<Number>(grid_velocity, xi);
-                    displacement =
-                      larger(displacement,
-                             lanes.only_active(magnitude(shift) *
-                                               cell.inverse_edge[d]));
-                    lanes.store(lanes.load(points.position[d]) + shift,
-                                points.position[d]);
-                  }
-              }
-            speed_squared = larger(speed_squared, lanes.only_active(squared));
-            if (affine || what.flip_share != 1.)
-              removed += lanes.only_active(lanes.load(points.mass)) *
-                         (kept_squared - squared);
-          }
+          Number                                   squared{}, kept_squared{};
+          [[maybe_unused]] std::array<Number, dim> shift;
+          for (int d = 0; d < dim; ++d)
+            {
+              const auto   grid_velocity = nodal.component(dim + d);
+              const Number flip =
+                lanes.load(points.velocity[d]) +
+                Kernel::template value<Number>(nodal.component(d), xi);
+              Number velocity = flip;
+              if constexpr (affine)
+                {
+                  velocity = Kernel::template value<Number>(grid_velocity, xi);
+                  const auto gradient =
+                    Kernel::template gradient<Number>(grid_velocity, xi);
+                  for (int e = 0; e < dim; ++e)
+                    lanes.store(gradient[e] * cell.inverse_edge[e],
+                                points.affine[d * dim + e]);
+                }
+              else if (what.flip_share != 1.)
+                velocity +=
+                  (1. - what.flip_share) *
+                  (Kernel::template value<Number>(grid_velocity, xi) - flip);
+              lanes.store(velocity, points.velocity[d]);
+              kept_squared += flip * flip;
+              squared += velocity * velocity;
+              if constexpr (moves)
+                shift[d] =
+                  what.move * Kernel::template value<Number>(grid_velocity, xi);
+            }
+          speed_squared = larger(speed_squared, lanes.only_active(squared));
+          if (affine || what.flip_share != 1.)
+            removed += lanes.only_active(lanes.load(points.mass)) *
+                       (kept_squared - squared);
+          if constexpr (moves)
+            displacement =
+              larger(displacement,
+                     move_points<dim>(points, grid, batch.cell, lanes, shift));
+        });
 
         if constexpr (remap)
           remap_momentum<dim, affine>(points, batch, cell, grid.nodes);
-        if constexpr (moves)
-          locate(points, grid, batch.cell, batch.begin, batch.end);
       });
       return {maximum(speed_squared),
               maximum(displacement),

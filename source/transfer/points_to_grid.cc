@@ -12,7 +12,7 @@ namespace limber
   {
     /** The stress of a point times its volume; pressure left out on request. */
     template <int dim, bool deviator, bool with_pressure>
-    std::array<double, dim *(dim + 1) / 2>
+    __attribute__((always_inline)) inline std::array<double, dim *(dim + 1) / 2>
     force_density(const PointView<dim> &points,
                   const std::size_t     p,
                   const double          volume)
@@ -182,6 +182,60 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Given the mean weights of the nodes over the points of a cell. */
+    template <int dim>
+    inline void
+    add_mean_pressure(const CellGeometry<dim>           &cell,
+                      const double                       pressure,
+                      const typename Linear<dim>::Nodes &weights,
+                      double *const                      nodes)
+    {
+      using Kernel = Linear<dim>;
+      std::array<typename Kernel::Nodes, dim> force;
+      for (int d = 0; d < dim; ++d)
+        force[d] = (pressure * cell.inverse_edge[d]) * Kernel::sign(d) *
+                   (weights + Kernel::across(weights, d));
+      add_to_nodes<dim, NodeLayout<dim>::force>(cell, force, nodes);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  average_cells(const std::uint32_t *const cells,
+                const std::size_t          n_cells,
+                const GridView<dim>       &grid,
+                const CellSums<dim>       &sums,
+                const bool                 add_force)
+  {
+    using Kernel = Linear<dim>;
+    using Nodes  = typename Kernel::Nodes;
+
+    for (std::size_t k = 0; k < n_cells; ++k)
+      {
+        double *const record  = sums.data + cells[k] * CellSums<dim>::stride;
+        const Nodes   shares  = load<Nodes>(record);
+        const Nodes   moments = Kernel::to_moments(shares);
+        const double  mass    = moments[0];
+        if (!(mass > 0))
+          continue;
+        const double inverse_mass = 1. / mass;
+        if (add_force)
+          add_mean_pressure<dim>(grid.cells[cells[k]],
+                                 record[CellSums<dim>::pressure],
+                                 shares * inverse_mass,
+                                 grid.nodes);
+        store(moments * inverse_mass, record);
+        record[CellSums<dim>::mass] = mass;
+        record[CellSums<dim>::volumetric] *= inverse_mass;
+      }
+  }
+
+
+
   template <int dim>
   void
   add_projected_pressure(const std::uint32_t *const cells,
@@ -194,20 +248,16 @@ namespace limber
 
     for (std::size_t k = 0; k < n_cells; ++k)
       {
-        const CellGeometry<dim> &cell = grid.cells[cells[k]];
-        const double *const      cell_sums =
+        const double *const record =
           sums.data + cells[k] * CellSums<dim>::stride;
-        const Nodes  shares = load<Nodes>(cell_sums);
-        const double mass   = sum(shares);
-        if (!(mass > 0))
+        if (!(record[CellSums<dim>::mass] > 0))
           continue;
-
-        const double           mean = cell_sums[CellSums<dim>::pressure] / mass;
-        std::array<Nodes, dim> force;
-        for (int d = 0; d < dim; ++d)
-          force[d] = (mean * cell.inverse_edge[d]) * Kernel::sign(d) *
-                     (shares + Kernel::across(shares, d));
-        add_to_nodes<dim, NodeLayout<dim>::force>(cell, force, grid.nodes);
+        Nodes means = load<Nodes>(record);
+        means[0]    = 1; // the mean of the monomial 1
+        add_mean_pressure<dim>(grid.cells[cells[k]],
+                               record[CellSums<dim>::pressure],
+                               Kernel::from_moments(means),
+                               grid.nodes);
       }
   }
 
@@ -223,6 +273,18 @@ namespace limber
                  const GridView<3> &,
                  const GiveToGrid &,
                  const CellSums<3> *);
+  template void
+  average_cells(const std::uint32_t *,
+                std::size_t,
+                const GridView<2> &,
+                const CellSums<2> &,
+                bool);
+  template void
+  average_cells(const std::uint32_t *,
+                std::size_t,
+                const GridView<3> &,
+                const CellSums<3> &,
+                bool);
   template void
   add_projected_pressure(const std::uint32_t *,
                          std::size_t,

@@ -84,7 +84,15 @@ namespace
       nodes.set_occupied(std::move(occupied));
       if (body.cell_sums)
         sums = body.cell_sums->view();
-      // something to sum over before the sweeps that need it
+      gather();
+      if (body.cell_sums)
+        average();
+    }
+
+    /** Sums over the points, for the sweeps that need them. */
+    void
+    gather()
+    {
       GiveToGrid what;
       what.inverse_density = 1 / body.stress->density();
       clear();
@@ -92,6 +100,12 @@ namespace
                           nodes.view(),
                           what,
                           sums_or_none());
+    }
+
+    void
+    average()
+    {
+      average_cells<dim>(cells.data(), cells.size(), nodes.view(), sums, true);
     }
 
     /** Zero records, which is not part of what is measured. */
@@ -172,14 +186,9 @@ namespace
       });
     if (projected)
       bench.measure(
-        "add projected pressure",
-        [] {},
-        [&]() {
-          add_projected_pressure<dim>(bench.cells.data(),
-                                      bench.cells.size(),
-                                      nodes,
-                                      bench.sums);
-        });
+        "average cells, add pressure",
+        [&]() { bench.gather(); },
+        [&]() { bench.average(); });
     else
       {
         TakeFromGrid take;

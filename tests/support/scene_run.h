@@ -162,10 +162,8 @@ namespace limber
 
 
 
-  inline const std::vector<std::string> stress_update_orders = {
-    "first",
-    "last",
-    "last, remapped"};
+  inline const std::vector<std::string> stress_update_orders =
+    {"first", "last", "last, remapped"};
 } // namespace limber
 
 #endif

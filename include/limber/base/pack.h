@@ -180,6 +180,36 @@ namespace limber
 
 
 
+  /** Whether a comparison of packs holds in every lane. */
+  template <class Mask>
+  inline bool
+  all(const Mask &mask)
+  {
+    if constexpr (sizeof(Mask) == sizeof(bool))
+      return mask;
+    else
+      {
+#if defined(__AVX512DQ__)
+        if constexpr (sizeof(Mask) == 64)
+          {
+            typedef long long Bits __attribute__((vector_size(64)));
+            return static_cast<unsigned char>(
+                     __builtin_ia32_cvtq2mask512(Bits(mask))) == 0xff;
+          }
+#endif
+#if defined(__AVX__)
+        if constexpr (sizeof(Mask) == 32)
+          return __builtin_ia32_movmskpd256(Pack<4>(mask)) == 0xf;
+#endif
+        std::int64_t result = -1;
+        for (unsigned int i = 0; i < sizeof(Mask) / sizeof(result); ++i)
+          result &= mask[i];
+        return result != 0;
+      }
+  }
+
+
+
   /** Which of the first lanes of a pack take part: the tail of a run. */
   template <class Number>
   inline auto

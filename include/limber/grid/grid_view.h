@@ -99,10 +99,13 @@ namespace limber
    * The sums over the points of one body in each cell from which the
    * Hu-Washizu averages follow (DGQ0): the shares of the cell in the masses
    * of its nodes, sum of V p, and sum of m times the volumetric variable.
+   * When they are complete, average_cells() puts averages in their place:
+   * mass and means of the monomials xi, eta, ...; the volumetric mean.
    */
   template <int dim>
   struct CellSums
   {
+    static constexpr unsigned int mass       = 0;        // once averaged, kg
     static constexpr unsigned int pressure   = 1 << dim; // sum V p, J
     static constexpr unsigned int volumetric = pressure + 1;
     static constexpr unsigned int stride     = pressure + 2;

@@ -145,9 +145,13 @@ namespace limber
     void
     clear(const std::vector<std::uint32_t> &cells);
 
-    /** Add the contributions of other ranks to the owned cells. */
+    /**
+     * Add the contributions of other ranks to slots [first, last) of the owned
+     * cells. Other slots stay on the owners.
+     */
     void
-    sum_shared();
+    sum_shared(unsigned int first = 0,
+               unsigned int last  = CellSums<dim>::stride);
 
     /** Give other ranks the sums of the cells that they hold as ghosts. */
     void

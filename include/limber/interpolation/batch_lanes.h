@@ -4,6 +4,7 @@
 
 #include <limber/interpolation/linear.h>
 #include <limber/points/cell_batch.h>
+#include <limber/points/locate.h>
 
 namespace limber
 {
@@ -15,20 +16,20 @@ namespace limber
 
   /**
    * A few points of a batch as lanes of a pack. The last pack of a batch may
-   * reach beyond it. The lanes there repeat the first point, so that nothing
-   * can be computed in them that could not be computed in the others; what is
-   * stored there is what was there before.
+   * not be @p full. The lanes beyond then repeat the first point, so that
+   * nothing can be computed in them that could not be computed in the others;
+   * what is stored there is what was there before.
    */
-  template <int dim>
+  template <int dim, bool full>
   class BatchLanes
   {
   public:
     using Number = PointPack<dim>;
 
-    BatchLanes(const CellBatch &batch, const std::size_t first)
+    /** The @p n points from @p first on. */
+    BatchLanes(const std::size_t first, const int n)
       : first(first)
-      , n(batch.end - first < std::size_t(width) ? int(batch.end - first) :
-                                                   width)
+      , n(n)
       , active(first_lanes<Number>(n))
     {}
 
@@ -36,14 +37,16 @@ namespace limber
     load(const double *const array) const
     {
       const Number values = limber::load<Number>(array + first);
-      return n == width ? values :
-                          (active ? values : broadcast<Number>(array[first]));
+      if constexpr (full)
+        return values;
+      else
+        return active ? values : broadcast<Number>(array[first]);
     }
 
     void
     store(const Number &values, double *const array) const
     {
-      if (n == width)
+      if constexpr (full)
         limber::store(values, array + first);
       else
         limber::store(active ? values : limber::load<Number>(array + first),
@@ -54,7 +57,10 @@ namespace limber
     Number
     only_active(const Number &values) const
     {
-      return active ? values : Number{};
+      if constexpr (full)
+        return values;
+      else
+        return active ? values : Number{};
     }
 
     /** Natural coordinates of the points in their cell. */
@@ -76,6 +82,55 @@ namespace limber
   private:
     const decltype(first_lanes<Number>(0)) active;
   };
+
+
+
+  /** Call @p work with the points of a batch, a pack at a time. */
+  template <int dim, class Work>
+  inline void
+  for_each_pack(const CellBatch &batch, const Work &work)
+  {
+    constexpr std::size_t width = 1 << dim;
+    std::size_t           p     = batch.begin;
+    for (; p + width <= batch.end; p += width)
+      work(BatchLanes<dim, true>(p, width));
+    if (p < batch.end)
+      work(BatchLanes<dim, false>(p, static_cast<int>(batch.end - p)));
+  }
+
+
+
+  /**
+   * Move the points of a pack by @p shift (m), and find the cells of those
+   * that have left @p cell. Returns the largest shift over the edge of the
+   * cell, by lane.
+   */
+  template <int dim, class Lanes>
+  inline PointPack<dim>
+  move_points(const PointView<dim>                  &points,
+              const GridView<dim>                   &grid,
+              const std::uint32_t                    cell,
+              const Lanes                           &lanes,
+              const std::array<PointPack<dim>, dim> &shift)
+  {
+    using Number                      = PointPack<dim>;
+    const CellGeometry<dim> &geometry = grid.cells[cell];
+    Number                   largest{};
+    auto                     inside = Number{} == Number{};
+    for (int d = 0; d < dim; ++d)
+      {
+        const Number position = lanes.load(points.position[d]) + shift[d];
+        lanes.store(position, points.position[d]);
+        const Number xi =
+          (position - geometry.origin[d]) * geometry.inverse_edge[d];
+        inside &= (xi >= 0.) & (xi <= 1.);
+        largest =
+          larger(largest, magnitude(shift[d]) * geometry.inverse_edge[d]);
+      }
+    if (!all(inside))
+      locate(points, grid, cell, lanes.first, lanes.first + lanes.n);
+    return largest;
+  }
 
 
 

@@ -64,15 +64,23 @@ namespace limber
 
     /**
      * Turn the shares of a cell in the masses of its nodes, s_i = sum m N_i,
-     * into the moments of the monomials, sum m xi^.. eta^.., in place.
+     * into the moments of the monomials, sum m xi^.. eta^...
      */
-    static void
-    to_moments(std::array<double, n_nodes> &s)
+    static Nodes
+    to_moments(Nodes s)
     {
       for (int d = 0; d < dim; ++d)
-        for (int i = 0; i < n_nodes; ++i)
-          if (!(i >> d & 1))
-            s[i] += s[i ^ (1 << d)];
+        s += lower_ends[d] * across(s, d);
+      return s;
+    }
+
+    /** The way back from to_moments(). */
+    static Nodes
+    from_moments(Nodes s)
+    {
+      for (int d = 0; d < dim; ++d)
+        s -= lower_ends[d] * across(s, d);
+      return s;
     }
 
     /** Value at natural coordinates xi; c(k) is the k-th coefficient. */

@@ -4,28 +4,25 @@
 
 #include <limber/interpolation/batch_lanes.h>
 #include <limber/materials/law.h>
-#include <limber/points/locate.h>
 #include <limber/stress/stress_update.h>
 
 #include <algorithm>
 
 namespace limber
 {
-  /** Means over the points of a cell, from the sums gathered with them. */
+  /** Means over the points of a cell, once average_cells() has made them. */
   template <int dim>
-  struct CellMeans
+  class CellMeans
   {
-    std::array<double, 1 << dim> monomial; // of 1, xi, eta, xi eta, ...
-    double                       volumetric = 0;
-
+  public:
     explicit CellMeans(const double *const cell_sums)
+      : record(cell_sums)
+    {}
+
+    double
+    volumetric() const
     {
-      std::copy_n(cell_sums, 1 << dim, monomial.begin());
-      Linear<dim>::to_moments(monomial);
-      const double inverse_mass = 1. / monomial[0];
-      for (double &m : monomial)
-        m *= inverse_mass;
-      volumetric = cell_sums[CellSums<dim>::volumetric] * inverse_mass;
+      return record[CellSums<dim>::volumetric];
     }
 
     /**
@@ -46,11 +43,14 @@ namespace limber
           double     derivative = 0;
           for (int k = 0; k < 1 << dim; ++k)
             if (k >> d & 1)
-              derivative += c(k) * monomial[k ^ (1 << d)];
+              derivative += k == 1 << d ? c(k) : c(k) * record[k ^ (1 << d)];
           result += derivative * cell.inverse_edge[d];
         }
       return result;
     }
+
+  private:
+    const double *const record; // CellSums
   };
 
 
@@ -231,78 +231,72 @@ namespace limber
           {
             const CellMeans<dim> mean(sums->data +
                                       batch.cell * CellSums<dim>::stride);
-            mean_volumetric = mean.volumetric;
+            mean_volumetric = mean.volumetric();
             mean_increment = what.step * mean.divergence(nodal, strained, cell);
           }
 
-        for (std::size_t p = batch.begin; p < batch.end;
-             p += BatchLanes<dim>::width)
-          {
-            const BatchLanes<dim> lanes(batch, p);
-            const auto            xi = lanes.natural(points, cell);
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          const auto xi = lanes.natural(points, cell);
 
-            MotionIncrement<dim, Number> motion;
-            motion.step = what.step;
-            for (int d = 0; d < dim; ++d)
-              {
-                const auto gradient = Kernel::template gradient<Number>(
-                  nodal.component(strained + d), xi);
-                for (int e = 0; e < dim; ++e)
-                  motion.gradient[d][e] =
-                    (what.step * cell.inverse_edge[e]) * gradient[e];
-              }
-            motion.volumetric = motion.trace();
+          MotionIncrement<dim, Number> motion;
+          motion.step = what.step;
+          for (int d = 0; d < dim; ++d)
+            {
+              const auto gradient =
+                Kernel::template gradient<Number>(nodal.component(strained + d),
+                                                  xi);
+              for (int e = 0; e < dim; ++e)
+                motion.gradient[d][e] =
+                  (what.step * cell.inverse_edge[e]) * gradient[e];
+            }
+          motion.volumetric = motion.trace();
 
-            auto state = load_state<Number>(points, [&](const double *a) {
-              return lanes.load(a);
-            });
-            // reference volume, zero in lanes beyond the batch
-            [[maybe_unused]] const Number volume =
-              lanes.only_active(lanes.load(points.mass)) * inverse_density;
+          auto state = load_state<Number>(points, [&](const double *a) {
+            return lanes.load(a);
+          });
+          // reference volume, zero in lanes beyond the batch
+          [[maybe_unused]] const Number volume =
+            lanes.only_active(lanes.load(points.mass)) * inverse_density;
 
-            if constexpr (projected)
-              {
-                motion.volumetric = broadcast<Number>(mean_increment);
-                if (what.relaxation > 0)
-                  {
-                    Number      &variable = volumetric_variable(state);
-                    const Number before   = law.volumetric_energy(variable);
-                    variable += what.relaxation * (mean_volumetric - variable);
-                    removed +=
-                      volume * (before - law.volumetric_energy(variable));
-                  }
-              }
-
-            const auto dissipation = law.template update<dim>(motion, state);
-            if constexpr (Law::dissipates)
-              {
-                viscous += volume * dissipation.viscous;
-                removed += volume * dissipation.cutoff;
-              }
-            store_state(points, state, [&](const Number &value, double *a) {
-              lanes.store(value, a);
-            });
-            if (measure_waves)
-              waves = larger(waves,
-                             lanes.only_active(
-                               law.template wave_speed_squared<dim>(state)));
-
-            if constexpr (moves)
-              for (int d = 0; d < dim; ++d)
+          if constexpr (projected)
+            {
+              motion.volumetric = broadcast<Number>(mean_increment);
+              if (what.relaxation > 0)
                 {
-                  const Number shift =
-                    what.step *
-                    Kernel::template value<Number>(nodal.component(d), xi);
-                  displacement =
-                    larger(displacement,
-                           lanes.only_active(magnitude(shift) *
-                                             cell.inverse_edge[d]));
-                  lanes.store(lanes.load(points.position[d]) + shift,
-                              points.position[d]);
+                  Number      &variable = volumetric_variable(state);
+                  const Number before   = law.volumetric_energy(variable);
+                  variable += what.relaxation * (mean_volumetric - variable);
+                  removed +=
+                    volume * (before - law.volumetric_energy(variable));
                 }
-          }
-        if constexpr (moves)
-          locate(points, grid, batch.cell, batch.begin, batch.end);
+            }
+
+          const auto dissipation = law.template update<dim>(motion, state);
+          if constexpr (Law::dissipates)
+            {
+              viscous += volume * dissipation.viscous;
+              removed += volume * dissipation.cutoff;
+            }
+          store_state(points, state, [&](const Number &value, double *a) {
+            lanes.store(value, a);
+          });
+          if (measure_waves)
+            waves = larger(waves,
+                           lanes.only_active(
+                             law.template wave_speed_squared<dim>(state)));
+
+          if constexpr (moves)
+            {
+              std::array<Number, dim> shift;
+              for (int d = 0; d < dim; ++d)
+                shift[d] =
+                  what.step *
+                  Kernel::template value<Number>(nodal.component(d), xi);
+              displacement = larger(
+                displacement,
+                move_points<dim>(points, grid, batch.cell, lanes, shift));
+            }
+        });
       });
 
       StressSummary result;

@@ -105,6 +105,10 @@ namespace limber
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
     void
+    sum_shared_cells(unsigned int first, unsigned int last);
+    void
+    average_cells(bool add_force);
+    void
     add_mean_pressure();
     void
     advance_nodes();

@@ -38,9 +38,26 @@ namespace limber
 
 
   /**
-   * Add the force of the mean pressure of each of the given cells, with the
-   * same weights that average the divergence: f_i += (sum V p / sum m) sum m
-   * G_i, where the last sum follows from the shares in the nodal masses.
+   * Turn the complete sums of the given cells into averages, in place: shares
+   * in nodal masses into means of the monomials over the points (slot 0 keeps
+   * the mass), the volumetric sum into its mean. With @p add_force also do
+   * what add_projected_pressure() does, in the same pass over the cells.
+   */
+  template <int dim>
+  void
+  average_cells(const std::uint32_t *cells,
+                std::size_t          n_cells,
+                const GridView<dim> &grid,
+                const CellSums<dim> &sums,
+                bool                 add_force);
+
+
+
+  /**
+   * Add the force of the mean pressure of each of the given cells, whose
+   * sums have been averaged, with the weights that average the divergence:
+   * f_i += (sum V p) <G_i>, where the mean of G_i over the points follows
+   * from those of the monomials.
    */
   template <int dim>
   void

@@ -89,6 +89,8 @@ namespace
       what.inverse_density = 1 / density;
       view.nodes           = nodes.data();
       points_to_grid<dim>(points, view, what, &sums);
+      for (std::uint32_t c = 0; c < grid.n_cells; ++c)
+        average_cells<dim>(&c, 1, view, sums, false);
     }
 
     void

@@ -96,44 +96,71 @@ namespace
 
 
 
+namespace
+{
+  /** What a block has left when it has dropped on the floor. */
+  struct Drop
+  {
+    double        drift_falling  = 0; // last before the contact
+    double        drift          = 0; // largest since
+    double        momentum_error = 0;
+    double        lowest         = 1e300; // of the centre of mass, m
+    unsigned long n_lost         = 0;
+
+    Drop(const std::vector<std::string> &variant,
+         const double                    courant_number,
+         const std::string              &cells)
+    {
+      std::vector<std::string> set = {"Body block/Box/Lower corner=1, 1",
+                                      "Body block/Box/Upper corner=3, 2",
+                                      "Loads/Gravity=0, -10",
+                                      "Method/Courant number=" +
+                                        digits(courant_number),
+                                      "Grid/Cells=" + cells};
+      set.insert(set.end(), variant.begin(), variant.end());
+      SceneRun<2> run(block, set);
+      run.advance_to(0.8, [&]() {
+        const auto   totals = run.totals();
+        const double error  = std::abs(totals.energy_drift);
+        if (run.time < 0.3)
+          drift_falling = error;
+        else
+          drift = std::max(drift, error);
+        momentum_error = std::max(momentum_error, totals.momentum_error);
+        lowest         = std::min(lowest, totals.centre_of_mass[1]);
+        n_lost         = totals.lost_points;
+      });
+    }
+  };
+} // namespace
+
+
+
 // The floor acts through the lowest row of cells, so the block stops while its
-// lower edge is still up to h above the floor. USL is left out: it does not
-// survive points that enter cells (theory, 6.1).
+// lower edge is still up to h above the floor, and what the points of that row
+// lose then is known to the balance only up to the order of h. USL is left
+// out: it does not survive points that enter cells (theory, 6.1).
 TEST(Balances, DropOnSlipFloor)
 {
   for (const std::string order : {"first", "last, remapped"})
     for (const std::string treatment : {"none", "cell"})
       {
         SCOPED_TRACE(order + ", " + treatment);
-        std::vector<double> drift;
-        for (const double courant_number : {0.4, 0.1})
+        const std::vector<std::string> variant = {
+          "Method/Stress update=" + order,
+          "Body block/Locking treatment=" + treatment};
+        const Drop coarse(variant, 0.4, "24, 12"),
+          short_steps(variant, 0.1, "24, 12"),
+          small_cells(variant, 0.1, "48, 24");
+        for (const Drop *const drop : {&coarse, &short_steps, &small_cells})
           {
-            SceneRun<2> run(block,
-                            {"Body block/Box/Lower corner=1, 1",
-                             "Body block/Box/Upper corner=3, 2",
-                             "Body block/Locking treatment=" + treatment,
-                             "Loads/Gravity=0, -10",
-                             "Method/Stress update=" + order,
-                             "Method/Courant number=" +
-                               digits(courant_number)});
-            drift.push_back(0);
-            double error = 0, lowest = 1e300;
-            run.advance_to(0.8, [&]() {
-              const auto totals = run.totals();
-              // The scale of energy is that of the fall only after a while.
-              if (run.time > 0.3)
-                drift.back() =
-                  std::max(drift.back(), std::abs(totals.energy_drift));
-              error  = std::max(error, totals.momentum_error);
-              lowest = std::min(lowest, totals.centre_of_mass[1]);
-            });
-            EXPECT_LT(error, 1e-12);
-            EXPECT_LT(lowest, 0.65); // it has arrived
-            EXPECT_EQ(run.totals().lost_points, 0u);
+            EXPECT_LT(drop->momentum_error, 1e-12);
+            EXPECT_LT(drop->lowest, 0.65); // it has arrived
+            EXPECT_LT(drop->drift, 0.04);
+            EXPECT_EQ(drop->n_lost, 0u);
           }
-        printf("%s %s drift %.4f %.4f\n", order.c_str(), treatment.c_str(), drift[0], drift[1]);
-        EXPECT_LT(drift[0], 0.1);
-        EXPECT_LT(drift[1], 0.5 * drift[0]);
+        EXPECT_GE(coarse.drift_falling / short_steps.drift_falling, 3.2);
+        EXPECT_GE(short_steps.drift / small_cells.drift, 1.6);
       }
 }
 
@@ -154,7 +181,6 @@ TEST(Balances, FrictionDecelerates)
       const double before = run.totals().all.momentum[0];
       run.advance_to(0.4);
       const double after = run.totals().all.momentum[0];
-      printf("%s friction %.5f\n", order.c_str(),(before - after) / (mass * 0.3));
       EXPECT_NEAR((before - after) / (mass * 0.3), 0.3 * g, 0.02 * 0.3 * g);
       EXPECT_LT(run.totals().momentum_error, 1e-12);
 
@@ -184,7 +210,6 @@ TEST(Balances, MovingAndStickingFloorsTakeTheBlockAlong)
             run.advance(1e-3);
             sum += run.totals().all.momentum[0] / mass / 1000;
           }
-        printf("%s %s v %.5f\n",order.c_str(),floor.c_str(), sum);
         EXPECT_NEAR(sum, floor == "velocity" ? 0.5 : 0, 0.005);
         EXPECT_LT(run.totals().momentum_error, 1e-12);
       }
@@ -205,7 +230,6 @@ TEST(Balances, ReactionOfARestingBlockIsItsWeight)
       const double before = run.totals().side_impulse[2][1];
       run.advance_to(3);
       const double reaction = run.totals().side_impulse[2][1] - before;
-      printf("%s reaction/weight %.5f\n", order.c_str(), reaction/(mass*g));
       EXPECT_NEAR(reaction, mass * g, 0.01 * mass * g);
     }
 }
@@ -215,10 +239,8 @@ TEST(Balances, ReactionOfARestingBlockIsItsWeight)
 // F L / (E A), free of oscillation after a rise over whole periods.
 TEST(Balances, TractionAndPressureStrainABar)
 {
-  const double pull =
-    mean_strain("set Traction = p*min(t/(4*period), 1); 0");
+  const double pull = mean_strain("set Traction = p*min(t/(4*period), 1); 0");
   const double push = mean_strain("set Pressure = p*min(t/(4*period), 1)");
-  printf("pull %.6e push %.6e\n", pull, push);
   EXPECT_NEAR(pull, 1e-4, 1e-6);
   EXPECT_NEAR(push, -1e-4, 1e-6);
 }

@@ -68,9 +68,9 @@ namespace
     for (std::size_t p = 0; p < start.size(); ++p)
       {
         const double x = start[run.bodies[0]->points.id(p)][0];
-        result.push_back({x,
-                          {{(run.position(p)[0] - x) * omega / v0,
-                            run.velocity(p)[0] / v0}}});
+        result.push_back(
+          {x,
+           {{(run.position(p)[0] - x) * omega / v0, run.velocity(p)[0] / v0}}});
       }
     return result;
   }
@@ -192,8 +192,9 @@ TEST(Bar, EnergyIsKeptForTenPeriods)
           while (run.time < 10 * period)
             {
               run.advance(step, 5);
-              largest_drift.back() = std::max(
-                largest_drift.back(), std::abs(run.totals().energy_drift));
+              largest_drift.back() =
+                std::max(largest_drift.back(),
+                         std::abs(run.totals().energy_drift));
             }
           const auto totals = run.totals();
           EXPECT_LT(std::abs(totals.boundary_work), 1e-4 * start);

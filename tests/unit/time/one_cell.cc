@@ -71,13 +71,12 @@ namespace
     std::vector<double> xi; // of the points
   };
 
-  const std::vector<Case> cases = {
-    {"1 at 0.5", {0.5}},
-    {"1 at 0.25", {0.25}},
-    {"1 at 0.01", {0.01}},
-    {"2 at 0.25, 0.75", {0.25, 0.75}},
-    {"4 uniform", {0.125, 0.375, 0.625, 0.875}},
-    {"2 uniform in [0, 0.1]", {0.025, 0.075}}};
+  const std::vector<Case> cases = {{"1 at 0.5", {0.5}},
+                                   {"1 at 0.25", {0.25}},
+                                   {"1 at 0.01", {0.01}},
+                                   {"2 at 0.25, 0.75", {0.25, 0.75}},
+                                   {"4 uniform", {0.125, 0.375, 0.625, 0.875}},
+                                   {"2 uniform in [0, 0.1]", {0.025, 0.075}}};
 
 
 
@@ -198,8 +197,7 @@ namespace
       for (const Case &c : cases)
         {
           SCOPED_TRACE(order + ", " + c.name);
-          const double expected =
-            critical_courant_number(c.xi, order, clamped);
+          const double expected = critical_courant_number(c.xi, order, clamped);
           if (expected > 100)
             EXPECT_TRUE(is_stable(c, order, clamped, 20)) << "without limit";
           else
@@ -207,7 +205,7 @@ namespace
               const double measured = bisect(c, order, clamped);
               EXPECT_NEAR(measured, expected, 0.01 * expected);
               testing::Test::RecordProperty((order + " " + c.name).c_str(),
-                             std::to_string(measured));
+                                            std::to_string(measured));
             }
         }
   }

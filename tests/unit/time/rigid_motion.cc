@@ -134,8 +134,8 @@ TEST(RigidMotion, TranslationIsExact)
           std::max(velocity_error, (run.velocity(p) - v).norm() / v.norm());
       const auto after = run.positions();
       for (std::size_t p = 0; p < after.size(); ++p)
-        position_error =
-          std::max(position_error, (after[p] - before[p] - run.time * v).norm());
+        position_error = std::max(position_error,
+                                  (after[p] - before[p] - run.time * v).norm());
       EXPECT_LT(velocity_error, 1e-12);
       EXPECT_LT(position_error, 1e-11);
     }
@@ -196,13 +196,13 @@ TEST(RigidMotion, HomogeneousDeformationIsExactAndUntouchedByTheTreatment)
         }
 
       // sigma or tau of the closed formulas of the laws
-      const double trace = dealii::trace(L);
+      const double trace    = dealii::trace(L);
       double       pressure = 0, xx = 0, xy = 0;
       if (variant.law == "linear elastic")
         {
           pressure = -modulus / 1.2 * n * step * trace;
-          xx = modulus / 1.3 * n * step * (L[0][0] - trace / 3);
-          xy = modulus / 1.3 * n * step * 0.5 * (L[0][1] + L[1][0]);
+          xx       = modulus / 1.3 * n * step * (L[0][0] - trace / 3);
+          xy       = modulus / 1.3 * n * step * 0.5 * (L[0][1] + L[1][0]);
         }
       else if (variant.law == "newtonian fluid")
         {

@@ -22,7 +22,8 @@ namespace
         set Upper corner = 8, 3
       end
       set Constants = L = 8, b = 1.875104068711961, s = 0.734095513758924
-      set Initial velocity = 0; 0.005*(cosh(b*x/L) - cos(b*x/L) - s*(sinh(b*x/L) - sin(b*x/L)))
+      set Initial velocity = 0; 0.005*(cosh(b*x/L) - cos(b*x/L))"
+                                 R"( - s*(sinh(b*x/L) - sin(b*x/L)))
       subsection Linear elastic
         set Density = 1000
         set Young's modulus = 1e6
@@ -44,19 +45,11 @@ namespace
 
 
 
-  /** Largest deviations so far. */
-  struct EnergyErrors
-  {
-    double kept     = 0; // of kinetic and strain energy from those at the start
-    double balanced = 0; // with what the wall has taken
-  };
-
-
-
-  EnergyErrors
-  energy_errors(const std::string &order,
-                const double       courant_number,
-                const double       end_time)
+  /** The largest change of kinetic and strain energy, over their sum. */
+  double
+  largest_energy_error(const std::string &order,
+                       const double       courant_number,
+                       const double       end_time)
   {
     SceneRun<2> run(cantilever,
                     {"Method/Stress update=" + order,
@@ -64,16 +57,12 @@ namespace
     // rows of points at 1/4 and 3/4 of a cell
     run.translate(dealii::Tensor<1, 2>({0., (0.25 + xi) * cell}));
 
-    const double start = run.totals().all.total_energy();
-    EnergyErrors result;
+    const double start  = run.totals().all.total_energy();
+    double       result = 0;
     run.advance_to(end_time, [&]() {
-      const auto totals = run.totals();
-      result.kept =
-        std::max(result.kept,
-                 std::abs(totals.all.total_energy() / start - 1));
-      result.balanced =
-        std::max(result.balanced, std::abs(totals.energy_drift));
-      if (!(result.kept < 10))
+      result =
+        std::max(result, std::abs(run.totals().all.total_energy() / start - 1));
+      if (!(result < 10))
         throw ComputationError("The energy has grown tenfold.");
     });
     return result;
@@ -83,16 +72,11 @@ namespace
 
 
 // The clamped wall takes some 0.02 % per second with the velocity that points
-// next to it have against it; the balance knows that.
+// next to it have against it, in addition to the swing of symplectic Euler.
 TEST(SmallCut, UsfAndMuslKeepTheEnergy)
 {
   for (const std::string order : {"first", "last, remapped"})
-    {
-      SCOPED_TRACE(order);
-      EXPECT_LT(energy_errors(order, 0.6, 3).kept, 0.002);
-      EXPECT_LT(energy_errors(order, 0.6, 8).balanced, 0.002);
-      printf("%s %.5f %.5f %.5f\n", order.c_str(), energy_errors(order, 0.6, 3).kept, energy_errors(order, 0.6, 8).kept, energy_errors(order, 0.6, 8).balanced);
-    }
+    EXPECT_LT(largest_energy_error(order, 0.6, 3), 0.002) << order;
 }
 
 
@@ -100,5 +84,6 @@ TEST(SmallCut, UsfAndMuslKeepTheEnergy)
 TEST(SmallCut, UslBlowsUpAboveItsLimit)
 {
   for (const double courant_number : {0.6, 0.05})
-    EXPECT_THROW(energy_errors("last", courant_number, 8), ComputationError);
+    EXPECT_THROW(largest_energy_error("last", courant_number, 8),
+                 ComputationError);
 }

@@ -116,7 +116,7 @@ namespace
 
 TEST(VelocityWaves, PicMultipliesByTheSymbol)
 {
-  const double pi = dealii::numbers::PI;
+  const double                                 pi       = dealii::numbers::PI;
   const std::vector<std::pair<double, double>> expected = {{pi / 8, 0.9715},
                                                            {pi / 4, 0.8901},
                                                            {pi / 2, 0.6250},
@@ -155,7 +155,7 @@ TEST(VelocityWaves, PicIsAViscosity)
       run.advance(step, n);
       const double share     = damping_time > 0 ? step / damping_time : 1;
       const double viscosity = share * 3. / (16 * step);
-      const double rate = -std::log(amplitude(run, kh).first) / (n * step);
+      const double rate      = -std::log(amplitude(run, kh).first) / (n * step);
       EXPECT_NEAR(rate, viscosity * kh * kh, 0.05 * viscosity * kh * kh);
     }
 }
