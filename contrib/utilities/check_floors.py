@@ -136,7 +136,7 @@ def self_test():
         ("main", {"main.cc": "limber/study/a.h", "study/a.h": "vector"}, None),
         ("host", {"points/material_points.h": "deal.II/base/point.h"}, None),
         ("upwards", {"grid/a.h": "limber/points/b.h"}, "upwards"),
-        ("neighbour", {"materials/a.h": "limber/problem/b.h"}, "neighbour"),
+        ("neighbour", {"transfer/a.h": "limber/stress/b.h"}, "neighbour"),
         ("room", {"attic/a.h": "vector"}, "no floor"),
         ("circle", {"grid/a.h": "limber/grid/b.h",
                     "grid/b.h": "limber/grid/a.h"}, "circle"),

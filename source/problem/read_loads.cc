@@ -30,7 +30,7 @@ namespace limber
                                             ", or empty",
                                           "1000"),
                          "Pressure p, Pa, positive when it presses: force -p "
-                         "times the present normal.");
+                         "times the initial normal and area.");
       parameters.declare("Traction",
                          "",
                          admissible::text("formula of " + variable_names(dim) +

@@ -188,8 +188,12 @@ namespace limber
     if (!(std::abs(totals.energy_drift) < problem.method.energy_growth_limit))
       {
         std::ostringstream text;
-        text << "The total energy has drifted by " << totals.energy_drift
-             << " of its scale, at time " << state.time << " s with step "
+        if (std::isfinite(totals.energy_drift))
+          text << "The total energy has drifted by " << totals.energy_drift
+               << " of its scale";
+        else
+          text << "The total energy is not finite";
+        text << ", at time " << state.time << " s with step "
              << state.step_size
              << " s. The run is unstable: usually the step is too long or the "
                 "material too stiff for it. Set Method/Courant number to 0.4 "

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
 #include <limber/interpolation/linear.h>
 #include <limber/time/loads.h>
 
@@ -52,8 +53,14 @@ namespace limber
     const double       face =
       load.face % 2 == 0 ? box.first[normal] : box.second[normal];
 
-    // Only the points next to the face; regular placement is ensured when
-    // the scene is read.
+    // Areas are those of a regular lattice.
+    const std::string where = "Face load " + load.name;
+    if (body.description.placement != Placement::regular)
+      throw InputError("'" + where + "' acts on body '" + load.body +
+                       "', whose points are not placed regularly, so that "
+                       "their shares of the face are unknown. Set 'Placement "
+                       "= regular' in section 'Body " +
+                       load.body + "'.");
     std::vector<std::pair<dealii::types::particle_index, double>> own;
     const PointView<dim> points = body.points.view();
     for (std::size_t p = 0; p < points.size; ++p)
@@ -75,6 +82,12 @@ namespace limber
     for (const auto &part :
          dealii::Utilities::MPI::all_gather(grid.communicator, own))
       layer.area.insert(part.begin(), part.end());
+
+    if (layer.area.empty())
+      throw InputError("'" + where + "' finds no point of body '" + load.body +
+                       "' within one spacing of its face. Usually the box is "
+                       "thinner than a spacing; enlarge it, or set more "
+                       "'Points per cell edge', for instance 4.");
 
     // The layer stands for the whole face also where the box does not end on
     // the edges of cells.
