@@ -5,6 +5,8 @@
 
 #include <limber/grid/background_grid.h>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -78,6 +80,8 @@ namespace limber
                                                       description.upper,
                                                       /*colorize=*/true);
     triangulation.refine_global(refinements);
+    // Refinement needs for a while twice what the mesh keeps; points come next.
+    malloc_trim(0);
     rebuild();
   }
 
@@ -125,7 +129,7 @@ namespace limber
   BackgroundGrid<dim>::build_cells()
   {
     geometry.assign(n_cells(), {});
-    node_places.assign(n_nodes(), dealii::Point<dim>());
+    boundary_places.clear();
     sides_of_node.assign(n_nodes(), 0);
     cell_numbers.assign(triangulation.n_active_cells(), invalid_cell);
 
@@ -152,18 +156,18 @@ namespace limber
             }
           cell->get_dof_indices(nodes);
           for (unsigned int i = 0; i < nodes.size(); ++i)
-            {
-              const std::uint32_t node =
-                node_partitioner->global_to_local(nodes[i]);
-              entry.node[i]     = node * NodeLayout<dim>::stride;
-              node_places[node] = cell->vertex(i);
-            }
+            entry.node[i] = node_partitioner->global_to_local(nodes[i]) *
+                            NodeLayout<dim>::stride;
           for (const unsigned int f : cell->face_indices())
             if (cell->at_boundary(f))
               for (unsigned int i = 0; i < nodes.size(); ++i)
                 if ((i >> f / 2 & 1) == f % 2)
-                  sides_of_node[entry.node[i] / NodeLayout<dim>::stride] |=
-                    1 << cell->face(f)->boundary_id();
+                  {
+                    const std::uint32_t node =
+                      entry.node[i] / NodeLayout<dim>::stride;
+                    sides_of_node[node] |= 1 << cell->face(f)->boundary_id();
+                    boundary_places[node] = cell->vertex(i);
+                  }
         }
     smallest_edge = dealii::Utilities::MPI::min(smallest, communicator);
   }

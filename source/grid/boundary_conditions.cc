@@ -32,7 +32,8 @@ namespace limber
   bool
   BoundaryConditions<dim>::act(
     const unsigned int                  side,
-    const dealii::Point<dim>           &place,
+    const BackgroundGrid<dim>          &grid,
+    const std::uint32_t                 node,
     const double                        time,
     dealii::Tensor<1, dim>             &velocity,
     const dealii::Tensor<1, dim> *const new_velocity) const
@@ -51,7 +52,8 @@ namespace limber
           velocity = 0;
           return true;
         case SideCondition::velocity:
-          velocity = sides[side].velocity.vector(place, time);
+          velocity =
+            sides[side].velocity.vector(grid.boundary_places.at(node), time);
           return true;
         case SideCondition::friction:
           {
@@ -100,7 +102,7 @@ namespace limber
           {
             const auto before = velocity;
             if (nodes.grid.sides_of_node[node] >> side & 1)
-              act(side, nodes.grid.node_places[node], time, velocity, nullptr);
+              act(side, nodes.grid, node, time, velocity, nullptr);
             change[side] = velocity - before;
           }
 
@@ -142,11 +144,7 @@ namespace limber
         auto       velocity     = read<dim>(record + Layout::remapped);
         for (unsigned int side = 0; side < 2 * dim; ++side)
           if (nodes.grid.sides_of_node[node] >> side & 1)
-            act(side,
-                nodes.grid.node_places[node],
-                time,
-                velocity,
-                &new_velocity);
+            act(side, nodes.grid, node, time, velocity, &new_velocity);
         for (int d = 0; d < dim; ++d)
           record[Layout::remapped + d] = velocity[d];
       }

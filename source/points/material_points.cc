@@ -20,6 +20,22 @@ namespace limber
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0);
     }
+
+
+
+    /**
+     * Points that never leave this rank need not be carried: of these the
+     * handler knows no more than where they were at the start, if asked for.
+     */
+    template <int dim>
+    unsigned int
+    count_properties(const PointLayout &layout, const MPI_Comm communicator)
+    {
+      const bool carried =
+        dealii::Utilities::MPI::n_mpi_processes(communicator) > 1;
+      return (layout.reference ? dim : 0) +
+             (carried ? count_fields<dim>(layout) - dim : 0);
+    }
   } // namespace
 
 
@@ -29,11 +45,12 @@ namespace limber
                                       const PointLayout         &layout)
     : handler(grid.triangulation,
               grid.mapping,
-              count_fields<dim>(layout) - dim + (layout.reference ? dim : 0))
+              count_properties<dim>(layout, grid.communicator))
     , grid(grid)
     , layout(layout)
     , n_fields(count_fields<dim>(layout))
-    , n_properties(n_fields - dim + (layout.reference ? dim : 0))
+    , n_properties(count_properties<dim>(layout, grid.communicator))
+    , first_carried(layout.reference ? dim : 0)
     , fields(n_fields)
   {
     resize(0);
@@ -49,10 +66,10 @@ namespace limber
     const double                                                     mass)
   {
     std::vector<double> properties(n_properties, 0.);
-    properties[dim] = mass;
     if (layout.reference)
       for (int d = 0; d < dim; ++d)
-        properties[n_fields - dim + d] = place[d];
+        properties[d] = place[d];
+    seeded_masses.push_back(mass);
     handler.insert_particle(place,
                             grid.mapping.transform_real_to_unit_cell(cell,
                                                                      place),
@@ -79,8 +96,12 @@ namespace limber
     for (auto &particle : handler)
       particle.set_id(number++);
     handler.update_cached_numbers();
-    handler.sort_particles_into_subdomains_and_cells();
+
     gather();
+    // Slots of the handler's pool are taken in the order of insertion.
+    for (std::size_t p = 0; p < size(); ++p)
+      fields[2 * dim][p] = seeded_masses[handle[p]];
+    std::vector<double>().swap(seeded_masses);
   }
 
 
@@ -151,7 +172,7 @@ namespace limber
       handler.get_property_pool().get_properties(handle[p]);
     dealii::Point<dim> result;
     for (int d = 0; d < dim; ++d)
-      result[d] = properties[n_fields - dim + d];
+      result[d] = properties[d];
     return result;
   }
 
@@ -266,8 +287,8 @@ namespace limber
           place[d] = fields[d][p];
         pool.set_location(handle[p], place);
         const auto properties = pool.get_properties(handle[p]);
-        for (unsigned int f = dim; f < n_fields; ++f)
-          properties[f - dim] = fields[f][p];
+        for (unsigned int k = first_carried; k < n_properties; ++k)
+          properties[k] = fields[dim + k - first_carried][p];
       }
 
     if (lost_handles.empty())
@@ -303,8 +324,8 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           fields[d][p] = place[d];
         const auto properties = pool.get_properties(handle[p]);
-        for (unsigned int f = dim; f < n_fields; ++f)
-          fields[f][p] = properties[f - dim];
+        for (unsigned int k = first_carried; k < n_properties; ++k)
+          fields[dim + k - first_carried][p] = properties[k];
         ++p;
       }
   }
@@ -329,8 +350,19 @@ namespace limber
   void
   MaterialPoints<dim>::synchronise()
   {
+    if (!is_carried())
+      return sort_by_cell();
     hand_over();
     gather();
+  }
+
+
+
+  template <int dim>
+  bool
+  MaterialPoints<dim>::is_carried() const
+  {
+    return n_properties > first_carried;
   }
 
 
@@ -339,6 +371,7 @@ namespace limber
   void
   MaterialPoints<dim>::prepare_mesh_change()
   {
+    AssertThrow(is_carried(), dealii::ExcInternalError());
     // Points must be in their cells before these are split or moved.
     hand_over();
     handler.prepare_for_coarsening_and_refinement();

@@ -192,6 +192,7 @@ namespace limber
     for (auto &body : bodies)
       {
         what.inverse_density = 1 / body->stress->density();
+        what.history = body->description.history != HistoryTreatment::keep;
         CellSums<dim> sums;
         if (body->cell_sums)
           sums = body->cell_sums->view();

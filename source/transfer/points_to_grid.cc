@@ -42,6 +42,41 @@ namespace limber
 
 
 
+    /**
+     * Turn complete sums of a cell into averages; returns the mean weights of
+     * its nodes over the points.
+     */
+    template <int dim>
+    inline typename Linear<dim>::Nodes
+    store_averages(const typename Linear<dim>::Nodes &shares,
+                   const double                       volumetric,
+                   double *const                      record)
+    {
+      const auto   moments      = Linear<dim>::to_moments(shares);
+      const double mass         = moments[0];
+      const double inverse_mass = 1. / mass;
+      store(moments * inverse_mass, record);
+      record[CellSums<dim>::mass]       = mass;
+      record[CellSums<dim>::volumetric] = volumetric * inverse_mass;
+      return shares * inverse_mass;
+    }
+
+
+
+    /** The force of sum V p on the nodes, given their mean weights. */
+    template <int dim>
+    inline typename Linear<dim>::Nodes
+    mean_pressure_force(const CellGeometry<dim>           &cell,
+                        const double                       pressure,
+                        const typename Linear<dim>::Nodes &weights,
+                        const int                          d)
+    {
+      return (pressure * cell.inverse_edge[d]) * Linear<dim>::sign(d) *
+             (weights + Linear<dim>::across(weights, d));
+    }
+
+
+
     template <int  dim,
               bool momentum,
               bool force,
@@ -52,6 +87,7 @@ namespace limber
     sweep(const PointView<dim> &points,
           const GridView<dim>  &grid,
           const double          inverse_density,
+          const bool            history,
           const CellSums<dim>  *sums)
     {
       using Kernel = Linear<dim>;
@@ -122,7 +158,8 @@ namespace limber
             if constexpr (projected && force)
               pressure += mass * points.pressure[p];
             if constexpr (projected && momentum)
-              volumetric += mass * points.volumetric[p];
+              if (history)
+                volumetric += mass * points.volumetric[p];
           }
 
         if constexpr (projected)
@@ -153,7 +190,8 @@ namespace limber
            const CellSums<dim>  *sums)
     {
       if constexpr (sizeof...(chosen) == 5)
-        return sweep<dim, chosen...>(points, grid, what.inverse_density, sums);
+        return sweep<dim, chosen...>(
+          points, grid, what.inverse_density, what.history, sums);
       else
         {
           const bool switches[] = {what.momentum,
@@ -184,7 +222,6 @@ namespace limber
 
   namespace
   {
-    /** Given the mean weights of the nodes over the points of a cell. */
     template <int dim>
     inline void
     add_mean_pressure(const CellGeometry<dim>           &cell,
@@ -192,11 +229,9 @@ namespace limber
                       const typename Linear<dim>::Nodes &weights,
                       double *const                      nodes)
     {
-      using Kernel = Linear<dim>;
-      std::array<typename Kernel::Nodes, dim> force;
+      std::array<typename Linear<dim>::Nodes, dim> force;
       for (int d = 0; d < dim; ++d)
-        force[d] = (pressure * cell.inverse_edge[d]) * Kernel::sign(d) *
-                   (weights + Kernel::across(weights, d));
+        force[d] = mean_pressure_force<dim>(cell, pressure, weights, d);
       add_to_nodes<dim, NodeLayout<dim>::force>(cell, force, nodes);
     }
   } // namespace
@@ -211,26 +246,23 @@ namespace limber
                 const CellSums<dim>       &sums,
                 const bool                 add_force)
   {
-    using Kernel = Linear<dim>;
-    using Nodes  = typename Kernel::Nodes;
+    using Nodes = typename Linear<dim>::Nodes;
 
     for (std::size_t k = 0; k < n_cells; ++k)
       {
-        double *const record  = sums.data + cells[k] * CellSums<dim>::stride;
-        const Nodes   shares  = load<Nodes>(record);
-        const Nodes   moments = Kernel::to_moments(shares);
-        const double  mass    = moments[0];
-        if (!(mass > 0))
+        double *const record = sums.data + cells[k] * CellSums<dim>::stride;
+        const Nodes   shares = load<Nodes>(record);
+        if (!(sum(shares) > 0))
           continue;
-        const double inverse_mass = 1. / mass;
+        const Nodes weights =
+          store_averages<dim>(shares,
+                              record[CellSums<dim>::volumetric],
+                              record);
         if (add_force)
           add_mean_pressure<dim>(grid.cells[cells[k]],
                                  record[CellSums<dim>::pressure],
-                                 shares * inverse_mass,
+                                 weights,
                                  grid.nodes);
-        store(moments * inverse_mass, record);
-        record[CellSums<dim>::mass] = mass;
-        record[CellSums<dim>::volumetric] *= inverse_mass;
       }
   }
 

@@ -19,6 +19,7 @@
 #include <limber/problem/problem.h>
 
 #include <memory>
+#include <unordered_map>
 #include <vector>
 
 namespace limber
@@ -111,14 +112,15 @@ namespace limber
     dealii::AffineConstraints<double>                 constraints;
 
     // Tables, by local number
-    std::vector<CellGeometry<dim>>  geometry;
-    std::vector<dealii::Point<dim>> node_places;
-    std::vector<HangingNode>        hanging_nodes;
-    std::vector<std::uint32_t>      bin_table;
-    BinView<dim>                    bins;
+    std::vector<CellGeometry<dim>> geometry;
+    std::vector<HangingNode>       hanging_nodes;
+    std::vector<std::uint32_t>     bin_table;
+    BinView<dim>                   bins;
     // Bit s is set for nodes on side s of the box.
     std::vector<std::uint8_t> sides_of_node;
-    double                    smallest_edge = 0; // m, over all ranks
+    // Places of these nodes only
+    std::unordered_map<std::uint32_t, dealii::Point<dim>> boundary_places;
+    double smallest_edge = 0; // m, over all ranks
 
   private:
     void

@@ -47,7 +47,8 @@ namespace limber
   private:
     bool
     act(unsigned int                  side,
-        const dealii::Point<dim>     &place,
+        const BackgroundGrid<dim>    &grid,
+        std::uint32_t                 node,
         double                        time,
         dealii::Tensor<1, dim>       &velocity,
         const dealii::Tensor<1, dim> *sticking) const;

@@ -104,12 +104,13 @@ namespace limber
     /**
      * Write the arrays back into the ParticleHandler, hand points over to the
      * ranks that own their cells, and gather the arrays anew. Points must not
-     * have gone beyond the ghost layer since the last time.
+     * have gone beyond the ghost layer since the last time. On one rank, where
+     * the handler carries nothing, the arrays are only sorted.
      */
     void
     synchronise();
 
-    /** Before and after the mesh is refined or partitioned anew. */
+    /** Before and after the mesh is partitioned anew, on several ranks. */
     void
     prepare_mesh_change();
     void
@@ -126,6 +127,8 @@ namespace limber
     write_back();
     void
     hand_over();
+    bool
+    is_carried() const;
     void
     gather();
     void
@@ -136,14 +139,17 @@ namespace limber
     const unsigned int         n_fields;     // arrays
     const unsigned int         n_properties; // doubles in the handler
 
-    // Position, velocity, mass, pressure, deviator, history, affine part; the
-    // properties of the handler are the same without the position, and then
-    // the reference position.
+    const unsigned int first_carried; // property
+
+    // Position, velocity, mass, pressure, deviator, history, affine part. The
+    // properties of the handler are the reference position, if asked for, and
+    // then, where there are several ranks, the same without the position.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint32_t>       handle; // slot in the handler's pool
     std::vector<std::uint32_t>       lost_handles;
-    std::vector<std::uint32_t>       offset; // per cell, for sorting
+    std::vector<std::uint32_t>       offset;        // per cell, for sorting
+    std::vector<double>              seeded_masses; // until finish_adding()
     unsigned long                    n_reorderings = 0;
   };
 } // namespace limber

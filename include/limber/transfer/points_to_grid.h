@@ -12,6 +12,7 @@ namespace limber
     bool   momentum        = true;  // mass and momentum
     bool   force           = true;  // internal force
     bool   affine          = false; // momentum with the affine part (APIC)
+    bool   history         = true;  // the volumetric sums of projected bodies
     double inverse_density = 0;     // 1 / rho_0 of the body, m^3/kg
   };
 
