@@ -173,10 +173,20 @@ namespace limber
 
   template <int dim>
   void
-  NodalFields<dim>::share()
+  NodalFields<dim>::start_share()
   {
     if (parallel)
-      values.update_ghost_values();
+      values.update_ghost_values_start();
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::end_share()
+  {
+    if (parallel)
+      values.update_ghost_values_finish();
     for (const HangingNode &hanging : grid.hanging_nodes)
       {
         double *const to = record(hanging.node);
@@ -254,10 +264,20 @@ namespace limber
 
   template <int dim>
   void
-  CellFields<dim>::share()
+  CellFields<dim>::start_share(const unsigned int channel)
   {
     if (parallel)
-      values.update_ghost_values();
+      values.update_ghost_values_start(channel);
+  }
+
+
+
+  template <int dim>
+  void
+  CellFields<dim>::end_share()
+  {
+    if (parallel)
+      values.update_ghost_values_finish();
   }
 
 

@@ -99,7 +99,8 @@ namespace limber
         record[CellSums<dim>::volumetric] += points.mass[p] * volume_ratios[p];
       }
     sums.sum_shared();
-    sums.share();
+    sums.start_share(0);
+    sums.end_share();
   }
 
 

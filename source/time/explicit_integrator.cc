@@ -119,7 +119,7 @@ namespace limber
     average_cells(/*add_force=*/false);
     sum_shared_nodes(0, Layout::stride);
     divide_remapped(Layout::momentum);
-    share_nodes();
+    share_nodes(/*with_cells=*/true);
     update_stress(/*remapped=*/true, /*move=*/false);
 
     points_to_grid(/*momentum=*/false, /*force=*/true);
@@ -129,7 +129,8 @@ namespace limber
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes();
+    share_nodes(/*with_cells=*/false);
+    check_nodes();
     grid_to_points(/*remap=*/false, /*move=*/true);
   }
 
@@ -151,13 +152,14 @@ namespace limber
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes();
+    share_nodes(/*with_cells=*/true);
+    check_nodes();
     grid_to_points(remap, /*move=*/false);
     if (remap)
       {
         sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
         divide_remapped(Layout::remapped);
-        share_nodes();
+        share_nodes(/*with_cells=*/false);
       }
     update_stress(remap, /*move=*/true);
   }
@@ -322,7 +324,18 @@ namespace limber
     for (int d = 0; d < dim; ++d)
       ledger.gravity_impulse[d] += total_mass * gravity_step[d];
 
-    check_nodes(std::sqrt(checked_speed), std::isfinite(all));
+    fastest_node = std::isfinite(all) ?
+                     std::sqrt(checked_speed) * step / grid.smallest_edge :
+                     1e300;
+    // The answer is needed only before points are touched.
+    if (parallel)
+      MPI_Iallreduce(MPI_IN_PLACE,
+                     &fastest_node,
+                     1,
+                     MPI_DOUBLE,
+                     MPI_MAX,
+                     grid.communicator,
+                     &check_request);
     lap(Verb::advance_nodes);
   }
 
@@ -330,12 +343,11 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::check_nodes(const double largest_speed,
-                                       const bool   finite) const
+  ExplicitIntegrator<dim>::check_nodes()
   {
-    double cells = finite ? largest_speed * step / grid.smallest_edge : 1e300;
     if (parallel)
-      cells = dealii::Utilities::MPI::max(cells, grid.communicator);
+      MPI_Wait(&check_request, MPI_STATUS_IGNORE);
+    const double cells = fastest_node;
     if (cells <= 1)
       return;
 
@@ -421,12 +433,19 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::share_nodes()
+  ExplicitIntegrator<dim>::share_nodes(const bool with_cells)
   {
-    nodes.share();
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        body->cell_sums->share();
+    nodes.start_share();
+    unsigned int channel = 0;
+    if (with_cells)
+      for (auto &body : bodies)
+        if (body->cell_sums)
+          body->cell_sums->start_share(++channel);
+    nodes.end_share();
+    if (with_cells)
+      for (auto &body : bodies)
+        if (body->cell_sums)
+          body->cell_sums->end_share();
     lap(Verb::share_nodes);
   }
 

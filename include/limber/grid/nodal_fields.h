@@ -72,9 +72,14 @@ namespace limber
     void
     sum_shared(unsigned int first = 0, unsigned int last = Layout::stride);
 
-    /** Give other ranks, and hanging nodes, the values of their nodes. */
+    /**
+     * Give other ranks, and hanging nodes, the values of their nodes. Between
+     * start and end other messages may be under way.
+     */
     void
-    share();
+    start_share();
+    void
+    end_share();
 
     /** Records of active nodes that this rank owns, by local number. */
     const std::vector<std::uint32_t> &
@@ -153,9 +158,14 @@ namespace limber
     sum_shared(unsigned int first = 0,
                unsigned int last  = CellSums<dim>::stride);
 
-    /** Give other ranks the sums of the cells that they hold as ghosts. */
+    /**
+     * Give other ranks the sums of the cells that they hold as ghosts; the
+     * @p channel tells messages apart that are under way at the same time.
+     */
     void
-    share();
+    start_share(unsigned int channel);
+    void
+    end_share();
 
   private:
     const BackgroundGrid<dim>                         &grid;

@@ -113,7 +113,7 @@ namespace limber
     void
     advance_nodes();
     void
-    check_nodes(double largest_speed, bool finite) const;
+    check_nodes();
     void
     apply_boundaries();
     void
@@ -121,7 +121,7 @@ namespace limber
     void
     divide_remapped(unsigned int momentum);
     void
-    share_nodes();
+    share_nodes(bool with_cells);
     void
     grid_to_points(bool remap, bool move);
     void
@@ -167,7 +167,9 @@ namespace limber
     double                                              largest_mass  = 1e300;
     std::vector<std::pair<std::string, LostPoint<dim>>> lost;
 
-    double any_lost = 0;
+    double      any_lost      = 0;
+    double      fastest_node  = 0; // over all ranks, cells in this step
+    MPI_Request check_request = MPI_REQUEST_NULL;
 
     // Sum of largest displacements since ranks exchanged points, in cells
     double travelled = 0;
