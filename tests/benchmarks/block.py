@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Measures the sliding block: time per point and step, ranks, memory.
+
+    block.py [path of limber] [runs]
+
+Prints best and median over the runs (default 5) of CPU time in ns per point
+and step for both treatments in 2D and 3D, the same in a box with 16 times the
+cells, the speed-up of two ranks in wall time, and bytes per point (peak
+resident set, program included) for a finer block. Treatments and rank counts
+take turns, so that a drift of the machine's speed meets all alike.
+"""
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+ENVIRONMENT = {**os.environ,
+               "OMPI_ALLOW_RUN_AS_ROOT": "1",
+               "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+               "OMPI_MCA_rmaps_base_oversubscribe": "1",
+               "OMPI_MCA_hwloc_base_binding_policy": "none"}
+BIG_BOX = {"2d": ["Grid/Upper corner=4.96, 4.96", "Grid/Cells=496, 496"],
+           "3d": ["Grid/Upper corner=5.3333333333, 2.6666666667, 2.6666666667",
+                  "Grid/Cells=160, 80, 80"]}
+FINE = {"2d": ["Grid/Cells=992, 992", "End time=0.0005"],
+        "3d": ["Grid/Cells=160, 160, 160", "End time=0.001"]}
+
+
+def run(limber, scene, settings=(), ranks=1):
+    with tempfile.TemporaryDirectory() as folder:
+        command = ["mpirun", "-np", str(ranks), limber,
+                   str(TOP / "prm/benchmarks" / f"block_{scene}.prm"),
+                   "--output-directory", folder + "/run"]
+        for setting in settings:
+            command += ["--set", setting]
+        subprocess.run(command, env=ENVIRONMENT, check=True,
+                       stdout=subprocess.DEVNULL)
+        return json.loads(Path(folder, "run/summary.json").read_text())
+
+
+def main():
+    limber = sys.argv[1] if len(sys.argv) > 1 else str(
+        TOP / "build/release/limber")
+    runs = int(sys.argv[2]) if len(sys.argv) > 2 else 5
+    for scene in ("2d", "3d"):
+        variants = {"cell": ([], 1),
+                    "none": (["Body block/Locking treatment=none"], 1),
+                    "cell, 16 times the box": (BIG_BOX[scene], 1),
+                    "cell, two ranks": ([], 2)}
+        found = {name: [] for name in variants}
+        for _ in range(runs):
+            for name, (settings, ranks) in variants.items():
+                found[name].append(run(limber, scene, settings, ranks))
+        for name, summaries in found.items():
+            cost = [s["ns_per_point_step"] for s in summaries]
+            wall = [s["wall_seconds"] for s in summaries]
+            print(f"{scene} {name:24s} ns per point and step: best "
+                  f"{min(cost):6.1f} median {statistics.median(cost):6.1f}"
+                  f"   wall s: best {min(wall):.2f} "
+                  f"median {statistics.median(wall):.2f}", flush=True)
+        memory = run(limber, scene, FINE[scene])
+        print(f"{scene} {memory['points']} points: "
+              f"{memory['bytes_per_point']:.0f} bytes per point", flush=True)
+
+
+if __name__ == "__main__":
+    main()
