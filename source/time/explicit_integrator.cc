@@ -6,15 +6,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <sstream>
 
 namespace limber
 {
   namespace
   {
-    // Points must not go beyond the ghost layer before ranks exchange them.
-    constexpr double travel_limit = 0.9; // cells
-  }                                      // namespace
+    // Points must not go beyond the ghost layer before ranks exchange them:
+    // the longest way between two exchanges, in cells.
+    constexpr double travel_limit = 0.9;
+
+
+
+    /** The sums of a projected body for the sweeps; nothing for others. */
+    template <int dim>
+    std::optional<CellSums<dim>>
+    sums_of(MaterialBody<dim> &body)
+    {
+      if (!body.cell_sums)
+        return std::nullopt;
+      return body.cell_sums->view();
+    }
+  } // namespace
 
 
 
@@ -194,15 +208,12 @@ namespace limber
     for (auto &body : bodies)
       {
         what.inverse_density = 1 / body->stress->density();
-        what.history = body->description.history != HistoryTreatment::keep;
-        CellSums<dim> sums;
-        if (body->cell_sums)
-          sums = body->cell_sums->view();
-        n_batches +=
-          limber::points_to_grid<dim>(body->points.view(),
-                                      nodes.view(),
-                                      what,
-                                      body->cell_sums ? &sums : nullptr);
+        what.history    = body->description.history != HistoryTreatment::keep;
+        const auto sums = sums_of(*body);
+        n_batches += limber::points_to_grid<dim>(body->points.view(),
+                                                 nodes.view(),
+                                                 what,
+                                                 sums ? &*sums : nullptr);
       }
     lap(Verb::points_to_grid);
   }
@@ -488,21 +499,18 @@ namespace limber
     for (auto &body : bodies)
       {
         const Body<dim> &description = body->description;
-        what.relaxation = description.history == HistoryTreatment::replace ?
-                            1 :
-                          description.history == HistoryTreatment::relax ?
-                            -std::expm1(-step / description.relaxation_time) :
-                            0;
-        CellSums<dim> sums;
-        if (body->cell_sums)
-          sums = body->cell_sums->view();
-        const auto found =
-          body->stress->update(body->points.view(),
-                               nodes.view(),
-                               body->cell_sums ? &sums : nullptr,
-                               what);
-        wave_squared = std::max(wave_squared, found.wave_speed_squared);
-        displacement = std::max(displacement, found.displacement);
+        what.relaxation  = description.history == HistoryTreatment::replace ?
+                             1 :
+                           description.history == HistoryTreatment::relax ?
+                             -std::expm1(-step / description.relaxation_time) :
+                             0;
+        const auto sums  = sums_of(*body);
+        const auto found = body->stress->update(body->points.view(),
+                                                nodes.view(),
+                                                sums ? &*sums : nullptr,
+                                                what);
+        wave_squared     = std::max(wave_squared, found.wave_speed_squared);
+        displacement     = std::max(displacement, found.displacement);
         ledger.viscous += found.viscous;
         ledger.history += found.history;
       }
