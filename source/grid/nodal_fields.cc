@@ -212,7 +212,8 @@ namespace limber
   void
   CellFields<dim>::reinit()
   {
-    values.reinit(grid.cell_records(CellSums<dim>::stride));
+    now.reinit(grid.cell_records(CellSums<dim>::stride));
+    next.reinit(now);
     parallel = dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1;
   }
 
@@ -222,62 +223,28 @@ namespace limber
   CellSums<dim>
   CellFields<dim>::view()
   {
-    return {values.begin()};
+    return {now.begin(), next.begin()};
   }
 
 
 
   template <int dim>
   void
-  CellFields<dim>::clear(const std::vector<std::uint32_t> &cells)
+  CellFields<dim>::complete(const std::vector<std::uint32_t> &cells)
   {
+    if (parallel)
+      {
+        next.set_ghost_state(false);
+        next.compress(dealii::VectorOperation::add);
+        next.update_ghost_values();
+      }
+    now.swap(next);
     for (const std::uint32_t cell : cells)
-      std::fill_n(values.begin() + std::size_t(cell) * CellSums<dim>::stride,
+      std::fill_n(next.begin() + std::size_t(cell) * CellSums<dim>::stride,
                   CellSums<dim>::stride,
                   0.);
     if (parallel)
-      values.zero_out_ghost_values();
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::sum_shared(const unsigned int first, const unsigned int last)
-  {
-    if (!parallel)
-      return;
-    // Ghosts may hold copies in other slots, which must not be added again.
-    constexpr unsigned int stride = CellSums<dim>::stride;
-    for (std::uint32_t cell = grid.n_owned_cells(); cell < grid.n_cells();
-         ++cell)
-      {
-        double *const ghost = values.begin() + std::size_t(cell) * stride;
-        std::fill(ghost, ghost + first, 0.);
-        std::fill(ghost + last, ghost + stride, 0.);
-      }
-    values.set_ghost_state(false);
-    values.compress(dealii::VectorOperation::add);
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::start_share(const unsigned int channel)
-  {
-    if (parallel)
-      values.update_ghost_values_start(channel);
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::end_share()
-  {
-    if (parallel)
-      values.update_ghost_values_finish();
+      next.zero_out_ghost_values();
   }
 
 

@@ -82,10 +82,11 @@ namespace limber
   void
   PointPressure<dim>::sum_over_cells()
   {
-    sums.clear(touched);
     // Points may sit in ghost cells, and those of other ranks in cells here.
-    touched            = grid.shared_cells();
-    double *const data = sums.view().data;
+    auto cells = grid.shared_cells();
+    cells.insert(cells.end(), touched.begin(), touched.end());
+    touched.clear();
+    double *const data = sums.view().next;
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const std::uint32_t cell = points.cell[p];
@@ -95,12 +96,11 @@ namespace limber
           touched.push_back(cell);
         double *const record = data + std::size_t(cell) * CellSums<dim>::stride;
         record[0] += points.mass[p];
-        record[CellSums<dim>::pressure] += points.mass[p] * points.pressure[p];
-        record[CellSums<dim>::volumetric] += points.mass[p] * volume_ratios[p];
+        record[1] += points.mass[p] * volume_ratios[p];
+        record[2] += points.mass[p] * points.pressure[p];
       }
-    sums.sum_shared();
-    sums.start_share(0);
-    sums.end_share();
+    cells.insert(cells.end(), touched.begin(), touched.end());
+    sums.complete(cells);
   }
 
 
@@ -112,9 +112,7 @@ namespace limber
     if (cell == invalid_cell)
       return {};
     const double *const record = sums.record(cell);
-    return {record[0],
-            record[CellSums<dim>::volumetric],
-            record[CellSums<dim>::pressure]};
+    return {record[0], record[1], record[2]};
   }
 
 

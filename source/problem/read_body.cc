@@ -51,11 +51,17 @@ namespace limber
                    "What keeps a nearly incompressible material from locking; "
                    "see doc/theory.");
       declare_word(parameters,
+                   "Hourglass response",
+                   "bending",
+                   hourglass_words(),
+                   "With the treatment 'assumed strain': how the normal "
+                   "strains follow a motion that bends the cell.");
+      declare_word(parameters,
                    "History",
                    "keep",
                    history_words(),
-                   "With the treatment 'cell': what happens to the scatter of "
-                   "the volume ratios of the points within a cell.");
+                   "With a treatment that averages the volumetric strain: what "
+                   "happens to its scatter among the points of a cell.");
       parameters.declare("Relaxation time",
                          "0",
                          admissible::non_negative_number("0.01"),
@@ -181,7 +187,9 @@ namespace limber
     read_treatment(const Section &section, Body<dim> &body)
     {
       body.treatment = read_word(section, "Locking treatment", locking_words());
-      body.history   = read_word(section, "History", history_words());
+      body.hourglass =
+        read_word(section, "Hourglass response", hourglass_words());
+      body.history         = read_word(section, "History", history_words());
       body.relaxation_time = section.number("Relaxation time");
 
       const bool relaxes = body.history == HistoryTreatment::relax;
@@ -198,7 +206,7 @@ namespace limber
                          ". Usually that was not changed along with it. Set "
                          "'History = relax'.");
       if (body.history != HistoryTreatment::keep &&
-          body.treatment == LockingTreatment::none)
+          body.treatment == Projection::none)
         throw InputError("The history " + in_quotes(section.text("History")) +
                          " in " + section.where("History") +
                          " needs the mean of a cell, which the locking "

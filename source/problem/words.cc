@@ -101,19 +101,41 @@ namespace limber
 
 
 
-  const Words<LockingTreatment> &
+  const Words<Projection> &
   locking_words()
   {
-    static const Words<LockingTreatment> words = {
-      {"none", LockingTreatment::none, "values of the points as they are"},
+    static const Words<Projection> words = {
+      {"none", Projection::none, "values of the points as they are"},
       {"cell",
-       LockingTreatment::cell,
-       "Hu-Washizu, volume ratio and pressure constant in the cell"},
-      {"cell shear", std::nullopt, not_available},
-      {"cell full", std::nullopt, not_available},
+       Projection::cell,
+       "Hu-Washizu, volumetric strain and pressure constant in the cell"},
+      {"cell shear",
+       Projection::cell_shear,
+       "volumetric strain, shear strain and their stresses constant"},
+      {"cell full", Projection::cell_full, "all strain and stress constant"},
       {"node", std::nullopt, not_available},
       {"hybrid", std::nullopt, not_available},
-      {"assumed strain", std::nullopt, not_available}};
+      {"assumed strain",
+       Projection::assumed_strain,
+       "constant but for what bends the cell, see 'Hourglass response'"}};
+    return words;
+  }
+
+
+
+  const Words<HourglassResponse> &
+  hourglass_words()
+  {
+    static const Words<HourglassResponse> words = {
+      {"bending",
+       HourglassResponse::bending,
+       "as a beam bends, from the moduli of the material"},
+      {"deviatoric",
+       HourglassResponse::deviatoric,
+       "the deviator of what the nodes do"},
+      {"incompressible",
+       HourglassResponse::incompressible,
+       "without change of volume"}};
     return words;
   }
 

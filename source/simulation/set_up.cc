@@ -99,10 +99,10 @@ namespace limber
 
     for (const Body<dim> &body : problem.bodies)
       {
-        auto stress =
-          make_stress_update<dim>(body.law,
-                                  body.material,
-                                  body.treatment == LockingTreatment::cell);
+        auto        stress = make_stress_update<dim>(body.law,
+                                              body.material,
+                                              body.treatment,
+                                              body.hourglass);
         PointLayout layout;
         layout.deviator   = stress->has_deviator();
         layout.n_history  = stress->n_history();
@@ -143,7 +143,7 @@ namespace limber
     if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
       balance(grid, bodies);
     for (auto &body : bodies)
-      if (body->description.treatment == LockingTreatment::cell)
+      if (body->description.treatment != Projection::none)
         body->cell_sums.emplace(grid);
     return bodies;
   }

@@ -6,11 +6,94 @@
 
 namespace limber
 {
+  namespace
+  {
+    /**
+     * The strain of an hourglass mode that resists bending as a beam does:
+     * the mate contracts by nu / (1 - nu) where the third axis is held, and
+     * by nu each in the trilinear mode (doc/theory/treatments.md).
+     */
+    template <class Law>
+    StrainProjection
+    strain_projection(const Law              &law,
+                      const Projection        kind,
+                      const HourglassResponse response)
+    {
+      const double     K = law.bulk_modulus, G = law.shear_modulus;
+      StrainProjection result;
+      result.kind = kind;
+      switch (response)
+        {
+          case HourglassResponse::bending:
+            result.own            = 1;
+            result.mate           = -(K - 2. / 3. * G) / (K + 4. / 3. * G);
+            result.trilinear_own  = 1;
+            result.trilinear_mate = -(3 * K - 2 * G) / (2 * (3 * K + G));
+            break;
+          case HourglassResponse::deviatoric:
+            result.own            = 0.5;
+            result.mate           = -0.5;
+            result.trilinear_own  = 2. / 3.;
+            result.trilinear_mate = -1. / 3.;
+            break;
+          case HourglassResponse::incompressible:
+            result.own            = 1;
+            result.mate           = -1;
+            result.trilinear_own  = 1;
+            result.trilinear_mate = -0.5;
+            break;
+        }
+      return result;
+    }
+
+
+
+    template <int dim, class Law>
+    std::unique_ptr<const StressUpdate<dim>>
+    make_sweep(const Law              &law,
+               const Projection        kind,
+               const HourglassResponse response)
+    {
+      const auto projection = strain_projection(law, kind, response);
+      switch (kind)
+        {
+          case Projection::none:
+            return std::make_unique<LawSweep<dim, Law, Projection::none>>(
+              law, projection);
+          case Projection::cell:
+            return std::make_unique<LawSweep<dim, Law, Projection::cell>>(
+              law, projection);
+          default:
+            break;
+        }
+      // Without shear stress there is no more to project.
+      if constexpr (!Law::has_deviator)
+        throw std::logic_error(std::string(Law::name) + " bears no shear");
+      else
+        switch (kind)
+          {
+            case Projection::cell_shear:
+              return std::make_unique<
+                LawSweep<dim, Law, Projection::cell_shear>>(law, projection);
+            case Projection::cell_full:
+              return std::make_unique<
+                LawSweep<dim, Law, Projection::cell_full>>(law, projection);
+            default:
+              return std::make_unique<
+                LawSweep<dim, Law, Projection::assumed_strain>>(law,
+                                                                projection);
+          }
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_stress_update(const std::string         &name,
                      const std::vector<double> &values,
-                     const bool                 projected)
+                     const Projection           kind,
+                     const HourglassResponse    response)
   {
     std::unique_ptr<const StressUpdate<dim>> result;
     for_each_law([&](auto *const candidate) {
@@ -21,13 +104,8 @@ namespace limber
       if (values.size() != own.size())
         throw std::logic_error("wrong number of parameters for " + name);
       std::copy(values.begin(), values.end(), own.begin());
-      if (!Law::accepts(own))
-        return;
-      const Law law(own);
-      if (projected)
-        result = std::make_unique<LawSweep<dim, Law, true>>(law);
-      else
-        result = std::make_unique<LawSweep<dim, Law, false>>(law);
+      if (Law::accepts(own))
+        result = make_sweep<dim>(Law(own), kind, response);
     });
     if (!result)
       throw std::logic_error("no law " + name);
@@ -37,7 +115,13 @@ namespace limber
 
 
   template std::unique_ptr<const StressUpdate<2>>
-  make_stress_update(const std::string &, const std::vector<double> &, bool);
+  make_stress_update(const std::string &,
+                     const std::vector<double> &,
+                     Projection,
+                     HourglassResponse);
   template std::unique_ptr<const StressUpdate<3>>
-  make_stress_update(const std::string &, const std::vector<double> &, bool);
+  make_stress_update(const std::string &,
+                     const std::vector<double> &,
+                     Projection,
+                     HourglassResponse);
 } // namespace limber

@@ -83,6 +83,7 @@ namespace limber
       }
     reduce_extremes();
     sort_points();
+    gather_cells();
   }
 
 
@@ -98,6 +99,7 @@ namespace limber
     loads.reinit();
     travelled = 0;
     sort_points();
+    gather_cells();
   }
 
 
@@ -129,21 +131,17 @@ namespace limber
 
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/false);
-    sum_shared_cells(0, CellSums<dim>::stride);
-    average_cells(/*add_force=*/false);
     sum_shared_nodes(0, Layout::stride);
     divide_remapped(Layout::momentum);
-    share_nodes(/*with_cells=*/true);
+    share_nodes();
     update_stress(/*remapped=*/true, /*move=*/false);
 
     points_to_grid(/*momentum=*/false, /*force=*/true);
-    sum_shared_cells(CellSums<dim>::pressure, CellSums<dim>::pressure + 1);
-    add_mean_pressure();
     sum_shared_nodes(Layout::force, Layout::force + dim);
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes(/*with_cells=*/false);
+    share_nodes();
     check_nodes();
     grid_to_points(/*remap=*/false, /*move=*/true);
   }
@@ -160,20 +158,18 @@ namespace limber
 
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/true);
-    sum_shared_cells(0, CellSums<dim>::stride);
-    average_cells(/*add_force=*/true);
     sum_shared_nodes(0, Layout::stride);
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes(/*with_cells=*/true);
+    share_nodes();
     check_nodes();
     grid_to_points(remap, /*move=*/false);
     if (remap)
       {
         sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
         divide_remapped(Layout::remapped);
-        share_nodes(/*with_cells=*/false);
+        share_nodes();
       }
     update_stress(remap, /*move=*/true);
   }
@@ -185,9 +181,6 @@ namespace limber
   ExplicitIntegrator<dim>::clear()
   {
     nodes.clear();
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        body->cell_sums->clear(nodes.occupied_cells());
     speed_squared = wave_squared = displacement = 0;
     n_batches                                   = 0;
     lost.clear();
@@ -208,64 +201,13 @@ namespace limber
     for (auto &body : bodies)
       {
         what.inverse_density = 1 / body->stress->density();
-        what.history    = body->description.history != HistoryTreatment::keep;
-        const auto sums = sums_of(*body);
+        what.projection      = body->stress->projection();
+        const auto sums      = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),
                                                  nodes.view(),
                                                  what,
                                                  sums ? &*sums : nullptr);
       }
-    lap(Verb::points_to_grid);
-  }
-
-
-
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::sum_shared_cells(const unsigned int first,
-                                            const unsigned int last)
-  {
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        body->cell_sums->sum_shared(first, last);
-    lap(Verb::sum_shared_nodes);
-  }
-
-
-
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::average_cells(const bool add_force)
-  {
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        {
-          const auto &cells = nodes.owned_occupied_cells();
-          limber::average_cells<dim>(cells.data(),
-                                     cells.size(),
-                                     nodes.view(),
-                                     body->cell_sums->view(),
-                                     add_force);
-        }
-    lap(Verb::points_to_grid);
-  }
-
-
-
-  // For forces that follow after the cells have been averaged.
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::add_mean_pressure()
-  {
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        {
-          const auto &cells = nodes.owned_occupied_cells();
-          add_projected_pressure<dim>(cells.data(),
-                                      cells.size(),
-                                      nodes.view(),
-                                      body->cell_sums->view());
-        }
     lap(Verb::points_to_grid);
   }
 
@@ -444,19 +386,10 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::share_nodes(const bool with_cells)
+  ExplicitIntegrator<dim>::share_nodes()
   {
     nodes.start_share();
-    unsigned int channel = 0;
-    if (with_cells)
-      for (auto &body : bodies)
-        if (body->cell_sums)
-          body->cell_sums->start_share(++channel);
     nodes.end_share();
-    if (with_cells)
-      for (auto &body : bodies)
-        if (body->cell_sums)
-          body->cell_sums->end_share();
     lap(Verb::share_nodes);
   }
 
@@ -477,10 +410,13 @@ namespace limber
     what.move  = move ? step : 0;
     for (auto &body : bodies)
       {
-        const auto found =
-          limber::grid_to_points<dim>(body->points.view(), nodes.view(), what);
-        speed_squared = std::max(speed_squared, found.speed_squared);
-        displacement  = std::max(displacement, found.displacement);
+        const auto sums  = sums_of(*body);
+        const auto found = limber::grid_to_points<dim>(body->points.view(),
+                                                       nodes.view(),
+                                                       what,
+                                                       sums ? &*sums : nullptr);
+        speed_squared    = std::max(speed_squared, found.speed_squared);
+        displacement     = std::max(displacement, found.displacement);
         ledger.transfer += found.removed;
       }
     lap(Verb::grid_to_points);
@@ -551,11 +487,39 @@ namespace limber
     if (any_lost > 0)
       remove_lost_points();
     nodes.add_entered();
+    complete_cells();
 
     travelled += displacement;
     if (n_batches > n_batches_sorted)
       excess_batches += n_batches - n_batches_sorted;
     lap(Verb::relocate);
+  }
+
+
+
+  // The sums that the sweep has gathered which moved the points.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::complete_cells()
+  {
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        body->cell_sums->complete(nodes.occupied_cells());
+  }
+
+
+
+  // For points that have come to this rank by other ways.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::gather_cells()
+  {
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        gather_cell_sums<dim>(body->points.view(),
+                              nodes.view(),
+                              body->cell_sums->view());
+    complete_cells();
   }
 
 
@@ -619,6 +583,7 @@ namespace limber
       body->points.synchronise();
     travelled = 0;
     sort_points();
+    gather_cells();
   }
 
 

@@ -28,7 +28,7 @@ namespace
   SceneFile
   block(const std::string &law,
         const std::string &law_section,
-        const bool         projected,
+        const std::string &treatment,
         const bool         apic)
   {
     const unsigned int n    = dim == 2 ? 100 : 30;
@@ -49,9 +49,7 @@ namespace
          << "  end\n"
          << "  set Points per cell edge = 2\n"
          << "  set Material = " << law << "\n"
-         << law_section
-         << "  set Locking treatment = " << (projected ? "cell" : "none")
-         << "\n"
+         << law_section << "  set Locking treatment = " << treatment << "\n"
          << "end\n"
          << "subsection Grid\n"
          << "  set Lower corner = " << each(0) << "\n"
@@ -83,29 +81,13 @@ namespace
       auto occupied = cells;
       nodes.set_occupied(std::move(occupied));
       if (body.cell_sums)
-        sums = body.cell_sums->view();
-      gather();
-      if (body.cell_sums)
-        average();
-    }
-
-    /** Sums over the points, for the sweeps that need them. */
-    void
-    gather()
-    {
-      GiveToGrid what;
-      what.inverse_density = 1 / body.stress->density();
-      clear();
-      points_to_grid<dim>(body.points.view(),
-                          nodes.view(),
-                          what,
-                          sums_or_none());
-    }
-
-    void
-    average()
-    {
-      average_cells<dim>(cells.data(), cells.size(), nodes.view(), sums, true);
+        {
+          gather_cell_sums<dim>(body.points.view(),
+                                nodes.view(),
+                                body.cell_sums->view());
+          complete_cells();
+          sums = body.cell_sums->view();
+        }
     }
 
     /** Zero records, which is not part of what is measured. */
@@ -113,8 +95,12 @@ namespace
     clear()
     {
       nodes.clear();
-      if (body.cell_sums)
-        body.cell_sums->clear(cells);
+    }
+
+    void
+    complete_cells()
+    {
+      body.cell_sums->complete(cells);
     }
 
     /** Motion so slow that many repetitions leave the points where they are. */
@@ -167,50 +153,49 @@ namespace
 
   template <int dim>
   void
-  measure_transfers(const bool projected, const bool apic)
+  measure_giving(const std::string &treatment, const bool apic)
   {
-    Bench<dim> bench(block<dim>("linear elastic", "", projected, apic));
-    const auto points = bench.body.points.view();
-    const auto nodes  = bench.nodes.view();
-
+    Bench<dim> bench(block<dim>("linear elastic", "", treatment, apic));
     GiveToGrid give;
     give.affine          = apic;
     give.inverse_density = 1e-3;
+    give.projection      = bench.body.stress->projection();
+    const auto label = "points to grid, " + treatment + (apic ? ", apic" : "");
     bench.measure(
-      apic      ? "points to grid, apic" :
-      projected ? "points to grid, projected" :
-                  "points to grid",
+      label.c_str(),
       [&]() { bench.clear(); },
       [&]() {
-        points_to_grid<dim>(points, nodes, give, bench.sums_or_none());
+        points_to_grid<dim>(bench.body.points.view(),
+                            bench.nodes.view(),
+                            give,
+                            bench.sums_or_none());
       });
-    if (projected)
-      bench.measure(
-        "average cells, add pressure",
-        [&]() { bench.gather(); },
-        [&]() { bench.average(); });
-    else
-      {
-        TakeFromGrid take;
-        take.affine        = apic;
-        const auto prepare = [&]() { bench.set_motion(); };
-        const auto sweep = [&]() { grid_to_points<dim>(points, nodes, take); };
-        bench.measure(apic ? "grid to points, apic" : "grid to points",
-                      prepare,
-                      sweep);
-        take.remap = true;
-        bench.measure(apic ? "grid to points, apic, re-map" :
-                             "grid to points, re-map",
-                      prepare,
-                      sweep);
-        take.remap = false;
-        take.move  = 1e-9;
-        bench.measure(apic ? "grid to points, apic, move" :
-                             "grid to points, move",
-                      prepare,
-                      sweep);
-      }
-    if (!projected && !apic)
+  }
+
+
+
+  template <int dim>
+  void
+  measure_taking(const bool apic)
+  {
+    Bench<dim>        bench(block<dim>("linear elastic", "", "none", apic));
+    const std::string name = apic ? "grid to points, apic" : "grid to points";
+    TakeFromGrid      take;
+    take.affine        = apic;
+    const auto prepare = [&]() { bench.set_motion(); };
+    const auto sweep   = [&]() {
+      grid_to_points<dim>(bench.body.points.view(),
+                          bench.nodes.view(),
+                          take,
+                          nullptr);
+    };
+    bench.measure(name.c_str(), prepare, sweep);
+    take.remap = true;
+    bench.measure((name + ", re-map").c_str(), prepare, sweep);
+    take.remap = false;
+    take.move  = 1e-9;
+    bench.measure((name + ", move").c_str(), prepare, sweep);
+    if (!apic)
       bench.measure(
         "sort by cell", [] {}, [&]() { bench.body.points.sort_by_cell(); });
   }
@@ -219,13 +204,14 @@ namespace
 
   template <int dim>
   void
-  measure_law(const std::string &name,
-              const std::string &law,
-              const std::string &section)
+  measure_law(const std::string              &name,
+              const std::string              &law,
+              const std::string              &section,
+              const std::vector<std::string> &treatments)
   {
-    for (const bool projected : {false, true})
+    for (const std::string &treatment : treatments)
       {
-        Bench<dim> bench(block<dim>(law, section, projected, false));
+        Bench<dim> bench(block<dim>(law, section, treatment, false));
         bench.set_motion();
         StressSweep what;
         what.step        = 1e-9;
@@ -237,10 +223,10 @@ namespace
                                     bench.sums_or_none(),
                                     what);
         };
-        const auto label = "stress, " + name + (projected ? ", cell" : "");
+        const auto label = "stress, " + name + ", " + treatment;
         bench.measure(
           label.c_str(), [] {}, sweep);
-        if (projected)
+        if (treatment != "none")
           {
             what.relaxation = 1;
             bench.measure((label + ", replace").c_str(), [] {}, sweep);
@@ -256,23 +242,30 @@ namespace
   {
     std::printf(
       "\n%dd: ns per point %28s %8s %8s\n", dim, "", "best", "median");
-    measure_transfers<dim>(false, false);
-    measure_transfers<dim>(true, false);
-    measure_transfers<dim>(false, true);
+    const std::vector<std::string> treatments = {
+      "none", "cell", "cell shear", "cell full", "assumed strain"};
+    const std::vector<std::string> of_fluids = {"none", "cell"};
+    for (const std::string &treatment : treatments)
+      measure_giving<dim>(treatment, false);
+    measure_giving<dim>("cell", true);
+    measure_taking<dim>(false);
+    measure_taking<dim>(true);
 
     const auto fluid = [](const std::string &entries) {
       return "subsection Newtonian fluid\nset Bulk modulus = 1e6\n" + entries +
              "end\n";
     };
-    measure_law<dim>("linear elastic", "linear elastic", "");
-    measure_law<dim>("neo-Hookean", "neo hookean", "");
-    measure_law<dim>("fluid", "newtonian fluid", fluid(""));
+    measure_law<dim>("linear elastic", "linear elastic", "", treatments);
+    measure_law<dim>("neo-Hookean", "neo hookean", "", treatments);
+    measure_law<dim>("fluid", "newtonian fluid", fluid(""), of_fluids);
     measure_law<dim>("viscous fluid",
                      "newtonian fluid",
-                     fluid("set Viscosity = 1\n"));
+                     fluid("set Viscosity = 1\n"),
+                     of_fluids);
     measure_law<dim>("fluid, Tait",
                      "newtonian fluid",
-                     fluid("set Equation of state = tait\n"));
+                     fluid("set Equation of state = tait\n"),
+                     of_fluids);
   }
 } // namespace
 

@@ -3,6 +3,7 @@
 #define limber_tests_support_small_grid_h
 
 #include <limber/points/point_view.h>
+#include <limber/transfer/grid_to_points.h>
 
 #include <algorithm>
 #include <array>
@@ -119,6 +120,7 @@ namespace limber
         nodes.resize(n_nodes * NodeLayout<dim>::stride);
         occupied.resize(n_cells);
         sums.resize(n_cells * CellSums<dim>::stride);
+        next_sums.resize(sums.size());
       }
 
       GridView<dim>
@@ -138,8 +140,19 @@ namespace limber
       cell_sums()
       {
         CellSums<dim> result;
-        result.data = sums.data();
+        result.now  = sums.data();
+        result.next = next_sums.data();
         return result;
+      }
+
+      /** Make the sums of the present places those of these points. */
+      void
+      gather(const PointView<dim> &points)
+      {
+        std::fill(next_sums.begin(), next_sums.end(), 0.);
+        gather_cell_sums<dim>(points, view(), cell_sums());
+        sums = next_sums;
+        std::fill(next_sums.begin(), next_sums.end(), 0.);
       }
 
       Vector<dim>
@@ -189,13 +202,12 @@ namespace limber
       clear()
       {
         std::fill(nodes.begin(), nodes.end(), 0.);
-        std::fill(sums.begin(), sums.end(), 0.);
       }
 
       std::size_t                    n_cells, n_nodes;
       Vector<dim>                    lower, edge;
       std::vector<CellGeometry<dim>> cells;
-      std::vector<double>            nodes, sums;
+      std::vector<double>            nodes, sums, next_sums;
       std::vector<std::uint32_t>     bin_table, entered;
       std::vector<std::uint8_t>      occupied;
       BinView<dim>                   bins;

@@ -2,6 +2,7 @@
 #ifndef limber_base_pack_h
 #define limber_base_pack_h
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -206,6 +207,88 @@ namespace limber
           result &= mask[i];
         return result != 0;
       }
+  }
+
+
+
+  namespace internal
+  {
+    /**
+     * One stage of a transposition in place: exchange the blocks of size
+     * @p half off the diagonal.
+     */
+    template <int width, int half>
+    __attribute__((always_inline)) inline void
+    exchange_blocks(std::array<Pack<width>, width> &a)
+    {
+      typename PackType<width>::mask low, high;
+      for (int i = 0; i < width; ++i)
+        {
+          low[i]  = (i & half) ? width + (i ^ half) : i;
+          high[i] = (i & half) ? width + i : (i ^ half);
+        }
+      for (int i = 0; i < width; ++i)
+        if (!(i & half))
+          {
+            const Pack<width> upper = a[i], lower = a[i | half];
+            a[i]        = __builtin_shuffle(upper, lower, low);
+            a[i | half] = __builtin_shuffle(upper, lower, high);
+          }
+    }
+  } // namespace internal
+
+
+
+  /** Lane i of pack j becomes lane j of pack i. */
+  template <int width>
+  __attribute__((always_inline)) inline void
+  transpose(std::array<Pack<width>, width> &a)
+  {
+    internal::exchange_blocks<width, 1>(a);
+    internal::exchange_blocks<width, 2>(a);
+    if constexpr (width == 8)
+      internal::exchange_blocks<width, 4>(a);
+  }
+
+
+
+  namespace internal
+  {
+    /**
+     * Lanes without the bit @p half: x summed over that bit; lanes with it:
+     * y summed likewise.
+     */
+    template <int width, int half>
+    __attribute__((always_inline)) inline Pack<width>
+    fold(const Pack<width> &x, const Pack<width> &y)
+    {
+      typename PackType<width>::mask first, second;
+      for (int i = 0; i < width; ++i)
+        {
+          first[i]  = (i & half) ? width + (i ^ half) : i;
+          second[i] = (i & half) ? width + i : (i ^ half);
+        }
+      return __builtin_shuffle(x, y, first) + __builtin_shuffle(x, y, second);
+    }
+  } // namespace internal
+
+
+
+  /** The sums over the lanes of each pack: that of a[i] in lane i. */
+  template <std::size_t width>
+  __attribute__((always_inline)) inline Pack<int(width)>
+  sums_over_lanes(const std::array<Pack<int(width)>, width> &a)
+  {
+    constexpr int w    = width;
+    const auto    four = [&a](const int i) __attribute__((always_inline))
+    {
+      return internal::fold<w, 2>(internal::fold<w, 1>(a[i], a[i + 1]),
+                                  internal::fold<w, 1>(a[i + 2], a[i + 3]));
+    };
+    if constexpr (width == 4)
+      return four(0);
+    else
+      return internal::fold<w, 4>(four(0), four(4));
   }
 
 

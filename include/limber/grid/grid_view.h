@@ -96,21 +96,23 @@ namespace limber
 
 
   /**
-   * The sums over the points of one body in each cell from which the
-   * Hu-Washizu averages follow (DGQ0): the shares of the cell in the masses
-   * of its nodes, sum of V p, and sum of m times the volumetric variable.
-   * When they are complete, average_cells() puts averages in their place:
-   * mass and means of the monomials xi, eta, ...; the volumetric mean.
+   * Sums over the points of one body in each cell, from which the Hu-Washizu
+   * averages (DGQ0) follow: the mass, its moments with the monomials xi, eta,
+   * xi eta, zeta, ... but the last one, and in the slot of that the sum of m
+   * times the volumetric variable.
+   *
+   * Whoever moves the points gathers the sums of their new places, so that
+   * those of the present places are complete when a step begins.
    */
   template <int dim>
   struct CellSums
   {
-    static constexpr unsigned int mass       = 0;        // once averaged, kg
-    static constexpr unsigned int pressure   = 1 << dim; // sum V p, J
-    static constexpr unsigned int volumetric = pressure + 1;
-    static constexpr unsigned int stride     = pressure + 2;
+    static constexpr unsigned int mass       = 0;
+    static constexpr unsigned int volumetric = (1 << dim) - 1;
+    static constexpr unsigned int stride     = 1 << dim;
 
-    double *data = nullptr;
+    const double *now  = nullptr; // of the present places, complete
+    double       *next = nullptr; // of the places after the step
   };
 } // namespace limber
 

@@ -125,8 +125,9 @@ namespace limber
 
 
   /**
-   * A few numbers per cell in one distributed vector over DGQ0: the sums of
-   * one body from which the Hu-Washizu averages follow (CellSums).
+   * The sums of one body in each cell (CellSums), in distributed vectors over
+   * DGQ0: those of the present places of the points, complete on every rank
+   * that knows the cell, and those of the next places, which sweeps gather.
    */
   template <int dim>
   class CellFields
@@ -140,36 +141,25 @@ namespace limber
     CellSums<dim>
     view();
 
+    /** The sums of the present places. */
     const double *
     record(const std::uint32_t cell) const
     {
-      return values.begin() + std::size_t(cell) * CellSums<dim>::stride;
+      return now.begin() + std::size_t(cell) * CellSums<dim>::stride;
     }
 
-    /** Set the sums of the given cells, and of all ghosts, to zero. */
-    void
-    clear(const std::vector<std::uint32_t> &cells);
-
     /**
-     * Add the contributions of other ranks to slots [first, last) of the owned
-     * cells. Other slots stay on the owners.
+     * Complete the sums gathered since the last time with those of other
+     * ranks and make them the present ones. Then clear the next ones of the
+     * given cells, which are all that may have been touched, for the next
+     * gathering.
      */
     void
-    sum_shared(unsigned int first = 0,
-               unsigned int last  = CellSums<dim>::stride);
-
-    /**
-     * Give other ranks the sums of the cells that they hold as ghosts; the
-     * @p channel tells messages apart that are under way at the same time.
-     */
-    void
-    start_share(unsigned int channel);
-    void
-    end_share();
+    complete(const std::vector<std::uint32_t> &cells);
 
   private:
     const BackgroundGrid<dim>                         &grid;
-    dealii::LinearAlgebra::distributed::Vector<double> values;
+    dealii::LinearAlgebra::distributed::Vector<double> now, next;
     bool                                               parallel = false;
   };
 } // namespace limber

@@ -85,7 +85,23 @@ namespace limber
 
 
 
-  /** Call @p work with the points of a batch, a pack at a time. */
+  namespace internal
+  {
+    /** Out of the way of the loop over full packs. */
+    template <class Work, class Lanes>
+    __attribute__((noinline, cold)) void
+    do_apart(const Work &work, const Lanes &lanes)
+    {
+      work(lanes);
+    }
+  } // namespace internal
+
+
+
+  /**
+   * Call @p work with the points of a batch, a pack at a time. Work is best
+   * always inlined: the call would cost as much as a point.
+   */
   template <int dim, class Work>
   inline void
   for_each_pack(const CellBatch &batch, const Work &work)
@@ -95,18 +111,29 @@ namespace limber
     for (; p + width <= batch.end; p += width)
       work(BatchLanes<dim, true>(p, width));
     if (p < batch.end)
-      work(BatchLanes<dim, false>(p, static_cast<int>(batch.end - p)));
+      internal::do_apart(
+        work, BatchLanes<dim, false>(p, static_cast<int>(batch.end - p)));
   }
+
+
+
+  /** Where the points of a pack have moved to. */
+  template <int dim>
+  struct MovedPack
+  {
+    std::array<PointPack<dim>, dim> xi; // natural coordinates in the old cell
+    PointPack<dim>                  displacement; // largest over the edge
+    bool                            inside;       // all of them, still
+  };
 
 
 
   /**
    * Move the points of a pack by @p shift (m), and find the cells of those
-   * that have left @p cell. Returns the largest shift over the edge of the
-   * cell, by lane.
+   * that have left @p cell.
    */
   template <int dim, class Lanes>
-  inline PointPack<dim>
+  __attribute__((always_inline)) inline MovedPack<dim>
   move_points(const PointView<dim>                  &points,
               const GridView<dim>                   &grid,
               const std::uint32_t                    cell,
@@ -115,8 +142,9 @@ namespace limber
   {
     using Number                      = PointPack<dim>;
     const CellGeometry<dim> &geometry = grid.cells[cell];
-    Number                   largest{};
-    auto                     inside = Number{} == Number{};
+    MovedPack<dim>           moved;
+    moved.displacement = Number{};
+    auto inside        = Number{} == Number{};
     for (int d = 0; d < dim; ++d)
       {
         const Number position = lanes.load(points.position[d]) + shift[d];
@@ -124,12 +152,15 @@ namespace limber
         const Number xi =
           (position - geometry.origin[d]) * geometry.inverse_edge[d];
         inside &= (xi >= 0.) & (xi <= 1.);
-        largest =
-          larger(largest, magnitude(shift[d]) * geometry.inverse_edge[d]);
+        moved.xi[d] = xi;
+        moved.displacement =
+          larger(moved.displacement,
+                 magnitude(shift[d]) * geometry.inverse_edge[d]);
       }
-    if (!all(inside))
+    moved.inside = all(inside);
+    if (!moved.inside)
       locate(points, grid, cell, lanes.first, lanes.first + lanes.n);
-    return largest;
+    return moved;
   }
 
 

@@ -63,24 +63,22 @@ namespace limber
     }
 
     /**
-     * Turn the shares of a cell in the masses of its nodes, s_i = sum m N_i,
-     * into the moments of the monomials, sum m xi^.. eta^...
+     * The transpose of to_monomials() with one lane per coefficient: from
+     * what acts on the coefficients to what acts on the nodes.
      */
     static Nodes
-    to_moments(Nodes s)
+    to_nodes(Nodes a)
     {
       for (int d = 0; d < dim; ++d)
-        s += lower_ends[d] * across(s, d);
-      return s;
+        a -= lower_ends[d] * across(a, d);
+      return a;
     }
 
-    /** The way back from to_moments(). */
+    /** Lanes of the nodes at the upper end in direction d: 1, others 0. */
     static Nodes
-    from_moments(Nodes s)
+    upper(const int d)
     {
-      for (int d = 0; d < dim; ++d)
-        s -= lower_ends[d] * across(s, d);
-      return s;
+      return upper_ends[d];
     }
 
     /** Value at natural coordinates xi; c(k) is the k-th coefficient. */
@@ -144,6 +142,7 @@ namespace limber
 
     static constexpr auto signs      = end_values(-1., 1., AllNodes());
     static constexpr auto lower_ends = end_values(1., 0., AllNodes());
+    static constexpr auto upper_ends = end_values(0., 1., AllNodes());
     static constexpr auto opposites  = opposite_nodes(AllNodes());
   };
 } // namespace limber

@@ -112,6 +112,7 @@ namespace limber
    *  - dissipates, whether update() may return dissipated energy;
    *  - accepts(), whether this variant of a law serves given parameters;
    *  - has_constant_wave_speed(), whether it is the same in every state;
+   *  - bulk_modulus, shear_modulus at rest, Pa;
    *  - volumetric, the index of the history variable with the volumetric
    *    history, or -1 where that is the pressure itself;
    *  - update(): new stress and history after a motion;

@@ -168,7 +168,9 @@ namespace limber
       return broadcast<Number>(at_rest);
     }
 
-    const double density;      // rho_0, kg/m^3
+    const double            density;           // rho_0, kg/m^3
+    static constexpr double shear_modulus = 0; // Pa; viscosity is no modulus
+
     const double bulk_modulus; // K, Pa
     const double viscosity;    // mu, Pa s
     const bool   tension_cutoff;

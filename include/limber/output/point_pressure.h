@@ -98,7 +98,7 @@ namespace limber
     sum_over_cells();
 
     const BackgroundGrid<dim> &grid;
-    CellFields<dim>            sums;
+    CellFields<dim>            sums;    // mass, m J, m J p
     std::vector<std::uint32_t> touched; // cells whose sums are not zero
     PointView<dim>             points;
     std::vector<double>        volume_ratios;

@@ -12,7 +12,7 @@ namespace limber
    * point outside the grid gets invalid_cell; MaterialPoints deals with it.
    */
   template <int dim>
-  inline void
+  __attribute__((noinline, cold)) inline void
   locate(const PointView<dim> &points,
          const GridView<dim>  &grid,
          const std::uint32_t   cell,

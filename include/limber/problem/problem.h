@@ -6,6 +6,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
+#include <limber/materials/projection.h>
 #include <limber/problem/shapes.h>
 
 #include <array>
@@ -26,12 +27,6 @@ namespace limber
     regular, // cell edges divided evenly, points at the centres of the parts
     gauss,   // Gauss-Legendre places, weights into the masses
     jittered // regular, moved at random by up to a quarter of the spacing
-  };
-
-  enum class LockingTreatment
-  {
-    none, // point values as they are
-    cell  // Hu-Washizu: volumetric strain and pressure in DGQ0
   };
 
   /** What happens to the scatter of the volume ratios within a cell. */
@@ -90,9 +85,10 @@ namespace limber
     std::string         law;      // by name, as in the list of laws
     std::vector<double> material; // its entries, in its order
 
-    LockingTreatment treatment       = LockingTreatment::none;
-    HistoryTreatment history         = HistoryTreatment::keep;
-    double           relaxation_time = 0; // s, for HistoryTreatment::relax
+    Projection        treatment       = Projection::none;
+    HourglassResponse hourglass       = HourglassResponse::bending;
+    HistoryTreatment  history         = HistoryTreatment::keep;
+    double            relaxation_time = 0; // s, for HistoryTreatment::relax
 
     /** Mass per volume in the reference state, kg/m^3. */
     double

@@ -71,8 +71,11 @@ namespace limber
   const Words<Placement> &
   placement_words();
 
-  const Words<LockingTreatment> &
+  const Words<Projection> &
   locking_words();
+
+  const Words<HourglassResponse> &
+  hourglass_words();
 
   const Words<HistoryTreatment> &
   history_words();

@@ -2,7 +2,7 @@
 #ifndef limber_stress_law_sweep_h
 #define limber_stress_law_sweep_h
 
-#include <limber/interpolation/batch_lanes.h>
+#include <limber/interpolation/strain_operator.h>
 #include <limber/materials/law.h>
 #include <limber/stress/stress_update.h>
 
@@ -10,58 +10,14 @@
 
 namespace limber
 {
-  /** Means over the points of a cell, once average_cells() has made them. */
-  template <int dim>
-  class CellMeans
-  {
-  public:
-    explicit CellMeans(const double *const cell_sums)
-      : record(cell_sums)
-    {}
-
-    double
-    volumetric() const
-    {
-      return record[CellSums<dim>::volumetric];
-    }
-
-    /**
-     * The mean of the divergence of a velocity field, given the coefficients
-     * of its components. The gradient of a multilinear function is made of
-     * monomials, so its mean over the points is that of the monomials.
-     */
-    template <class Coefficients>
-    double
-    divergence(const Coefficients      &coefficients,
-               const unsigned int       first,
-               const CellGeometry<dim> &cell) const
-    {
-      double result = 0;
-      for (int d = 0; d < dim; ++d)
-        {
-          const auto c          = coefficients.component(first + d);
-          double     derivative = 0;
-          for (int k = 0; k < 1 << dim; ++k)
-            if (k >> d & 1)
-              derivative += k == 1 << d ? c(k) : c(k) * record[k ^ (1 << d)];
-          result += derivative * cell.inverse_edge[d];
-        }
-      return result;
-    }
-
-  private:
-    const double *const record; // CellSums
-  };
-
-
-
-  /** StressUpdate for one law, with or without averages over cells. */
-  template <int dim, class Law, bool projected>
+  /** StressUpdate for one law and one projection of its strain. */
+  template <int dim, class Law, Projection kind>
   class LawSweep final : public StressUpdate<dim>
   {
   public:
-    explicit LawSweep(const Law &law)
+    LawSweep(const Law &law, const StrainProjection &projection)
       : law(law)
+      , strain_projection(projection)
     {}
 
     StressSummary
@@ -129,6 +85,12 @@ namespace limber
       for (std::size_t p = 0; p < points.size; ++p)
         volume_ratio[p] = law.template volume_ratio<dim>(
           load_state<double>(points, [&](const double *a) { return a[p]; }));
+    }
+
+    const StrainProjection &
+    projection() const override
+    {
+      return strain_projection;
     }
 
     unsigned int
@@ -226,77 +188,78 @@ namespace limber
         const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
           cell, grid.nodes);
 
-        [[maybe_unused]] double mean_volumetric = 0, mean_increment = 0;
-        if constexpr (projected)
-          {
-            const CellMeans<dim> mean(sums->data +
-                                      batch.cell * CellSums<dim>::stride);
-            mean_volumetric = mean.volumetric();
-            mean_increment = what.step * mean.divergence(nodal, strained, cell);
-          }
+        const auto velocity = [&](const int d) {
+          return nodal.component(strained + d);
+        };
+        const CellMeans<dim> means(sums, batch.cell);
+        const StrainOperator<dim, kind, decltype(velocity)> strain(
+          velocity, cell, means, strain_projection, what.step);
 
-        for_each_pack<dim>(batch, [&](const auto &lanes) {
-          const auto xi = lanes.natural(points, cell);
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            const auto xi = lanes.natural(points, cell);
 
-          MotionIncrement<dim, Number> motion;
-          motion.step = what.step;
-          for (int d = 0; d < dim; ++d)
-            {
-              const auto gradient =
-                Kernel::template gradient<Number>(nodal.component(strained + d),
-                                                  xi);
-              for (int e = 0; e < dim; ++e)
-                motion.gradient[d][e] =
-                  (what.step * cell.inverse_edge[e]) * gradient[e];
-            }
-          motion.volumetric = motion.trace();
+            MotionIncrement<dim, Number> motion;
+            motion.step = what.step;
+            strain.evaluate(xi, motion);
 
-          auto state = load_state<Number>(points, [&](const double *a) {
-            return lanes.load(a);
-          });
-          // reference volume, zero in lanes beyond the batch
-          [[maybe_unused]] const Number volume =
-            lanes.only_active(lanes.load(points.mass)) * inverse_density;
+            auto state = load_state<Number>(points, [&](const double *a) {
+              return lanes.load(a);
+            });
+            // zero in lanes beyond the batch
+            [[maybe_unused]] const Number mass =
+              lanes.only_active(lanes.load(points.mass));
 
-          if constexpr (projected)
-            {
-              motion.volumetric = broadcast<Number>(mean_increment);
+            if constexpr (projected)
               if (what.relaxation > 0)
                 {
                   Number      &variable = volumetric_variable(state);
                   const Number before   = law.volumetric_energy(variable);
-                  variable += what.relaxation * (mean_volumetric - variable);
-                  removed +=
-                    volume * (before - law.volumetric_energy(variable));
+                  variable += what.relaxation * (means.volumetric() - variable);
+                  removed += mass * inverse_density *
+                             (before - law.volumetric_energy(variable));
                 }
-            }
 
-          const auto dissipation = law.template update<dim>(motion, state);
-          if constexpr (Law::dissipates)
-            {
-              viscous += volume * dissipation.viscous;
-              removed += volume * dissipation.cutoff;
-            }
-          store_state(points, state, [&](const Number &value, double *a) {
-            lanes.store(value, a);
+            const auto dissipation = law.template update<dim>(motion, state);
+            if constexpr (Law::dissipates)
+              {
+                viscous += mass * inverse_density * dissipation.viscous;
+                removed += mass * inverse_density * dissipation.cutoff;
+              }
+            store_state(points, state, [&](const Number &value, double *a) {
+              lanes.store(value, a);
+            });
+            if (measure_waves)
+              waves = larger(waves,
+                             lanes.only_active(
+                               law.template wave_speed_squared<dim>(state)));
+
+            if constexpr (moves)
+              {
+                std::array<Number, dim> shift;
+                for (int d = 0; d < dim; ++d)
+                  shift[d] =
+                    what.step *
+                    Kernel::template value<Number>(nodal.component(d), xi);
+                const auto moved =
+                  move_points<dim>(points, grid, batch.cell, lanes, shift);
+                displacement = larger(displacement, moved.displacement);
+                if constexpr (projected)
+                  {
+                    const CellGatherer<dim> gatherer(*sums);
+                    if (moved.inside)
+                      gatherer.add(batch.cell,
+                                   moved.xi,
+                                   mass,
+                                   volumetric_variable(state));
+                    else
+                      gatherer.add_one_by_one(points,
+                                              grid,
+                                              lanes.first,
+                                              lanes.first + lanes.n);
+                  }
+              }
           });
-          if (measure_waves)
-            waves = larger(waves,
-                           lanes.only_active(
-                             law.template wave_speed_squared<dim>(state)));
-
-          if constexpr (moves)
-            {
-              std::array<Number, dim> shift;
-              for (int d = 0; d < dim; ++d)
-                shift[d] =
-                  what.step *
-                  Kernel::template value<Number>(nodal.component(d), xi);
-              displacement = larger(
-                displacement,
-                move_points<dim>(points, grid, batch.cell, lanes, shift));
-            }
-        });
       });
 
       StressSummary result;
@@ -309,8 +272,11 @@ namespace limber
       return result;
     }
 
-    const Law    law;
-    const double inverse_density = 1. / law.density;
+    static constexpr bool projected = kind != Projection::none;
+
+    const Law              law;
+    const StrainProjection strain_projection;
+    const double           inverse_density = 1. / law.density;
   };
 } // namespace limber
 

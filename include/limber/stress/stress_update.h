@@ -2,6 +2,7 @@
 #ifndef limber_stress_stress_update_h
 #define limber_stress_stress_update_h
 
+#include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
 
 #include <memory>
@@ -60,6 +61,10 @@ namespace limber
            const CellSums<dim>  *sums,
            const StressSweep    &what) const = 0;
 
+    /** How the strain, and with it the stress, is averaged over cells. */
+    virtual const StrainProjection &
+    projection() const = 0;
+
     /** Energies and volume ratios of the present state. */
     virtual StateSummary
     summarize(const PointView<dim> &points) const = 0;
@@ -99,13 +104,14 @@ namespace limber
 
   /**
    * The sweep for the law of that name; @p values in the order of its
-   * entries; @p projected: strain and pressure averaged over cells.
+   * entries.
    */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_stress_update(const std::string         &law,
                      const std::vector<double> &values,
-                     bool                       projected);
+                     Projection                 kind,
+                     HourglassResponse          response);
 } // namespace limber
 
 #endif

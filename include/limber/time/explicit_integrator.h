@@ -105,12 +105,6 @@ namespace limber
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
     void
-    sum_shared_cells(unsigned int first, unsigned int last);
-    void
-    average_cells(bool add_force);
-    void
-    add_mean_pressure();
-    void
     advance_nodes();
     void
     check_nodes();
@@ -121,7 +115,7 @@ namespace limber
     void
     divide_remapped(unsigned int momentum);
     void
-    share_nodes(bool with_cells);
+    share_nodes();
     void
     grid_to_points(bool remap, bool move);
     void
@@ -136,6 +130,10 @@ namespace limber
     reduce_extremes();
     void
     exchange_points();
+    void
+    complete_cells();
+    void
+    gather_cells();
 
     void
     lap(const Verb verb)

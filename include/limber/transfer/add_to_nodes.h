@@ -7,46 +7,6 @@
 
 namespace limber
 {
-  namespace internal
-  {
-    /**
-     * One stage of a transposition in place: exchange the blocks of size
-     * @p half off the diagonal.
-     */
-    template <int width, int half>
-    __attribute__((always_inline)) inline void
-    exchange_blocks(std::array<Pack<width>, width> &a)
-    {
-      typename PackType<width>::mask low, high;
-      for (int i = 0; i < width; ++i)
-        {
-          low[i]  = (i & half) ? width + (i ^ half) : i;
-          high[i] = (i & half) ? width + i : (i ^ half);
-        }
-      for (int i = 0; i < width; ++i)
-        if (!(i & half))
-          {
-            const Pack<width> upper = a[i], lower = a[i | half];
-            a[i]        = __builtin_shuffle(upper, lower, low);
-            a[i | half] = __builtin_shuffle(upper, lower, high);
-          }
-    }
-
-
-
-    template <int width>
-    __attribute__((always_inline)) inline void
-    transpose(std::array<Pack<width>, width> &a)
-    {
-      exchange_blocks<width, 1>(a);
-      exchange_blocks<width, 2>(a);
-      if constexpr (width == 8)
-        exchange_blocks<width, 4>(a);
-    }
-  } // namespace internal
-
-
-
   /**
    * Add to the records of the nodes of a cell: lane i of values[k] goes to
    * slot first + k of node i. A transposition makes one vector addition per
@@ -73,7 +33,7 @@ namespace limber
     std::array<Nodes, width> block{};
     for (unsigned int k = 0; k < n_first; ++k)
       block[k + shift] = values[k];
-    internal::transpose<width>(block);
+    transpose<width>(block);
     for (unsigned int i = 0; i < width; ++i)
       {
         double *const record = nodes + cell.node[i] + first - shift;

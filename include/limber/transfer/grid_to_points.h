@@ -32,13 +32,24 @@ namespace limber
   /**
    * Update the velocities of the points from the nodes and, on request, move
    * the points and give the new momentum back to the nodes with the weights
-   * of the old positions (MUSL).
+   * of the old positions (MUSL). Where the points move and @p sums are given,
+   * those of the new places are gathered.
    */
   template <int dim>
   VelocitySummary
   grid_to_points(const PointView<dim> &points,
                  const GridView<dim>  &grid,
-                 const TakeFromGrid   &what);
+                 const TakeFromGrid   &what,
+                 const CellSums<dim>  *sums);
+
+
+
+  /** Gather the sums of the cells at the present places of the points. */
+  template <int dim>
+  void
+  gather_cell_sums(const PointView<dim> &points,
+                   const GridView<dim>  &grid,
+                   const CellSums<dim>  &sums);
 } // namespace limber
 
 #endif

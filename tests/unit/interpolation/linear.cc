@@ -161,29 +161,25 @@ TYPED_TEST(LinearFunctions, LinearFieldsHaveConstantGradients)
 
 
 
-TYPED_TEST(LinearFunctions, MomentsAreSumsOverPoints)
+TYPED_TEST(LinearFunctions, FormsOnCoefficientsBecomeFormsOnNodes)
 {
   constexpr int dim = TestFixture::dim;
   using Kernel      = Linear<dim>;
-  std::array<double, Kernel::n_nodes> shares{}, moments{};
-  for (int p = 0; p < 7; ++p)
-    {
-      const double mass = this->random(0.5, 2);
-      const auto   xi   = this->place();
-      for (int i = 0; i < Kernel::n_nodes; ++i)
-        {
-          shares[i] += mass * this->shape(i, xi);
-          double monomial = 1;
-          for (int d = 0; d < dim; ++d)
-            if (i >> d & 1)
-              monomial *= xi[d];
-          moments[i] += mass * monomial;
-        }
-    }
-  const auto computed =
-    Kernel::to_moments(load<typename Kernel::Nodes>(shares.data()));
+  std::array<double, Kernel::n_nodes> values, on_coefficients;
   for (int i = 0; i < Kernel::n_nodes; ++i)
-    EXPECT_NEAR(computed[i], moments[i], 1e-14);
+    {
+      values[i]          = this->random();
+      on_coefficients[i] = this->random();
+    }
+  const auto on_nodes =
+    Kernel::to_nodes(load<typename Kernel::Nodes>(on_coefficients.data()));
+  double expected = 0, computed = 0;
+  for (int i = 0; i < Kernel::n_nodes; ++i)
+    computed += on_nodes[i] * values[i];
+  Kernel::to_monomials(values);
+  for (int i = 0; i < Kernel::n_nodes; ++i)
+    expected += on_coefficients[i] * values[i];
+  EXPECT_NEAR(computed, expected, 1e-14);
 }
 
 

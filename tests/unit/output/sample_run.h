@@ -32,7 +32,10 @@ namespace limber::test
       layout.reference = true;
       bodies.emplace_back(new MaterialBody<dim>{
         problem.bodies[0],
-        make_stress_update<dim>("linear elastic", {1000, 1e6, 0.3}, projected),
+        make_stress_update<dim>("linear elastic",
+                                {1000, 1e6, 0.3},
+                                problem.bodies[0].treatment,
+                                HourglassResponse::bending),
         MaterialPoints<dim>(grid, layout),
         std::nullopt});
       if (projected)
@@ -72,8 +75,7 @@ namespace limber::test
       Body<dim> body;
       body.name = "block";
       body.points_per_cell_edge.fill(2);
-      body.treatment =
-        projected ? LockingTreatment::cell : LockingTreatment::none;
+      body.treatment = projected ? Projection::cell : Projection::none;
       problem.bodies.push_back(body);
       return problem;
     }

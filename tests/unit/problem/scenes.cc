@@ -51,7 +51,7 @@ TEST(Scenes, DamBreakReadsAsWritten)
   EXPECT_DOUBLE_EQ(water.density(), 997.5);
   EXPECT_DOUBLE_EQ(water.material.at(1), 2e9);
   EXPECT_DOUBLE_EQ(water.material.at(2), 1e-3);
-  EXPECT_EQ(water.treatment, LockingTreatment::cell);
+  EXPECT_EQ(water.treatment, Projection::cell);
 
   EXPECT_EQ(problem.grid.upper, Point<2>(5, 3));
   EXPECT_EQ(problem.grid.cells[1], 24u);
@@ -94,7 +94,7 @@ TEST(Scenes, CantileverReadsAsWritten)
   const Body<2> &beam = problem.bodies[0];
   EXPECT_EQ(beam.law, "neo hookean");
   EXPECT_DOUBLE_EQ(beam.material.at(2), 0.49);
-  EXPECT_EQ(beam.treatment, LockingTreatment::cell);
+  EXPECT_EQ(beam.treatment, Projection::cell);
 
   // The first mode has the amplitude v0 at the tip.
   EXPECT_NEAR(beam.initial_velocity.value(Point<2>(8, 2), 0., 1), 0.01, 1e-5);

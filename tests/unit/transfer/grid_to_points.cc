@@ -73,7 +73,7 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
         random_points<dim>(this->grid, this->random, true, 0, -1, variant >= 4);
       const auto before = points;
       const auto summary =
-        grid_to_points<dim>(points.view(), this->grid.view(), what);
+        grid_to_points<dim>(points.view(), this->grid.view(), what, nullptr);
 
       double largest = 0, removed = 0;
       for (std::size_t p = 0; p < points.size; ++p)
@@ -146,7 +146,7 @@ TYPED_TEST(GridToPoints, RemapIsTheDirectSum)
       what.remap        = true;
       auto       wanted = this->grid.nodes;
       const auto points = own.view();
-      grid_to_points<dim>(points, this->grid.view(), what);
+      grid_to_points<dim>(points, this->grid.view(), what, nullptr);
 
       for (std::size_t p = 0; p < points.size; ++p)
         for (int i = 0; i < 1 << dim; ++i)
@@ -187,7 +187,7 @@ TYPED_TEST(GridToPoints, PointsMoveWithTheGrid)
       auto       points = random_points<dim>(this->grid, this->random);
       const auto before = points;
       const auto summary =
-        grid_to_points<dim>(points.view(), this->grid.view(), what);
+        grid_to_points<dim>(points.view(), this->grid.view(), what, nullptr);
       double largest = 0;
       for (std::size_t p = 0; p < points.size; ++p)
         {

@@ -4,6 +4,7 @@
 #include <limber/transfer/points_to_grid.h>
 
 #include <gtest/gtest.h>
+#include <support/projections.h>
 #include <support/small_grid.h>
 
 using namespace limber;
@@ -20,7 +21,7 @@ namespace
 
     /** The sums as the textbook has them, point by point, node by node. */
     std::vector<double>
-    direct(SmallPoints<dim> &own, const GiveToGrid &what, const bool pressure)
+    direct(SmallPoints<dim> &own, const GiveToGrid &what)
     {
       const auto          points = own.view();
       std::vector<double> result(grid.nodes.size());
@@ -49,10 +50,7 @@ namespace
               }
             if (what.force)
               {
-                auto t = kirchhoff_stress(points, p);
-                if (!pressure)
-                  for (int d = 0; d < 3; ++d)
-                    t[d][d] += points.pressure[p];
+                const auto t = kirchhoff_stress(points, p);
                 for (int d = 0; d < dim; ++d)
                   for (int e = 0; e < dim; ++e)
                     record[Layout::force + d] -=
@@ -91,8 +89,8 @@ TEST(AddToNodes, TransposesBlocks)
   for (int i = 0; i < 8; ++i)
     for (int j = 0; j < 8; ++j)
       b[i][j] = 10 * i + j;
-  internal::transpose<4>(a);
-  internal::transpose<8>(b);
+  transpose<4>(a);
+  transpose<8>(b);
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
       EXPECT_EQ(a[i][j], 10 * j + i);
@@ -117,7 +115,7 @@ TYPED_TEST(PointsToGrid, SumsAreThoseOfAPlainLoop)
         this->grid, this->random, variant & 8, 0, -1, variant & 16);
       this->grid.clear();
       points_to_grid<dim>(points.view(), this->grid.view(), what, nullptr);
-      this->expect_nodes(this->direct(points, what, true));
+      this->expect_nodes(this->direct(points, what));
     }
 }
 
@@ -129,7 +127,7 @@ TYPED_TEST(PointsToGrid, SumsAreAddedToWhatIsThere)
   auto          points = random_points<dim>(this->grid, this->random);
   GiveToGrid    what;
   what.inverse_density = 1;
-  auto expected        = this->direct(points, what, true);
+  auto expected        = this->direct(points, what);
   for (std::size_t k = 0; k < expected.size(); ++k)
     expected[k] += this->grid.nodes[k] = this->random();
   points_to_grid<dim>(points.view(), this->grid.view(), what, nullptr);
@@ -138,70 +136,23 @@ TYPED_TEST(PointsToGrid, SumsAreAddedToWhatIsThere)
 
 
 
-TYPED_TEST(PointsToGrid, ProjectedBodiesLeaveThePressureToTheCells)
-{
-  constexpr int dim = TestFixture::dim;
-  using Sums        = CellSums<dim>;
-  for (int variant = 0; variant < 16; ++variant)
-    {
-      GiveToGrid what;
-      what.momentum        = variant & 1;
-      what.force           = variant & 2;
-      what.inverse_density = 0.8;
-      auto own             = random_points<dim>(
-        this->grid, this->random, variant & 4, 1, 0, variant & 8);
-      const auto points = own.view();
-      this->grid.clear();
-      const auto sums = this->grid.cell_sums();
-      points_to_grid<dim>(points, this->grid.view(), what, &sums);
-      this->expect_nodes(this->direct(own, what, false));
-
-      std::vector<double> expected(this->grid.sums.size());
-      for (std::size_t p = 0; p < points.size; ++p)
-        {
-          double *const cell = &expected[points.cell[p] * Sums::stride];
-          if (what.momentum)
-            {
-              for (int i = 0; i < 1 << dim; ++i)
-                cell[i] += points.mass[p] *
-                           this->grid.shape(points.cell[p], i, own.position(p));
-              cell[Sums::volumetric] += points.mass[p] * points.history[0][p];
-            }
-          if (what.force)
-            cell[Sums::pressure] += points.mass[p] * 0.8 * points.pressure[p];
-        }
-      for (std::size_t k = 0; k < expected.size(); ++k)
-        ASSERT_NEAR(this->grid.sums[k], expected[k], 1e-12);
-    }
-}
-
-
-
 // f_i += sum_p V_p pbar G_ip, with pbar V-weighted over the points of the cell
 TYPED_TEST(PointsToGrid, ProjectedPressureActsThroughAllPointsOfItsCell)
 {
   constexpr int dim = TestFixture::dim;
-  for (const bool shuffled : {false, true})
+  for (int variant = 0; variant < 8; ++variant)
     {
-      auto own =
-        random_points<dim>(this->grid, this->random, true, 0, -1, shuffled);
+      auto own = random_points<dim>(
+        this->grid, this->random, variant & 1, 0, -1, variant & 2);
       const auto points = own.view();
       GiveToGrid what;
+      what.momentum        = variant & 4;
       what.inverse_density = 0.8;
+      what.projection.kind = Projection::cell;
       this->grid.clear();
+      this->grid.gather(points);
       const auto sums = this->grid.cell_sums();
       points_to_grid<dim>(points, this->grid.view(), what, &sums);
-      std::vector<std::uint32_t> cells;
-      for (std::uint32_t c = 0; c < this->grid.n_cells; ++c)
-        cells.push_back(c); // empty ones as well
-      // at once, or after the averages
-      average_cells<dim>(
-        cells.data(), cells.size(), this->grid.view(), sums, shuffled);
-      if (!shuffled)
-        add_projected_pressure<dim>(cells.data(),
-                                    cells.size(),
-                                    this->grid.view(),
-                                    sums);
 
       std::vector<double> pressure(this->grid.n_cells),
         volume(this->grid.n_cells);
@@ -212,7 +163,7 @@ TYPED_TEST(PointsToGrid, ProjectedPressureActsThroughAllPointsOfItsCell)
         }
       for (std::size_t p = 0; p < points.size; ++p)
         points.pressure[p] = pressure[points.cell[p]] / volume[points.cell[p]];
-      this->expect_nodes(this->direct(own, what, true));
+      this->expect_nodes(this->direct(own, what));
     }
 }
 
@@ -224,22 +175,18 @@ TYPED_TEST(PointsToGrid, TotalsAreKept)
   constexpr int dim = TestFixture::dim;
   using Layout      = NodeLayout<dim>;
   for (const bool affine : {false, true})
-    for (const bool projected : {false, true})
+    for (const Projection kind : all_projections)
       {
         auto       own    = random_points<dim>(this->grid, this->random);
         const auto points = own.view();
         GiveToGrid what;
         what.inverse_density = 0.8;
         what.affine          = affine;
+        what.projection      = projection_of(kind);
         this->grid.clear();
+        this->grid.gather(points);
         const auto sums = this->grid.cell_sums();
-        points_to_grid<dim>(points,
-                            this->grid.view(),
-                            what,
-                            projected ? &sums : nullptr);
-        if (projected)
-          for (std::uint32_t c = 0; c < this->grid.n_cells; ++c)
-            average_cells<dim>(&c, 1, this->grid.view(), sums, true);
+        points_to_grid<dim>(points, this->grid.view(), what, &sums);
 
         double      mass = 0;
         Vector<dim> momentum{}, force{};

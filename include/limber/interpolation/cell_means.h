@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_cell_means_h
+#define limber_interpolation_cell_means_h
+
+#include <limber/interpolation/batch_lanes.h>
+
+namespace limber
+{
+  /**
+   * The means over the points of a body in a cell, weighted by mass, of the
+   * monomials in natural coordinates: lane k belongs to the product of the
+   * coordinates whose bits are set in k. The last lane, which no derivative
+   * of a multilinear function needs, has the mean of the volumetric variable.
+   */
+  template <int dim>
+  class CellMeans
+  {
+  public:
+    using Nodes = typename Linear<dim>::Nodes;
+
+    /** Not to be asked where nothing is projected and there are no sums. */
+    CellMeans(const CellSums<dim> *const sums, const std::uint32_t cell)
+      : record(sums ? sums->now + cell * CellSums<dim>::stride : nullptr)
+      , inverse_mass(sums ? 1 / record[CellSums<dim>::mass] : 0)
+    {}
+
+    double
+    operator[](const int k) const
+    {
+      return record[k] * inverse_mass;
+    }
+
+    double
+    volumetric() const
+    {
+      return record[CellSums<dim>::volumetric] * inverse_mass;
+    }
+
+    /** The mean of the derivative with respect to natural coordinate d of a
+     * function with monomial coefficients c(k). */
+    template <class Coefficients>
+    double
+    derivative(const Coefficients &c, const int d) const
+    {
+      double sum = 0;
+      for (int k = 0; k < 1 << dim; ++k)
+        if (k >> d & 1 && k != 1 << d)
+          sum += c(k) * record[k ^ (1 << d)];
+      return c(1 << d) + inverse_mass * sum;
+    }
+
+    /** Lane k: the same of monomial k. */
+    Nodes
+    derivatives(const int d) const
+    {
+      return inverse_mass * Linear<dim>::upper(d) *
+             Linear<dim>::across(load<Nodes>(record), d);
+    }
+
+  private:
+    const double *const record;
+    const double        inverse_mass;
+  };
+
+
+
+  /** Adds points that have moved to the sums of the cells they are in now. */
+  template <int dim>
+  class CellGatherer
+  {
+  public:
+    using Number = PointPack<dim>;
+
+    explicit CellGatherer(const CellSums<dim> &sums)
+      : next(sums.next)
+    {}
+
+    /** The points of a pack, all in that cell at natural places xi. */
+    __attribute__((always_inline)) void
+    add(const std::uint32_t            cell,
+        const std::array<Number, dim> &xi,
+        const Number                  &mass,
+        const Number                  &volumetric) const
+    {
+      std::array<Number, 1 << dim> products;
+      products[0] = mass;
+      for (int k = 1; k < (1 << dim) - 1; ++k)
+        products[k] = mass * monomial(xi, k);
+      products[CellSums<dim>::volumetric] = mass * volumetric;
+      double *const record                = next + cell * CellSums<dim>::stride;
+      store(load<Number>(record) + sums_over_lanes(products), record);
+    }
+
+    /** The points [begin, end), wherever they are now. */
+    __attribute__((noinline, cold)) void
+    add_one_by_one(const PointView<dim> &points,
+                   const GridView<dim>  &grid,
+                   const std::size_t     begin,
+                   const std::size_t     end) const
+    {
+      for (std::size_t p = begin; p < end; ++p)
+        {
+          if (points.cell[p] == invalid_cell)
+            continue;
+          const CellGeometry<dim> &geometry = grid.cells[points.cell[p]];
+          std::array<double, dim>  xi;
+          for (int d = 0; d < dim; ++d)
+            xi[d] = (points.position[d][p] - geometry.origin[d]) *
+                    geometry.inverse_edge[d];
+          double *const record = next + points.cell[p] * CellSums<dim>::stride;
+          const double  mass   = points.mass[p];
+          record[0] += mass;
+          for (int k = 1; k < (1 << dim) - 1; ++k)
+            record[k] += mass * monomial(xi, k);
+          record[CellSums<dim>::volumetric] += mass * points.volumetric[p];
+        }
+    }
+
+  private:
+    template <class T>
+    static T
+    monomial(const std::array<T, dim> &xi, const int k)
+    {
+      T    result{};
+      bool first = true;
+      for (int d = 0; d < dim; ++d)
+        if (k >> d & 1)
+          {
+            result = first ? xi[d] : result * xi[d];
+            first  = false;
+          }
+      return result;
+    }
+
+    double *const next;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_strain_operator_h
+#define limber_interpolation_strain_operator_h
+
+#include <limber/interpolation/cell_means.h>
+#include <limber/materials/law.h>
+#include <limber/materials/projection.h>
+
+/**
+ * @file The strain operator B of each projection and its transpose. B takes
+ * the velocities of the nodes of a cell to the rate of deformation at the
+ * points of a body in it; its transpose takes their stresses to forces on the
+ * nodes. They stand side by side because a treatment is consistent (conserves
+ * energy in space) if and only if one is the transpose of the other with the
+ * same weights: sum f_i v_i = - sum V (stress : B v), for all v and stresses.
+ *
+ * Both use the coefficients c_k of the monomials of a component of velocity,
+ * u = c_0 + c_1 xi + c_2 eta + c_3 xi eta + ... (bits of k: coordinates), and
+ * the means over the points of the derivatives of these monomials. A bar is
+ * such a mean, a prime the deviation from it; d, e, f are different axes.
+ *
+ *   none            D = grad v
+ *   cell            dev D = dev grad v,  tr D = <div v>
+ *   cell_shear      as cell, but D_de = <D_de>
+ *   cell_full       D = <grad v>
+ *   assumed_strain  D_dd = <D_dd> + sum_e (e1 c^d_de/h_d xi_e' +
+ *                                          e2 c^e_de/h_e xi_d')
+ *                          + trilinear terms in the same way (3d),
+ *                 2 D_de = <2 D_de> + (c^d_ef/h_e + c^e_df/h_d) xi_f' (3d)
+ *
+ * Derivation and proofs: doc/theory/treatments.md.
+ */
+namespace limber
+{
+  /** B of a cell for one velocity field, times the step. */
+  template <int dim, Projection kind, class Coefficients>
+  class StrainOperator
+  {
+  public:
+    /**
+     * @p velocity gives the coefficients of component d of the velocity as
+     * velocity(d)(k).
+     */
+    StrainOperator(const Coefficients      &velocity,
+                   const CellGeometry<dim> &cell,
+                   const CellMeans<dim>    &means,
+                   const StrainProjection  &projection,
+                   const double             step)
+      : velocity(velocity)
+    {
+      for (int d = 0; d < dim; ++d)
+        scale[d] = step * cell.inverse_edge[d];
+      if constexpr (kind == Projection::none)
+        return;
+      else if constexpr (kind == Projection::cell)
+        for (int d = 0; d < dim; ++d)
+          divergence += mean_derivative(d, d, means);
+      else
+        {
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e <= d; ++e)
+              mean[d][e] = mean[e][d] = 0.5 * (mean_derivative(d, e, means) +
+                                               mean_derivative(e, d, means));
+          for (int d = 0; d < dim; ++d)
+            divergence += mean[d][d];
+          if constexpr (kind == Projection::assumed_strain)
+            set_hourglass(means, projection);
+        }
+    }
+
+    /** dt D + dt W at natural coordinates xi; W is the spin as it is. */
+    template <class Number>
+    void
+    evaluate(const std::array<Number, dim> &xi,
+             MotionIncrement<dim, Number>  &motion) const
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          const auto gradient =
+            Linear<dim>::template gradient<Number>(velocity(d), xi);
+          for (int e = 0; e < dim; ++e)
+            motion.gradient[d][e] = scale[e] * gradient[e];
+        }
+      if constexpr (kind == Projection::cell_shear ||
+                    kind == Projection::cell_full ||
+                    kind == Projection::assumed_strain)
+        for (int d = 0; d < dim; ++d)
+          {
+            if constexpr (kind == Projection::cell_full)
+              motion.gradient[d][d] = broadcast<Number>(mean[d][d]);
+            if constexpr (kind == Projection::assumed_strain)
+              motion.gradient[d][d] = assumed_normal(d, xi);
+            for (int e = 0; e < d; ++e)
+              {
+                Number shear = broadcast<Number>(mean[d][e]);
+                if constexpr (kind == Projection::assumed_strain && dim == 3)
+                  {
+                    const int f = 3 - d - e;
+                    shear += torsion[f] * (xi[f] - centroid[f]);
+                  }
+                const Number spin =
+                  0.5 * (motion.gradient[d][e] - motion.gradient[e][d]);
+                motion.gradient[d][e] = shear + spin;
+                motion.gradient[e][d] = shear - spin;
+              }
+          }
+      if constexpr (kind == Projection::none ||
+                    kind == Projection::assumed_strain)
+        motion.volumetric = motion.trace();
+      else
+        motion.volumetric = broadcast<Number>(divergence);
+    }
+
+  private:
+    /** The mean of dt dv_d/dx_e. */
+    double
+    mean_derivative(const int d, const int e, const CellMeans<dim> &means) const
+    {
+      return scale[e] * means.derivative(velocity(d), e);
+    }
+
+    void
+    set_hourglass(const CellMeans<dim>   &means,
+                  const StrainProjection &projection)
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          centroid[d] = means[1 << d];
+          linear[d]   = {};
+        }
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          if (e != d)
+            {
+              const int k = 1 << d | 1 << e;
+              linear[d][e] += projection.own * scale[d] * velocity(d)(k);
+              linear[d][d] += projection.mate * scale[e] * velocity(e)(k);
+            }
+      if constexpr (dim == 3)
+        for (int d = 0; d < dim; ++d)
+          {
+            const int e = (d + 1) % 3, f = (d + 2) % 3;
+            product_mean[d] = means[1 << e | 1 << f];
+            for (int g = 0; g < dim; ++g)
+              product[d][g] = (g == d ? projection.trilinear_own :
+                                        projection.trilinear_mate) *
+                              scale[g] * velocity(g)(7);
+            torsion[d] = 0.5 * (scale[f] * velocity(e)(1 << d | 1 << f) +
+                                scale[e] * velocity(f)(1 << d | 1 << e));
+          }
+    }
+
+    template <class Number>
+    Number
+    assumed_normal(const int d, const std::array<Number, dim> &xi) const
+    {
+      Number result = broadcast<Number>(mean[d][d]);
+      for (int e = 0; e < dim; ++e)
+        result += linear[d][e] * (xi[e] - centroid[e]);
+      if constexpr (dim == 3)
+        for (int g = 0; g < dim; ++g)
+          result += product[d][g] *
+                    (xi[(g + 1) % 3] * xi[(g + 2) % 3] - product_mean[g]);
+      return result;
+    }
+
+    const Coefficients                      &velocity;
+    std::array<double, dim>                  scale;
+    double                                   divergence = 0;
+    std::array<std::array<double, dim>, dim> mean;
+    // Of the assumed strain: D_dd = mean + sum_e linear[d][e] xi_e' + sum_g
+    // product[d][g] (product of the other two coordinates)'; torsion[f] is the
+    // slope along f of the shear in the plane across it.
+    std::array<double, dim>                  centroid;
+    std::array<std::array<double, dim>, dim> linear;
+    std::array<std::array<double, dim>, dim> product;
+    std::array<double, dim>                  product_mean;
+    std::array<double, dim>                  torsion;
+  };
+
+
+
+  /**
+   * The transpose: gathers from the points of a batch what their stress gives
+   * to the coefficients c_k, and turns it into forces on the nodes.
+   */
+  template <int dim, Projection kind, bool deviator>
+  class StressOperator
+  {
+  public:
+    using Number = PointPack<dim>;
+    using Nodes  = typename Linear<dim>::Nodes;
+
+    StressOperator(const CellGeometry<dim> &cell,
+                   const StrainProjection  &projection)
+      : cell(cell)
+      , projection(projection)
+    {}
+
+    /**
+     * The points from @p first on, at most a pack and at most @p n. What lies
+     * beyond is read as well and gets the weight zero.
+     */
+    __attribute__((always_inline)) void
+    add(const PointView<dim> &points,
+        const std::size_t     first,
+        const std::size_t     n,
+        const double          inverse_density)
+    {
+      const auto read = [first](const double *const array) {
+        return load<Number>(array + first);
+      };
+      Number volume = inverse_density * read(points.mass);
+      if (n < pack_width<Number>)
+        volume = first_lanes<Number>(n) ? volume : Number{};
+      std::array<Number, dim> xi;
+      for (int d = 0; d < dim; ++d)
+        xi[d] =
+          (read(points.position[d]) - cell.origin[d]) * cell.inverse_edge[d];
+
+      const Number p = volume * read(points.pressure);
+      if constexpr (mean_pressure)
+        pressure += p;
+      if constexpr (deviator || !mean_pressure)
+        {
+          std::array<std::array<Number, dim>, dim> t{};
+          if constexpr (deviator)
+            {
+              t[0][0] = volume * read(points.deviator[0]);
+              t[1][1] = volume * read(points.deviator[1]);
+              t[1][0] = t[0][1] = volume * read(points.deviator[2]);
+              if constexpr (dim == 3)
+                {
+                  t[2][2] = -(t[0][0] + t[1][1]);
+                  t[2][1] = t[1][2] = volume * read(points.deviator[3]);
+                  t[2][0] = t[0][2] = volume * read(points.deviator[4]);
+                }
+            }
+          if constexpr (!mean_pressure)
+            for (int d = 0; d < dim; ++d)
+              t[d][d] -= p;
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e <= d; ++e)
+              if (deviator || d == e)
+                stress[d][e] += t[d][e];
+          add_hourglass(t, xi);
+        }
+    }
+
+    /** The forces on the nodes, one lane each, for each direction. */
+    __attribute__((always_inline)) std::array<Nodes, dim>
+    forces(const CellMeans<dim> &means) const
+    {
+      std::array<Nodes, dim> result{};
+      if constexpr (deviator || !mean_pressure)
+        for (int d = 0; d < dim; ++d)
+          {
+            // what acts on c_k in lane k
+            std::array<Number, 1 << dim> a{};
+            Nodes                        factor = broadcast<Nodes>(1.);
+            for (int e = 0; e < dim; ++e)
+              {
+                a[1 << e]      = e <= d ? stress[d][e] : stress[e][d];
+                factor[1 << e] = cell.inverse_edge[e];
+              }
+            if constexpr (kind != Projection::cell_full)
+              for (int k = 3; k < 1 << dim; ++k)
+                if (k & (k - 1))
+                  a[k] = hourglass[d][k];
+            result[d] = factor * sums_over_lanes(a);
+          }
+      if constexpr (kind == Projection::cell_shear ||
+                    kind == Projection::cell_full ||
+                    kind == Projection::assumed_strain)
+        for (int d = 0; d < dim; ++d)
+          add_means(result[d], d, means);
+      if constexpr (mean_pressure)
+        {
+          const double total = sum(pressure);
+          for (int d = 0; d < dim; ++d)
+            result[d] -= (total * cell.inverse_edge[d]) * means.derivatives(d);
+        }
+      for (int d = 0; d < dim; ++d)
+        result[d] = -Linear<dim>::to_nodes(result[d]);
+      return result;
+    }
+
+  private:
+    static constexpr bool mean_pressure =
+      kind != Projection::none && kind != Projection::assumed_strain;
+
+    /** What acts on coefficients of hourglass modes at the points. */
+    __attribute__((always_inline)) void
+    add_hourglass(const std::array<std::array<Number, dim>, dim> &t,
+                  const std::array<Number, dim>                  &xi)
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          const int e = (d + 1) % dim, f = (d + 2) % dim;
+          if constexpr (dim == 2)
+            hourglass[d][3] += hourglass_pair(t, xi, d, e);
+          else if constexpr (kind != Projection::cell_full)
+            {
+              hourglass[d][1 << d | 1 << e] += hourglass_pair(t, xi, d, e);
+              hourglass[d][1 << d | 1 << f] += hourglass_pair(t, xi, d, f);
+              const double *const h = cell.inverse_edge.data();
+              if constexpr (kind != Projection::cell_shear)
+                hourglass[d][1 << e | 1 << f] +=
+                  t[d][e] * (h[e] * xi[f]) + t[d][f] * (h[f] * xi[e]);
+              if constexpr (kind == Projection::none ||
+                            kind == Projection::cell)
+                hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f])) +
+                                   t[d][e] * (h[e] * (xi[d] * xi[f])) +
+                                   t[d][f] * (h[f] * (xi[d] * xi[e]));
+              else if constexpr (kind == Projection::cell_shear)
+                hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f]));
+              else
+                hourglass[d][7] +=
+                  (projection.trilinear_own * t[d][d] +
+                   projection.trilinear_mate * (t[e][e] + t[f][f])) *
+                  (h[d] * (xi[e] * xi[f]));
+            }
+        }
+    }
+
+    /** Of the mode xi_d xi_e of component d. */
+    Number
+    hourglass_pair(const std::array<std::array<Number, dim>, dim> &t,
+                   const std::array<Number, dim>                  &xi,
+                   const int                                       d,
+                   const int                                       e) const
+    {
+      const double *const h = cell.inverse_edge.data();
+      if constexpr (kind == Projection::none || kind == Projection::cell)
+        return t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]);
+      else if constexpr (kind == Projection::cell_shear)
+        return t[d][d] * (h[d] * xi[e]);
+      else if constexpr (kind == Projection::assumed_strain)
+        return (projection.own * t[d][d] + projection.mate * t[e][e]) *
+               (h[d] * xi[e]);
+      else
+        return Number{};
+    }
+
+    /**
+     * Add what mean strains bring to the coefficients of hourglass modes:
+     * what of a stress has not gone to deviations from the mean at the points.
+     */
+    __attribute__((always_inline)) void
+    add_means(Nodes &a, const int d, const CellMeans<dim> &means) const
+    {
+      const double *const     h = cell.inverse_edge.data();
+      std::array<double, dim> total; // sum V stress_de
+      for (int e = 0; e < dim; ++e)
+        total[e] = a[1 << e] / h[e];
+      for (int k = 3; k < 1 << dim; ++k)
+        {
+          if (!(k & (k - 1)))
+            continue;
+          for (int e = 0; e < dim; ++e)
+            if (k >> e & 1 && !(kind == Projection::cell_shear && e == d))
+              a[k] += total[e] * h[e] * means[k ^ (1 << e)];
+        }
+      if constexpr (kind == Projection::assumed_strain)
+        {
+          std::array<double, dim> normal;
+          for (int e = 0; e < dim; ++e)
+            normal[e] = sum(stress[e][e]);
+          for (int e = 0; e < dim; ++e)
+            if (e != d)
+              a[1 << d | 1 << e] -=
+                (projection.own * normal[d] + projection.mate * normal[e]) *
+                h[d] * means[1 << e];
+          if constexpr (dim == 3)
+            {
+              const int e = (d + 1) % 3, f = (d + 2) % 3;
+              a[1 << e | 1 << f] -= total[e] * h[e] * means[1 << f] +
+                                    total[f] * h[f] * means[1 << e];
+              a[7] -= (projection.trilinear_own * normal[d] +
+                       projection.trilinear_mate * (normal[e] + normal[f])) *
+                      h[d] * means[1 << e | 1 << f];
+            }
+        }
+    }
+
+    const CellGeometry<dim> &cell;
+    const StrainProjection  &projection;
+
+    Number                                        pressure{};
+    std::array<std::array<Number, dim>, dim>      stress{};
+    std::array<std::array<Number, 1 << dim>, dim> hourglass{};
+  };
+} // namespace limber
+
+#endif

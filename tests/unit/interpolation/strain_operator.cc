@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/strain_operator.h>
+#include <limber/transfer/points_to_grid.h>
+
+#include <gtest/gtest.h>
+#include <support/projections.h>
+#include <support/small_grid.h>
+
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  template <int dimension, Projection projection_kind>
+  struct Case
+  {
+    static constexpr int        dim  = dimension;
+    static constexpr Projection kind = projection_kind;
+  };
+
+
+
+  template <class Case>
+  class Strain : public testing::Test
+  {
+  public:
+    static constexpr int        dim  = Case::dim;
+    static constexpr Projection kind = Case::kind;
+    using Layout                     = NodeLayout<dim>;
+
+    /** B v at every point, from the velocities in the records of the nodes. */
+    std::vector<MotionIncrement<dim, double>>
+    strain(const SmallPoints<dim> &own, const PointView<dim> &points)
+    {
+      std::vector<MotionIncrement<dim, double>> result(points.size);
+      const auto                                sums = grid.cell_sums();
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto &cell = grid.cells[points.cell[p]];
+          const NodalCoefficients<dim, Layout::velocity, dim> nodal(
+            cell, grid.nodes.data());
+          const auto velocity = [&](const int d) { return nodal.component(d); };
+          const StrainOperator<dim, kind, decltype(velocity)> B(
+            velocity,
+            cell,
+            CellMeans<dim>(&sums, points.cell[p]),
+            projection_of(kind),
+            1.);
+          const auto              x = own.position(p);
+          std::array<double, dim> xi;
+          for (int d = 0; d < dim; ++d)
+            xi[d] = (x[d] - cell.origin[d]) * cell.inverse_edge[d];
+          B.template evaluate<double>(xi, result[p]);
+        }
+      return result;
+    }
+
+    void
+    set_velocities()
+    {
+      for (double &value : grid.nodes)
+        value = random();
+    }
+
+    Random         random;
+    SmallGrid<dim> grid;
+  };
+
+  using Cases = testing::Types<Case<2, Projection::none>,
+                               Case<2, Projection::cell>,
+                               Case<2, Projection::cell_shear>,
+                               Case<2, Projection::cell_full>,
+                               Case<2, Projection::assumed_strain>,
+                               Case<3, Projection::none>,
+                               Case<3, Projection::cell>,
+                               Case<3, Projection::cell_shear>,
+                               Case<3, Projection::cell_full>,
+                               Case<3, Projection::assumed_strain>>;
+  TYPED_TEST_SUITE(Strain, Cases);
+} // namespace
+
+
+
+// sum f_i v_i = - sum V (dev tau : D - p tr D): what is projected in the strain
+// is projected in the stress, by the same operator with the same weights.
+TYPED_TEST(Strain, StressActsThroughTheTransposeOfTheStrainOperator)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  for (int variant = 0; variant < 8; ++variant)
+    {
+      auto       own    = random_points<dim>(this->grid,
+                                    this->random,
+                                    /*deviator=*/variant & 1,
+                                    0,
+                                    -1,
+                                    /*shuffled=*/variant & 2);
+      const auto points = own.view();
+      this->grid.gather(points);
+      this->set_velocities();
+      const auto strain = this->strain(own, points);
+
+      double on_points = 0, size = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          auto stress = kirchhoff_stress(points, p);
+          for (int d = 0; d < 3; ++d)
+            stress[d][d] += points.pressure[p];
+          double power = -points.pressure[p] * strain[p].volumetric;
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              power += stress[d][e] * strain[p].gradient[d][e];
+          on_points += 0.8 * points.mass[p] * power;
+          size += std::abs(0.8 * points.mass[p] * power);
+        }
+
+      const auto velocities = this->grid.nodes;
+      GiveToGrid what;
+      what.momentum        = variant & 4;
+      what.inverse_density = 0.8;
+      what.projection      = projection_of(TestFixture::kind);
+      this->grid.clear();
+      const auto sums = this->grid.cell_sums();
+      points_to_grid<dim>(points, this->grid.view(), what, &sums);
+      double on_grid = 0;
+      for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+        for (int d = 0; d < dim; ++d)
+          on_grid += this->grid.nodes[n * Layout::stride + Layout::force + d] *
+                     velocities[n * Layout::stride + Layout::velocity + d];
+      EXPECT_NEAR(on_grid, -on_points, 1e-13 * size);
+    }
+}
+
+
+
+// Rigid motion and homogeneous deformation pass through unchanged.
+TYPED_TEST(Strain, LinearFieldsAreReproduced)
+{
+  constexpr int dim   = TestFixture::dim;
+  using Layout        = typename TestFixture::Layout;
+  auto       own      = random_points<dim>(this->grid, this->random);
+  const auto points   = own.view();
+  const auto constant = this->random.template vector<dim>();
+  const auto gradient = this->random.template matrix<dim>(2.);
+  this->grid.gather(points);
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    for (int d = 0; d < dim; ++d)
+      {
+        double v = constant[d];
+        for (int e = 0; e < dim; ++e)
+          v += gradient[d][e] * this->grid.place(n)[e];
+        this->grid.nodes[n * Layout::stride + Layout::velocity + d] = v;
+      }
+  for (const auto &motion : this->strain(own, points))
+    {
+      double trace = 0;
+      for (int d = 0; d < dim; ++d)
+        {
+          trace += gradient[d][d];
+          for (int e = 0; e < dim; ++e)
+            EXPECT_NEAR(motion.gradient[d][e], gradient[d][e], 1e-12);
+        }
+      EXPECT_NEAR(motion.volumetric, trace, 1e-12);
+    }
+}
+
+
+
+// The mean of the strain over the points of a cell is that of the gradient,
+// whatever the projection does to its deviation from the mean.
+TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
+{
+  constexpr int dim    = TestFixture::dim;
+  auto          own    = random_points<dim>(this->grid, this->random);
+  const auto    points = own.view();
+  this->grid.gather(points);
+  this->set_velocities();
+  const auto strain = this->strain(own, points);
+
+  struct Sums
+  {
+    Matrix<dim> projected{}, plain{};
+    double      volumetric = 0, trace = 0;
+  };
+  std::vector<Sums> sums(this->grid.n_cells);
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      Sums       &sum  = sums[points.cell[p]];
+      const auto &cell = this->grid.cells[points.cell[p]];
+      Matrix<dim> L{};
+      for (int i = 0; i < 1 << dim; ++i)
+        {
+          const auto G =
+            this->grid.gradient(points.cell[p], i, own.position(p));
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              L[d][e] +=
+                G[e] *
+                this->grid.nodes[cell.node[i] + NodeLayout<dim>::velocity + d];
+        }
+      for (int d = 0; d < dim; ++d)
+        {
+          for (int e = 0; e < dim; ++e)
+            {
+              sum.plain[d][e] += points.mass[p] * (L[d][e] + L[e][d]);
+              sum.projected[d][e] +=
+                points.mass[p] *
+                (strain[p].gradient[d][e] + strain[p].gradient[e][d]);
+            }
+          sum.trace += points.mass[p] * L[d][d];
+        }
+      sum.volumetric += points.mass[p] * strain[p].volumetric;
+    }
+  for (const Sums &sum : sums)
+    {
+      EXPECT_NEAR(sum.volumetric, sum.trace, 1e-12);
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          EXPECT_NEAR(sum.projected[d][e], sum.plain[d][e], 1e-12);
+    }
+}
