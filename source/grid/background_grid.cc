@@ -250,6 +250,23 @@ namespace limber
 
 
   template <int dim>
+  unsigned int
+  BackgroundGrid<dim>::owner_of_cell(const std::uint32_t cell) const
+  {
+    // Ghosts follow the owned cells, those of one rank after the other.
+    std::uint32_t end = n_owned_cells();
+    if (cell < end)
+      return dealii::Utilities::MPI::this_mpi_process(communicator);
+    for (const auto &[rank, n_ghosts] : cell_partitioner->ghost_targets())
+      if (cell < (end += n_ghosts))
+        return rank;
+    Assert(false, dealii::ExcInternalError());
+    return dealii::numbers::invalid_unsigned_int;
+  }
+
+
+
+  template <int dim>
   std::shared_ptr<const Partitioner>
   BackgroundGrid<dim>::node_records(const unsigned int stride) const
   {

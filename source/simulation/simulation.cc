@@ -193,8 +193,7 @@ namespace limber
                << " of its scale";
         else
           text << "The total energy is not finite";
-        text << ", at time " << state.time << " s with step "
-             << state.step_size
+        text << ", at time " << state.time << " s with step " << state.step_size
              << " s. The run is unstable: usually the step is too long or the "
                 "material too stiff for it. Set Method/Courant number to 0.4 "
                 "or below; 'Energy growth limit' is "

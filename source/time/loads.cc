@@ -61,8 +61,8 @@ namespace limber
                        "their shares of the face are unknown. Set 'Placement "
                        "= regular' in section 'Body " +
                        load.body + "'.");
-    std::vector<std::pair<dealii::types::particle_index, double>> own;
-    const PointView<dim> points = body.points.view();
+    std::vector<std::pair<std::uint64_t, double>> own;
+    const PointView<dim>                          points = body.points.view();
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const auto &cell = grid.geometry[points.cell[p]];

@@ -89,6 +89,23 @@ namespace limber
       return n_owned_cells() + cell_partitioner->n_ghost_indices();
     }
 
+    /** A cell's number over all ranks, and back for cells known here. */
+    dealii::types::global_dof_index
+    global_cell_number(const std::uint32_t cell) const
+    {
+      return cell_partitioner->local_to_global(cell);
+    }
+
+    std::uint32_t
+    local_cell_number(const dealii::types::global_dof_index number) const
+    {
+      return cell_partitioner->global_to_local(number);
+    }
+
+    /** The rank that owns a cell. */
+    unsigned int
+    owner_of_cell(std::uint32_t cell) const;
+
     /** A layout of @p stride consecutive numbers per node or per cell. */
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner>
     node_records(const unsigned int stride) const;

@@ -48,7 +48,7 @@ namespace limber
       const FaceLoad<dim> *load;
       MaterialBody<dim>   *body;
       // Area by id of point, m^(dim-1); the same on all ranks.
-      std::unordered_map<dealii::types::particle_index, double> area;
+      std::unordered_map<std::uint64_t, double>   area;
       std::vector<std::pair<std::size_t, double>> here; // point, area
       unsigned long order = 0; // of the points, when `here` was made
     };
