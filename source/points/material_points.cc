@@ -154,6 +154,65 @@ namespace limber
 
 
   template <int dim>
+  std::vector<std::string>
+  MaterialPoints<dim>::field_names() const
+  {
+    std::vector<std::string> names;
+    const auto               components = [&](const std::string &name,
+                                const std::string &letters) {
+      for (const char letter : letters)
+        names.push_back(name + " " + letter);
+    };
+    const auto numbered = [&](const std::string &name, const unsigned int n) {
+      for (unsigned int i = 0; i < n; ++i)
+        names.push_back(name + " " + std::to_string(i));
+    };
+    const std::string axes = dim == 2 ? "xy" : "xyz";
+    components("position", axes);
+    components("velocity", axes);
+    names.push_back("mass");
+    names.push_back("pressure");
+    numbered("deviator", layout.deviator ? n_deviator<dim> : 0);
+    numbered("history", layout.n_history);
+    numbered("affine", layout.affine ? dim * dim : 0);
+    if (layout.reference)
+      components("reference position", axes);
+    return names;
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::clear()
+  {
+    resize(0);
+    ++n_reorderings;
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::append(
+    const std::vector<std::uint32_t>       &new_cells,
+    const std::vector<std::uint64_t>       &new_ids,
+    const std::vector<std::vector<double>> &new_fields)
+  {
+    const std::size_t before = size();
+    resize(before + new_cells.size());
+    std::copy(new_cells.begin(), new_cells.end(), cell.begin() + before);
+    std::copy(new_ids.begin(), new_ids.end(), ids.begin() + before);
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      std::copy(new_fields[f].begin(),
+                new_fields[f].end(),
+                fields[f].begin() + before);
+    ++n_reorderings;
+  }
+
+
+
+  template <int dim>
   void
   MaterialPoints<dim>::collect_cells(std::vector<std::uint32_t> &cells) const
   {

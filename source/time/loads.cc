@@ -43,6 +43,29 @@ namespace limber
 
 
   template <int dim>
+  typename ExternalLoads<dim>::Areas
+  ExternalLoads<dim>::areas() const
+  {
+    Areas result;
+    for (const FaceLayer &layer : layers)
+      result.emplace_back(layer.area.begin(), layer.area.end());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::restore(const Areas &areas)
+  {
+    AssertDimension(areas.size(), layers.size());
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      layers[i].area = {areas[i].begin(), areas[i].end()};
+  }
+
+
+
+  template <int dim>
   typename ExternalLoads<dim>::FaceLayer
   ExternalLoads<dim>::find_layer(const FaceLoad<dim> &load,
                                  MaterialBody<dim>   &body) const

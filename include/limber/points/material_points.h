@@ -8,6 +8,7 @@
 #include <limber/points/point_view.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace limber
@@ -91,6 +92,12 @@ namespace limber
     dealii::Point<dim>
     reference_position(const std::size_t p) const;
 
+    bool
+    has_reference() const
+    {
+      return layout.reference;
+    }
+
     /** Changes whenever points change their places in the arrays. */
     unsigned long
     order() const
@@ -134,6 +141,33 @@ namespace limber
     {
       return carrier->n_particles_in_cell(cell);
     }
+
+    /** What a point carries, as "mass" or "velocity x", in a fixed order. */
+    std::vector<std::string>
+    field_names() const;
+
+    /** The array of a field, by its place among the names. */
+    const std::vector<double> &
+    field(const unsigned int f) const
+    {
+      return fields[f];
+    }
+
+    const std::vector<std::uint64_t> &
+    all_ids() const
+    {
+      return ids;
+    }
+
+    /** Forget all points, to take others from elsewhere. */
+    void
+    clear();
+
+    /** Points with a number already, in owned cells; a vector per field. */
+    void
+    append(const std::vector<std::uint32_t>       &new_cells,
+           const std::vector<std::uint64_t>       &new_ids,
+           const std::vector<std::vector<double>> &new_fields);
 
   private:
     void

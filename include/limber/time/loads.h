@@ -6,7 +6,9 @@
 
 #include <limber/state/material_body.h>
 
+#include <map>
 #include <unordered_map>
+#include <vector>
 
 namespace limber
 {
@@ -37,6 +39,13 @@ namespace limber
     /** Add the forces at @p time to those of the nodes; collective. */
     void
     add(NodalFields<dim> &nodes, double time);
+
+    /** Area by id of point for each face load, m^(dim-1), for checkpoints. */
+    using Areas = std::vector<std::map<std::uint64_t, double>>;
+    Areas
+    areas() const;
+    void
+    restore(const Areas &areas);
 
     /** The sum of the forces on a node since the last add(), N. */
     dealii::Tensor<1, dim>
