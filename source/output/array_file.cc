@@ -3,7 +3,9 @@
 #include <limber/output/array_file.h>
 #include <limber/output/files.h>
 
+#include <fcntl.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -84,6 +86,21 @@ namespace limber
     {
       const hsize_t size[] = {n};
       return {H5Screate_simple(1, size, nullptr), H5Sclose};
+    }
+
+
+
+    /** Throws unless a file of this size can be written. */
+    void
+    try_room(const std::string &path, const std::uint64_t n_bytes)
+    {
+      const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+      if (file < 0)
+        throw cannot_write(path, std::strerror(errno));
+      const int error = posix_fallocate(file, 0, n_bytes);
+      ::close(file);
+      if (error != 0)
+        throw cannot_write(path, std::strerror(error));
     }
   } // namespace
 
@@ -225,12 +242,14 @@ namespace limber
 
 
 
-  GatheredFile::GatheredFile(const std::string &path,
-                             const MPI_Comm     communicator)
+  GatheredFile::GatheredFile(const std::string  &path,
+                             const std::uint64_t n_bytes,
+                             const MPI_Comm      communicator)
     : communicator(communicator)
     , first(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
   {
     attempt([&]() {
+      try_room(path, n_bytes);
       file = std::make_unique<ArrayFile>(path, ArrayFile::Mode::create);
     });
   }

@@ -358,12 +358,18 @@ namespace limber
                                const RunState<dim> &state,
                                const Bodies        &bodies) const
   {
-    GatheredFile file(path, grid.communicator);
-    const bool   first =
+    const bool first =
       dealii::Utilities::MPI::this_mpi_process(grid.communicator) == 0;
     const std::string       scene = join(problem.fixed_entries, "\n");
     const std::vector<char> run =
       dealii::Utilities::pack(state, /*allow_compression=*/false);
+
+    // HDF5's own tables take a few hundred bytes per array.
+    std::uint64_t n_bytes = scene.size() + run.size() + (1 << 20);
+    for (const auto &body : bodies)
+      n_bytes += body->points.n_global() *
+                 (body->points.field_names().size() + 2) * sizeof(double);
+    GatheredFile file(path, n_bytes, grid.communicator);
     file.write("format", &checkpoint_format, first ? 1 : 0);
     file.write("scene", scene.data(), first ? scene.size() : 0);
     file.write("run", run.data(), first ? run.size() : 0);

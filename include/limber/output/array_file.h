@@ -81,7 +81,14 @@ namespace limber
   class GatheredFile
   {
   public:
-    GatheredFile(const std::string &path, MPI_Comm communicator);
+    /**
+     * @p n_bytes: at least what will be written. Whether there is room for
+     * them is tried first, as HDF5 cannot let go of a file that it cannot
+     * complete: it crashes when the program ends.
+     */
+    GatheredFile(const std::string  &path,
+                 const std::uint64_t n_bytes,
+                 MPI_Comm            communicator);
 
     template <typename T>
     void
