@@ -124,7 +124,7 @@ namespace limber
     constexpr const char *note    = "good_slot.txt";
 
     // So many points are read at once.
-    constexpr std::size_t portion = 1 << 20;
+    constexpr std::size_t portion = 1 << 18;
 
 
 
@@ -295,10 +295,13 @@ namespace limber
     void
     settle(const std::string &path)
     {
-      const int file = open(path.c_str(), O_RDONLY);
-      if (file < 0 || fsync(file) != 0)
-        throw cannot_write(path, std::strerror(errno));
-      close(file);
+      const int  file    = open(path.c_str(), O_RDONLY);
+      const bool settled = file >= 0 && fsync(file) == 0;
+      const int  reason  = errno;
+      if (file >= 0)
+        close(file);
+      if (!settled)
+        throw cannot_write(path, std::strerror(reason));
     }
   } // namespace
 
