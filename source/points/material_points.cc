@@ -354,7 +354,7 @@ namespace limber
         {
           auto &records = leaving[grid.owner_of_cell(cell[p])];
           records.resize(records.size() + stride);
-          write_record(p, &*records.end() - stride);
+          write_record(p, records.data() + records.size() - stride);
           records.back() = grid.global_cell_number(cell[p]);
         }
       else
