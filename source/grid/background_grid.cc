@@ -118,6 +118,7 @@ namespace limber
                                     communicator);
 
     build_cells();
+    build_ghost_cells(*cell_partitioner);
     build_bins();
     build_hanging_nodes();
   }
@@ -250,18 +251,18 @@ namespace limber
 
 
   template <int dim>
-  unsigned int
-  BackgroundGrid<dim>::owner_of_cell(const std::uint32_t cell) const
+  void
+  BackgroundGrid<dim>::build_ghost_cells(const Partitioner &cells)
   {
-    // Ghosts follow the owned cells, those of one rank after the other.
-    std::uint32_t end = n_owned_cells();
-    if (cell < end)
-      return dealii::Utilities::MPI::this_mpi_process(communicator);
-    for (const auto &[rank, n_ghosts] : cell_partitioner->ghost_targets())
-      if (cell < (end += n_ghosts))
-        return rank;
-    Assert(false, dealii::ExcInternalError());
-    return dealii::numbers::invalid_unsigned_int;
+    // A rank's cells are numbered consecutively over all ranks.
+    const auto first =
+      dealii::Utilities::MPI::all_gather(communicator,
+                                         cells.local_range().first);
+    ghost_cells.clear();
+    auto ghost = cells.ghost_indices().begin();
+    for (const auto &[owner, n] : cells.ghost_targets())
+      for (unsigned int i = 0; i < n; ++i)
+        ghost_cells.push_back({owner, std::uint32_t(*ghost++ - first[owner])});
   }
 
 

@@ -344,18 +344,19 @@ namespace limber
   void
   MaterialPoints<dim>::hand_over()
   {
-    // Behind each record stands the number of the cell over all ranks, so
-    // that the receiver need not search.
+    // Behind each record stands the receiver's number of the cell, so that it
+    // need not search.
     const std::size_t                           stride = record_size() + 1;
     std::map<unsigned int, std::vector<double>> leaving;
     std::size_t                                 kept = 0;
     for (std::size_t p = 0; p < size(); ++p)
       if (cell[p] >= grid.n_owned_cells())
         {
-          auto &records = leaving[grid.owner_of_cell(cell[p])];
+          const auto &there   = grid.ghost_cell(cell[p]);
+          auto       &records = leaving[there.owner];
           records.resize(records.size() + stride);
           write_record(p, records.data() + records.size() - stride);
-          records.back() = grid.global_cell_number(cell[p]);
+          records.back() = there.number;
         }
       else
         move(p, kept++);
@@ -371,7 +372,7 @@ namespace limber
            record += stride, ++kept)
         {
           read_record(&*record, kept);
-          cell[kept] = grid.local_cell_number(record[record_size()]);
+          cell[kept] = record[record_size()];
         }
   }
 

@@ -17,9 +17,8 @@ namespace
       if (result.failed())
         std::cout << "[  rank "
                   << dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD)
-                  << "  ] " << result.file_name() << ':'
-                  << result.line_number() << ": " << result.message()
-                  << std::endl;
+                  << "  ] " << result.file_name() << ':' << result.line_number()
+                  << ": " << result.message() << std::endl;
     }
   };
 } // namespace

@@ -89,22 +89,18 @@ namespace limber
       return n_owned_cells() + cell_partitioner->n_ghost_indices();
     }
 
-    /** A cell's number over all ranks, and back for cells known here. */
-    dealii::types::global_dof_index
-    global_cell_number(const std::uint32_t cell) const
+    /** The rank that owns a ghost cell, and the cell's local number there. */
+    struct CellElsewhere
     {
-      return cell_partitioner->local_to_global(cell);
-    }
+      unsigned int  owner;
+      std::uint32_t number;
+    };
 
-    std::uint32_t
-    local_cell_number(const dealii::types::global_dof_index number) const
+    const CellElsewhere &
+    ghost_cell(const std::uint32_t cell) const
     {
-      return cell_partitioner->global_to_local(number);
+      return ghost_cells[cell - n_owned_cells()];
     }
-
-    /** The rank that owns a cell. */
-    unsigned int
-    owner_of_cell(std::uint32_t cell) const;
 
     /** A layout of @p stride consecutive numbers per node or per cell. */
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner>
@@ -143,6 +139,8 @@ namespace limber
     void
     build_cells();
     void
+    build_ghost_cells(const dealii::Utilities::MPI::Partitioner &cells);
+    void
     build_bins();
     void
     build_hanging_nodes();
@@ -150,6 +148,7 @@ namespace limber
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> node_partitioner;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> cell_partitioner;
     std::vector<std::uint32_t> cell_numbers; // by active cell index
+    std::vector<CellElsewhere> ghost_cells;
   };
 } // namespace limber
 
