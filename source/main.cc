@@ -45,14 +45,17 @@ namespace
       }
 
     const std::string &folder = problem.output.directory;
-    prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
+    if (command.resume)
+      simulation.resume();
+    else
+      prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
     write_run_texts(folder,
                     {scene.original_text(),
                      scene.original_name() == "original.json",
                      as_text(PrintStyle::prm, scene),
                      as_text(PrintStyle::json, scene)},
                     MPI_COMM_WORLD);
-    console.open_log(folder + "/log.txt");
+    console.open_log(folder + "/log.txt", command.resume);
     catch_signals();
     return simulation.run();
   }
@@ -81,11 +84,6 @@ namespace
       }
     else
       {
-        if (command.resume)
-          throw InputError(
-            "--resume on the command line: this version of Limber writes no "
-            "checkpoint to go on from. Run the scene from the start, with "
-            "another --output-directory if the former results are to stay.");
         const SceneFile scene(command.scene, command.overrides);
         if (command.print_parameters)
           console.show(as_text(*command.print_parameters, scene));

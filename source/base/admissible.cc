@@ -193,6 +193,19 @@ namespace limber
 
 
     Admissible
+    non_negative_integer(const std::string &example)
+    {
+      return Admissible(
+        [](const std::string &value) {
+          return value == "0" || is_positive_integer(value);
+        },
+        "an integer not less than 0",
+        example);
+    }
+
+
+
+    Admissible
     numbers(const unsigned int count, const std::string &example)
     {
       return Admissible(

@@ -78,4 +78,12 @@ namespace limber
   {
     return counts;
   }
+
+
+
+  void
+  Console::restore_counts(const std::map<std::string, unsigned int> &former)
+  {
+    counts = former;
+  }
 } // namespace limber

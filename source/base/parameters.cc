@@ -325,6 +325,18 @@ namespace limber
 
 
 
+  std::vector<std::pair<std::string, std::string>>
+  Parameters::entries() const
+  {
+    std::vector<std::pair<std::string, std::string>> result;
+    for (const Declaration &declaration : declarations)
+      result.emplace_back(full_name(declaration.section, declaration.name),
+                          value(declaration.section, declaration.name));
+    return result;
+  }
+
+
+
   std::string
   Parameters::where(const SectionPath &section, const std::string &name) const
   {

@@ -118,6 +118,7 @@ namespace limber
                                     communicator);
 
     build_cells();
+    build_ghost_cells(*cell_partitioner);
     build_bins();
     build_hanging_nodes();
   }
@@ -245,6 +246,23 @@ namespace limber
                                     weight);
         hanging_nodes.push_back(node);
       }
+  }
+
+
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::build_ghost_cells(const Partitioner &cells)
+  {
+    // A rank's cells are numbered consecutively over all ranks.
+    const auto first =
+      dealii::Utilities::MPI::all_gather(communicator,
+                                         cells.local_range().first);
+    ghost_cells.clear();
+    auto ghost = cells.ghost_indices().begin();
+    for (const auto &[owner, n] : cells.ghost_targets())
+      for (unsigned int i = 0; i < n; ++i)
+        ghost_cells.push_back({owner, std::uint32_t(*ghost++ - first[owner])});
   }
 
 

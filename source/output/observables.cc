@@ -123,12 +123,11 @@ namespace limber
 
 
   template <int dim>
-  Observables<dim>::Observables(const Problem<dim>          &problem,
-                                const ObservablesState<dim> &memory)
-    : problem(problem)
-    , memory(memory)
-    , points(memory.tracked)
+  void
+  Observables<dim>::restore(const ObservablesState<dim> &former)
   {
+    memory = former;
+    points = TrackedPoints<dim>(former.tracked);
     decide_what_to_sample();
   }
 

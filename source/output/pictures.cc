@@ -228,7 +228,17 @@ namespace limber
   Picture<0, dim>
   draw_points(const State<dim> &state)
   {
-    const auto      fields = chosen_fields<dim>(state.problem.output.fields);
+    auto fields = chosen_fields<dim>(state.problem.output.fields);
+    // The picture of a failed run may not have been planned for.
+    for (const auto &body : state.bodies)
+      if (!body->points.has_reference())
+        fields.erase(std::remove_if(fields.begin(),
+                                    fields.end(),
+                                    [](const PointField<dim> &field) {
+                                      return field.fill ==
+                                             fill_displacement<dim>;
+                                    }),
+                     fields.end());
     Picture<0, dim> picture;
     for (const PointField<dim> &field : fields)
       picture.fields.add(field.name, field.unit, field.n_components);

@@ -115,8 +115,9 @@ namespace limber
       throw InputError("The folder " + in_quotes(folder) +
                        " holds a run: " + in_quotes(trace) +
                        " is in it ('Output/Directory'). Usually the scene has "
-                       "been run before. Set 'Output/Replace = true' to "
-                       "overwrite it, or choose another 'Output/Directory'.");
+                       "been run before. Choose another 'Output/Directory', "
+                       "set 'Output/Replace = true' to overwrite it, or go on "
+                       "from its checkpoint with --resume.");
     }
 
 

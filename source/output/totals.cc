@@ -202,13 +202,6 @@ namespace limber
 
 
   template <int dim>
-  Balance<dim>::Balance(const BalanceState<dim> &start)
-    : start(start)
-  {}
-
-
-
-  template <int dim>
   Totals<dim>
   Balance<dim>::evaluate(const State<dim> &state)
   {

@@ -104,7 +104,7 @@ namespace limber
     point.lost = std::isinf(best[0]); // the body has no points at all
     if (!point.lost)
       {
-        point.id = static_cast<dealii::types::particle_index>(best[1 + dim]);
+        point.id = static_cast<std::uint64_t>(best[1 + dim]);
         for (int d = 0; d < dim; ++d)
           point.reference[d] = best[1 + d];
         for (unsigned int t = 0; t < tracked.size(); ++t)

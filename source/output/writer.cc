@@ -42,14 +42,35 @@ namespace limber
       dealii::DataOutBase::write_pvd_record(text, pieces);
       write_whole_file(path, text.str());
     }
+
+
+
+    /** Without the pieces behind the last one of the series. */
+    void
+    shorten_series(const std::string                                 &folder,
+                   const std::string                                 &series,
+                   const std::vector<std::pair<double, std::string>> &pieces)
+    {
+      std::error_code error;
+      std::size_t     number = pieces.size();
+      while (std::filesystem::remove(folder + "/" + piece_name(series, number),
+                                     error))
+        ++number;
+      const std::string path = folder + "/" + series + ".pvd";
+      if (!pieces.empty())
+        write_series(path, pieces);
+      else
+        std::filesystem::remove(path, error);
+      if (error)
+        throw cannot_write(path, error.message());
+    }
   } // namespace
 
 
 
   template <int dim>
-  Writer<dim>::Writer(const std::string &folder, const WriterState &former)
+  Writer<dim>::Writer(const std::string &folder)
     : folder(folder)
-    , written(former)
   {}
 
 
@@ -87,6 +108,19 @@ namespace limber
     on_first_rank(communicator, [&]() {
       write_series(folder + "/points.pvd", written.points);
       write_series(folder + "/grid.pvd", written.grid);
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  Writer<dim>::restore(const WriterState &former, const MPI_Comm communicator)
+  {
+    written = former;
+    on_first_rank(communicator, [&]() {
+      shorten_series(folder, "points", written.points);
+      shorten_series(folder, "grid", written.grid);
     });
   }
 

@@ -2,6 +2,7 @@
 #include <limber/points/material_points.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 namespace limber
@@ -18,23 +19,8 @@ namespace limber
     count_fields(const PointLayout &layout)
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
-             layout.n_history + (layout.affine ? dim * dim : 0);
-    }
-
-
-
-    /**
-     * Points that never leave this rank need not be carried: of these the
-     * handler knows no more than where they were at the start, if asked for.
-     */
-    template <int dim>
-    unsigned int
-    count_properties(const PointLayout &layout, const MPI_Comm communicator)
-    {
-      const bool carried =
-        dealii::Utilities::MPI::n_mpi_processes(communicator) > 1;
-      return (layout.reference ? dim : 0) +
-             (carried ? count_fields<dim>(layout) - dim : 0);
+             layout.n_history + (layout.affine ? dim * dim : 0) +
+             (layout.reference ? dim : 0);
     }
   } // namespace
 
@@ -43,17 +29,23 @@ namespace limber
   template <int dim>
   MaterialPoints<dim>::MaterialPoints(const BackgroundGrid<dim> &grid,
                                       const PointLayout         &layout)
-    : handler(grid.triangulation,
-              grid.mapping,
-              count_properties<dim>(layout, grid.communicator))
-    , grid(grid)
+    : grid(grid)
     , layout(layout)
-    , n_fields(count_fields<dim>(layout))
-    , n_properties(count_properties<dim>(layout, grid.communicator))
-    , first_carried(layout.reference ? dim : 0)
-    , fields(n_fields)
+    , fields(count_fields<dim>(layout))
   {
     resize(0);
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::reserve(const std::size_t n)
+  {
+    for (auto &field : fields)
+      field.reserve(n + padding);
+    cell.reserve(n);
+    ids.reserve(n);
   }
 
 
@@ -65,17 +57,18 @@ namespace limber
     const dealii::Point<dim>                                        &place,
     const double                                                     mass)
   {
-    std::vector<double> properties(n_properties, 0.);
-    if (layout.reference)
-      for (int d = 0; d < dim; ++d)
-        properties[d] = place[d];
-    seeded_masses.push_back(mass);
-    handler.insert_particle(place,
-                            grid.mapping.transform_real_to_unit_cell(cell,
-                                                                     place),
-                            handler.n_locally_owned_particles(),
-                            cell,
-                            dealii::ArrayView<const double>(properties));
+    const std::size_t p = size();
+    for (auto &field : fields)
+      field.push_back(0.);
+    for (int d = 0; d < dim; ++d)
+      {
+        fields[d][p] = place[d];
+        if (layout.reference)
+          fields[fields.size() - dim + d][p] = place[d];
+      }
+    fields[2 * dim][p] = mass;
+    this->cell.push_back(grid.cell_number(cell));
+    ids.push_back(p);
   }
 
 
@@ -85,23 +78,15 @@ namespace limber
   MaterialPoints<dim>::finish_adding()
   {
     // Numbers are unique over all ranks: this rank's follow its predecessors'.
-    const unsigned long own    = handler.n_locally_owned_particles();
+    const unsigned long own    = size();
     unsigned long       before = 0;
     const int           ierr   = MPI_Exscan(
       &own, &before, 1, MPI_UNSIGNED_LONG, MPI_SUM, grid.communicator);
     AssertThrowMPI(ierr);
     if (dealii::Utilities::MPI::this_mpi_process(grid.communicator) == 0)
       before = 0;
-    dealii::types::particle_index number = before;
-    for (auto &particle : handler)
-      particle.set_id(number++);
-    handler.update_cached_numbers();
-
-    gather();
-    // Slots of the handler's pool are taken in the order of insertion.
-    for (std::size_t p = 0; p < size(); ++p)
-      fields[2 * dim][p] = seeded_masses[handle[p]];
-    std::vector<double>().swap(seeded_masses);
+    std::iota(ids.begin(), ids.end(), before);
+    ++n_reorderings;
   }
 
 
@@ -156,24 +141,73 @@ namespace limber
 
 
   template <int dim>
-  dealii::types::particle_index
-  MaterialPoints<dim>::id(const std::size_t p) const
+  dealii::Point<dim>
+  MaterialPoints<dim>::reference_position(const std::size_t p) const
   {
-    return handler.get_property_pool().get_id(handle[p]);
+    Assert(layout.reference, dealii::ExcInternalError());
+    dealii::Point<dim> result;
+    for (int d = 0; d < dim; ++d)
+      result[d] = fields[fields.size() - dim + d][p];
+    return result;
   }
 
 
 
   template <int dim>
-  dealii::Point<dim>
-  MaterialPoints<dim>::reference_position(const std::size_t p) const
+  std::vector<std::string>
+  MaterialPoints<dim>::field_names() const
   {
-    const auto properties =
-      handler.get_property_pool().get_properties(handle[p]);
-    dealii::Point<dim> result;
-    for (int d = 0; d < dim; ++d)
-      result[d] = properties[d];
-    return result;
+    std::vector<std::string> names;
+    const auto               components = [&](const std::string &name,
+                                const std::string &letters) {
+      for (const char letter : letters)
+        names.push_back(name + " " + letter);
+    };
+    const auto numbered = [&](const std::string &name, const unsigned int n) {
+      for (unsigned int i = 0; i < n; ++i)
+        names.push_back(name + " " + std::to_string(i));
+    };
+    const std::string axes = dim == 2 ? "xy" : "xyz";
+    components("position", axes);
+    components("velocity", axes);
+    names.push_back("mass");
+    names.push_back("pressure");
+    numbered("deviator", layout.deviator ? n_deviator<dim> : 0);
+    numbered("history", layout.n_history);
+    numbered("affine", layout.affine ? dim * dim : 0);
+    if (layout.reference)
+      components("reference position", axes);
+    return names;
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::clear()
+  {
+    resize(0);
+    ++n_reorderings;
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::append(
+    const std::vector<std::uint32_t>       &new_cells,
+    const std::vector<std::uint64_t>       &new_ids,
+    const std::vector<std::vector<double>> &new_fields)
+  {
+    const std::size_t before = size();
+    resize(before + new_cells.size());
+    std::copy(new_cells.begin(), new_cells.end(), cell.begin() + before);
+    std::copy(new_ids.begin(), new_ids.end(), ids.begin() + before);
+    for (std::size_t f = 0; f < fields.size(); ++f)
+      std::copy(new_fields[f].begin(),
+                new_fields[f].end(),
+                fields[f].begin() + before);
+    ++n_reorderings;
   }
 
 
@@ -201,7 +235,8 @@ namespace limber
     collect_cells(cells);
 
     // Only the entries of occupied cells are touched: an empty box is free.
-    offset.resize(grid.n_cells());
+    const std::unique_ptr<std::uint32_t[]> offset(
+      new std::uint32_t[grid.n_cells()]);
     for (const std::uint32_t c : cells)
       offset[c] = 0;
     for (const std::uint32_t c : cell)
@@ -214,20 +249,22 @@ namespace limber
     for (std::size_t p = 0; p < size(); ++p)
       target[p] = offset[cell[p]]++;
 
-    std::vector<double> sorted(size() + padding);
-    for (auto &field : fields)
-      {
-        for (std::size_t p = 0; p < target.size(); ++p)
-          sorted[target[p]] = field[p];
-        field.swap(sorted);
-      }
-    for (auto *const numbers : {&cell, &handle})
-      {
-        std::vector<std::uint32_t> reordered(size());
-        for (std::size_t p = 0; p < target.size(); ++p)
-          reordered[target[p]] = (*numbers)[p];
-        numbers->swap(reordered);
-      }
+    const auto reorder = [&target](auto &array, auto &scratch) {
+      for (std::size_t p = 0; p < target.size(); ++p)
+        scratch[target[p]] = array[p];
+      array.swap(scratch);
+    };
+    {
+      std::vector<double> scratch(size() + padding);
+      for (auto &field : fields)
+        reorder(field, scratch);
+    }
+    {
+      std::vector<std::uint64_t> scratch(size());
+      reorder(ids, scratch);
+    }
+    std::vector<std::uint32_t> scratch(size());
+    reorder(cell, scratch);
   }
 
 
@@ -257,17 +294,9 @@ namespace limber
                                      lost.position[d] > box.second[d];
               }
             result.push_back(lost);
-            lost_handles.push_back(handle[p]);
             continue;
           }
-        if (kept != p)
-          {
-            for (auto &field : fields)
-              field[kept] = field[p];
-            cell[kept]   = cell[p];
-            handle[kept] = handle[p];
-          }
-        ++kept;
+        move(p, kept++);
       }
     resize(kept);
     return result;
@@ -277,57 +306,36 @@ namespace limber
 
   template <int dim>
   void
-  MaterialPoints<dim>::write_back()
+  MaterialPoints<dim>::move(const std::size_t from, const std::size_t to)
   {
-    auto &pool = handler.get_property_pool();
-    for (std::size_t p = 0; p < size(); ++p)
-      {
-        dealii::Point<dim> place;
-        for (int d = 0; d < dim; ++d)
-          place[d] = fields[d][p];
-        pool.set_location(handle[p], place);
-        const auto properties = pool.get_properties(handle[p]);
-        for (unsigned int k = first_carried; k < n_properties; ++k)
-          properties[k] = fields[dim + k - first_carried][p];
-      }
-
-    if (lost_handles.empty())
+    if (from == to)
       return;
-    std::sort(lost_handles.begin(), lost_handles.end());
-    std::vector<
-      typename dealii::Particles::ParticleHandler<dim>::particle_iterator>
-      lost;
-    for (auto particle = handler.begin(); particle != handler.end(); ++particle)
-      if (std::binary_search(lost_handles.begin(),
-                             lost_handles.end(),
-                             particle->get_local_index()))
-        lost.push_back(particle);
-    handler.remove_particles(lost);
-    lost_handles.clear();
+    for (auto &field : fields)
+      field[to] = field[from];
+    cell[to] = cell[from];
+    ids[to]  = ids[from];
   }
 
 
 
   template <int dim>
   void
-  MaterialPoints<dim>::gather()
+  MaterialPoints<dim>::write_record(const std::size_t p, double *record) const
   {
-    ++n_reorderings;
-    resize(handler.n_locally_owned_particles());
-    auto       &pool = handler.get_property_pool();
-    std::size_t p    = 0;
-    for (const auto &particle : handler)
-      {
-        handle[p]         = particle.get_local_index();
-        cell[p]           = grid.cell_number(particle.get_surrounding_cell());
-        const auto &place = particle.get_location();
-        for (int d = 0; d < dim; ++d)
-          fields[d][p] = place[d];
-        const auto properties = pool.get_properties(handle[p]);
-        for (unsigned int k = first_carried; k < n_properties; ++k)
-          fields[dim + k - first_carried][p] = properties[k];
-        ++p;
-      }
+    for (const auto &field : fields)
+      *record++ = field[p];
+    *record = ids[p]; // exact: there are fewer than 2^53
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::read_record(const double *record, const std::size_t p)
+  {
+    for (auto &field : fields)
+      field[p] = *record++;
+    ids[p] = *record;
   }
 
 
@@ -336,12 +344,36 @@ namespace limber
   void
   MaterialPoints<dim>::hand_over()
   {
-    write_back();
-    // The sort holds all points twice; the arrays make room for it.
-    for (auto &field : fields)
-      std::vector<double>().swap(field);
-    resize(0);
-    handler.sort_particles_into_subdomains_and_cells();
+    // Behind each record stands the receiver's number of the cell, so that it
+    // need not search.
+    const std::size_t                           stride = record_size() + 1;
+    std::map<unsigned int, std::vector<double>> leaving;
+    std::size_t                                 kept = 0;
+    for (std::size_t p = 0; p < size(); ++p)
+      if (cell[p] >= grid.n_owned_cells())
+        {
+          const auto &there   = grid.ghost_cell(cell[p]);
+          auto       &records = leaving[there.owner];
+          records.resize(records.size() + stride);
+          write_record(p, records.data() + records.size() - stride);
+          records.back() = there.number;
+        }
+      else
+        move(p, kept++);
+
+    const auto arriving =
+      dealii::Utilities::MPI::some_to_some(grid.communicator, leaving);
+    std::size_t n = kept;
+    for (const auto &[rank, records] : arriving)
+      n += records.size() / stride;
+    resize(n);
+    for (const auto &[rank, records] : arriving)
+      for (auto record = records.begin(); record != records.end();
+           record += stride, ++kept)
+        {
+          read_record(&*record, kept);
+          cell[kept] = record[record_size()];
+        }
   }
 
 
@@ -350,19 +382,9 @@ namespace limber
   void
   MaterialPoints<dim>::synchronise()
   {
-    if (!is_carried())
-      return sort_by_cell();
-    hand_over();
-    gather();
-  }
-
-
-
-  template <int dim>
-  bool
-  MaterialPoints<dim>::is_carried() const
-  {
-    return n_properties > first_carried;
+    if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
+      hand_over();
+    sort_by_cell();
   }
 
 
@@ -371,10 +393,39 @@ namespace limber
   void
   MaterialPoints<dim>::prepare_mesh_change()
   {
-    AssertThrow(is_carried(), dealii::ExcInternalError());
     // Points must be in their cells before these are split or moved.
-    hand_over();
-    handler.prepare_for_coarsening_and_refinement();
+    synchronise();
+    carrier = std::make_unique<dealii::Particles::ParticleHandler<dim>>(
+      grid.triangulation, grid.mapping, record_size());
+    carrier->reserve(size());
+    std::vector<double> record(record_size());
+    for (const auto &owner : grid.triangulation.active_cell_iterators())
+      if (owner->is_locally_owned())
+        {
+          const auto [begin, end] =
+            std::equal_range(cell.begin(), cell.end(), grid.cell_number(owner));
+          for (std::size_t p = begin - cell.begin();
+               p < std::size_t(end - cell.begin());
+               ++p)
+            {
+              write_record(p, record.data());
+              dealii::Point<dim> place;
+              for (int d = 0; d < dim; ++d)
+                place[d] = record[d];
+              carrier->insert_particle(
+                place,
+                grid.mapping.transform_real_to_unit_cell(owner, place),
+                p,
+                owner,
+                dealii::ArrayView<const double>(record));
+            }
+        }
+    carrier->update_cached_numbers();
+    // The carrier makes copies of its own; the arrays make room for these.
+    for (auto &field : fields)
+      std::vector<double>().swap(field);
+    resize(0);
+    carrier->prepare_for_coarsening_and_refinement();
   }
 
 
@@ -383,10 +434,17 @@ namespace limber
   void
   MaterialPoints<dim>::finish_mesh_change()
   {
-    handler.unpack_after_coarsening_and_refinement();
-    // Unpacking leaves memory in disorder; the sort mends it.
-    handler.sort_particles_into_subdomains_and_cells();
-    gather();
+    carrier->unpack_after_coarsening_and_refinement();
+    resize(carrier->n_locally_owned_particles());
+    std::size_t p = 0;
+    for (const auto &particle : *carrier)
+      {
+        read_record(particle.get_properties().data(), p);
+        cell[p] = grid.cell_number(particle.get_surrounding_cell());
+        ++p;
+      }
+    carrier.reset();
+    ++n_reorderings;
   }
 
 
@@ -395,6 +453,8 @@ namespace limber
   void
   MaterialPoints<dim>::resize(const std::size_t n)
   {
+    // Exactly as much memory as asked for: vectors would double what they have.
+    reserve(n);
     for (auto &field : fields)
       {
         field.resize(n + padding);
@@ -403,17 +463,7 @@ namespace limber
         std::fill(field.end() - padding, field.end(), 0.);
       }
     cell.resize(n);
-    handle.resize(n);
-  }
-
-
-
-  template <int dim>
-  std::size_t
-  MaterialPoints<dim>::memory_consumption() const
-  {
-    return fields.size() * (size() + padding) * sizeof(double) +
-           2 * size() * sizeof(std::uint32_t);
+    ids.resize(n);
   }
 
 

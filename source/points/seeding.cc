@@ -3,6 +3,7 @@
 
 #include <limber/points/seeding.h>
 
+#include <optional>
 #include <random>
 
 namespace limber
@@ -71,6 +72,61 @@ namespace limber
           site.place[d] += shift / body.points_per_cell_edge[d];
         }
     }
+
+
+
+    /**
+     * Call @p work with the cell, the place and the volume in m^3 of every
+     * point of the body, in the order of cells.
+     */
+    template <int dim, class Work>
+    void
+    for_each_site(const Body<dim>           &body,
+                  const BackgroundGrid<dim> &grid,
+                  const Work                &work)
+    {
+      const auto regular = sites(body);
+      const auto box     = body.shape->bounding_box();
+      const auto touches = [&](const auto &cell) {
+        for (int d = 0; d < dim; ++d)
+          if (cell->vertex(0)[d] > box.second[d] ||
+              cell->vertex((1 << dim) - 1)[d] < box.first[d])
+            return false;
+        return true;
+      };
+
+      for (const auto &cell : grid.triangulation.active_cell_iterators())
+        {
+          if (!cell->is_locally_owned() || !touches(cell))
+            continue;
+          const dealii::Point<dim> lower = cell->vertex(0);
+          const auto               edge  = cell->vertex((1 << dim) - 1) - lower;
+          double                   volume = 1;
+          unsigned long            seed   = 5489;
+          for (int d = 0; d < dim; ++d)
+            {
+              volume *= edge[d];
+              seed =
+                seed * 1000003 +
+                std::lround((lower[d] - grid.description.lower[d]) / edge[d]);
+            }
+          // Making a generator takes longer than placing the points.
+          std::optional<std::mt19937> random;
+          if (body.placement == Placement::jittered)
+            random.emplace(seed);
+
+          for (Site<dim> site : regular)
+            {
+              if (random)
+                jitter(site, body, *random);
+              dealii::Point<dim> place = lower;
+              for (int d = 0; d < dim; ++d)
+                place[d] += site.place[d] * edge[d];
+              if (body.shape->contains(place))
+                work(cell, place, site.weight * volume);
+            }
+        }
+    }
   } // namespace
 
 
@@ -82,50 +138,17 @@ namespace limber
        const std::function<double(const dealii::Point<dim> &)> &density,
        MaterialPoints<dim>                                     &points)
   {
-    const auto regular = sites(body);
-    const auto box     = body.shape->bounding_box();
-
-    // Reserving the upper bound makes the insertion several times faster.
-    const auto touches = [&](const auto &cell) {
-      for (int d = 0; d < dim; ++d)
-        if (cell->vertex(0)[d] > box.second[d] ||
-            cell->vertex((1 << dim) - 1)[d] < box.first[d])
-          return false;
-      return true;
-    };
-    std::size_t n_cells = 0;
-    for (const auto &cell : grid.triangulation.active_cell_iterators())
-      n_cells += cell->is_locally_owned() && touches(cell);
-    points.handler.reserve(n_cells * regular.size());
-
-    for (const auto &cell : grid.triangulation.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned() || !touches(cell))
-          continue;
-        const dealii::Point<dim> lower  = cell->vertex(0);
-        const auto               edge   = cell->vertex((1 << dim) - 1) - lower;
-        double                   volume = 1;
-        unsigned long            seed   = 5489;
-        for (int d = 0; d < dim; ++d)
-          {
-            volume *= edge[d];
-            seed =
-              seed * 1000003 +
-              std::lround((lower[d] - grid.description.lower[d]) / edge[d]);
-          }
-        std::mt19937 random(seed);
-
-        for (Site<dim> site : regular)
-          {
-            if (body.placement == Placement::jittered)
-              jitter(site, body, random);
-            dealii::Point<dim> place = lower;
-            for (int d = 0; d < dim; ++d)
-              place[d] += site.place[d] * edge[d];
-            if (body.shape->contains(place))
-              points.add(cell, place, density(place) * site.weight * volume);
-          }
-      }
+    // Counted first, so that the arrays never take more than they need.
+    std::size_t n = 0;
+    for_each_site(body, grid, [&n](const auto &...) { ++n; });
+    points.reserve(n);
+    for_each_site(body,
+                  grid,
+                  [&](const auto               &cell,
+                      const dealii::Point<dim> &place,
+                      const double              volume) {
+                    points.add(cell, place, density(place) * volume);
+                  });
     points.finish_adding();
   }
 

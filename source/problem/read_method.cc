@@ -158,4 +158,40 @@ namespace limber
         }
     return output;
   }
+
+
+
+  void
+  declare_checkpoint(Parameters &parameters)
+  {
+    parameters.enter_subsection("Checkpoint");
+    parameters.declare("Interval",
+                       "3600",
+                       admissible::non_negative_number("600"),
+                       "Wall time between checkpoints, s; 0: only when the "
+                       "run is stopped.");
+    parameters.declare("Steps",
+                       "0",
+                       admissible::non_negative_integer("1000"),
+                       "Steps between checkpoints, beside the interval; 0: "
+                       "the interval alone counts.");
+    parameters.declare("Wall time limit",
+                       "0",
+                       admissible::non_negative_number("3500"),
+                       "Wall time after which the run writes a checkpoint and "
+                       "ends with exit code 143, s; 0: none.");
+    parameters.leave_subsection();
+  }
+
+
+
+  CheckpointRequest
+  read_checkpoint(const Section &section)
+  {
+    CheckpointRequest checkpoint;
+    checkpoint.interval = section.number("Interval");
+    checkpoint.steps    = static_cast<unsigned int>(section.number("Steps"));
+    checkpoint.wall_time_limit = section.number("Wall time limit");
+    return checkpoint;
+  }
 } // namespace limber

@@ -5,6 +5,24 @@
 
 namespace limber
 {
+  namespace
+  {
+    // When a run is resumed it may end at another time and write other files,
+    // but not become another run.
+    std::vector<std::string>
+    fixed_entries(const Parameters &parameters)
+    {
+      std::vector<std::string> result;
+      for (const auto &[name, value] : parameters.entries())
+        if (name != "End time" && name.rfind("Output/", 0) != 0 &&
+            name.rfind("Checkpoint/", 0) != 0)
+          result.push_back(name + " = " + value);
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   Problem<dim>
   read_problem(const SceneFile &scene)
@@ -25,10 +43,12 @@ namespace limber
     read_volume_loads(loads, problem);
     read_bodies(root, problem);
     read_face_loads(loads, problem);
-    problem.method = read_method(root.subsection("Method"));
-    problem.output = read_output(root.subsection("Output"));
+    problem.method     = read_method(root.subsection("Method"));
+    problem.output     = read_output(root.subsection("Output"));
+    problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
     read_observables(root, problem);
     read_checks(root, problem);
+    problem.fixed_entries = fixed_entries(scene.parameters());
     return problem;
   }
 

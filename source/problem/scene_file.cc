@@ -145,6 +145,7 @@ namespace limber
       declare_loads(parameters, dim, names.face_loads);
       declare_method(parameters);
       declare_output(parameters);
+      declare_checkpoint(parameters);
       declare_observables(parameters, dim, names.observables);
       declare_checks(parameters, names.checks);
     }

@@ -165,7 +165,7 @@ namespace limber
       unsigned int n = 0;
       if (cell->is_active() && cell->is_locally_owned())
         for (const auto &body : bodies)
-          n += body->points.handler.n_particles_in_cell(cell);
+          n += body->points.n_in_cell(cell);
       return 1 + 20 * n;
     };
     const auto connection = grid.triangulation.signals.weight.connect(weight);

@@ -6,7 +6,9 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -41,6 +43,7 @@ namespace limber
     , observables(state)
     , checks(problem.checks, observables.names())
     , writer(problem.output.directory)
+    , checkpoints(problem, grid)
     , totals(balance_of_start.evaluate(state))
     , n_points_at_start(totals.points)
     , targets(checks.times())
@@ -71,27 +74,30 @@ namespace limber
   Simulation<dim>::run()
   {
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-      statistics.emplace(problem.output.directory + "/statistics",
-                         statistics_columns(observables));
-    start_wall = last_progress = wall_time();
-    start_cpu                  = cpu_time();
+      {
+        const std::string path    = problem.output.directory + "/statistics";
+        const auto        columns = statistics_columns(observables);
+        if (resumed)
+          statistics.emplace(path, resumed->statistics_length, columns.size());
+        else
+          statistics.emplace(path, columns);
+      }
+    start_wall = last_progress = last_checkpoint = wall_time();
+    start_cpu                                    = cpu_time();
     try
       {
         loop();
       }
     catch (const ComputationError &failure)
       {
-        // Points still are what they were before the step that failed.
-        write_pictures();
-        finish("unstable", failure.what());
-        throw;
+        finish_failed(failure.what());
       }
 
-    if (signal != 0)
-      {
-        finish("stopped", "by signal " + std::to_string(signal));
-        return int(ExitCode::stopped_by_signal) + signal;
-      }
+    if (stop != 0)
+      return finish_stopped();
+    // A run that has checkpoints may be continued to a later end time.
+    if (!checkpoints.good_file().empty() && saved_step != state.step)
+      write_checkpoint();
     const auto results = checks.results();
     const bool passed =
       std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
@@ -104,13 +110,81 @@ namespace limber
 
 
   template <int dim>
+  int
+  Simulation<dim>::finish_stopped()
+  {
+    if (checkpoints.good_file().empty() || saved_step != state.step)
+      write_checkpoint();
+    if (stop == wall_time_limit)
+      {
+        finish("wall time", "the limit of the scene; go on with --resume");
+        return int(ExitCode::stopped_by_signal) + SIGTERM;
+      }
+    finish("stopped",
+           "by signal " + std::to_string(stop) + "; go on with --resume");
+    return int(ExitCode::stopped_by_signal) + stop;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::finish_failed(const std::string &reason)
+  {
+    const std::string message = reason + " " + describe_last_state();
+    finish("unstable", message);
+    throw ComputationError(message);
+  }
+
+
+
+  // Where nodes have shown the step to be impossible, points are what they
+  // were before it (with 'first', but for the stress); else what the step has
+  // made of them.
+  template <int dim>
+  std::string
+  Simulation<dim>::describe_last_state()
+  {
+    std::string       text;
+    const std::string path = problem.output.directory + "/points.pvd";
+    try
+      {
+        const auto &former = writer.state().points;
+        if (former.empty() || former.back().first != state.time)
+          writer.write(state);
+        text = "The last state is the last picture in " + path + ".";
+      }
+    catch (const FileError &failure)
+      {
+        text = std::string("The last state is lost. ") + failure.what();
+      }
+    if (!checkpoints.good_file().empty())
+      text += " The last checkpoint, of step " + std::to_string(saved_step) +
+              ", is " + checkpoints.good_file() + ".";
+    return text;
+  }
+
+
+
+  template <int dim>
   void
   Simulation<dim>::loop()
   {
-    record();
-    write_pictures();
-    while (state.time < problem.end_time && !stop_requested())
+    if (!resumed)
       {
+        record();
+        write_pictures();
+      }
+    while (state.time < problem.end_time)
+      {
+        look_at_the_clock();
+        if (stop != 0)
+          return;
+        if (checkpoint_is_due ||
+            (problem.checkpoint.steps > 0 && state.step != saved_step &&
+             state.step % problem.checkpoint.steps == 0))
+          write_checkpoint();
+
         if (integrator.reorganise() &&
             integrator.imbalance() > admitted_imbalance)
           rebalance();
@@ -275,16 +349,32 @@ namespace limber
 
 
 
+  // Signals, and what wall time asks for; all ranks have to agree on it.
   template <int dim>
-  bool
-  Simulation<dim>::stop_requested()
+  void
+  Simulation<dim>::look_at_the_clock()
   {
-    // All ranks have to stop at the same step.
-    if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
-      signal = caught_signal();
-    else if (state.step % 16 == 0)
-      signal = dealii::Utilities::MPI::max(caught_signal(), communicator);
-    return signal != 0;
+    checkpoint_is_due = false;
+    const bool alone =
+      dealii::Utilities::MPI::n_mpi_processes(communicator) == 1;
+    if (!alone && state.step % 16 != 0)
+      return;
+
+    const CheckpointRequest &asked  = problem.checkpoint;
+    const double             now    = wall_time();
+    const int                signal = caught_signal();
+    std::array<int, 2>       wanted{};
+    wanted[0] =
+      signal >= first_signal ? signal :
+      asked.wall_time_limit > 0 && now - start_wall > asked.wall_time_limit ?
+                               wall_time_limit :
+                               0;
+    wanted[1] = asked.interval > 0 && now - last_checkpoint > asked.interval;
+    if (!alone)
+      MPI_Allreduce(
+        MPI_IN_PLACE, wanted.data(), 2, MPI_INT, MPI_MAX, communicator);
+    stop              = wanted[0];
+    checkpoint_is_due = wanted[1] != 0;
   }
 
 
@@ -305,7 +395,9 @@ namespace limber
          << 1e9 * (cpu_time() - start_cpu - output_cpu) / points_and_steps *
               dealii::Utilities::MPI::n_mpi_processes(communicator)
          << " ns per point and step  left "
-         << elapsed * (problem.end_time / state.time - 1) << " s";
+         << elapsed * (problem.end_time - state.time) /
+              (state.time - (resumed ? resumed->time : 0))
+         << " s";
     console.say(text.str());
   }
 

@@ -629,6 +629,29 @@ namespace limber
 
 
   template <int dim>
+  IntegratorState
+  ExplicitIntegrator<dim>::state() const
+  {
+    return {wave_speed, point_speed, displacement, largest_mass, loads.areas()};
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::restore(const IntegratorState &former)
+  {
+    wave_speed   = former.wave_speed;
+    point_speed  = former.point_speed;
+    displacement = former.displacement;
+    largest_mass = former.largest_mass;
+    loads.restore(former.face_areas);
+    reinit();
+  }
+
+
+
+  template <int dim>
   double
   ExplicitIntegrator<dim>::imbalance() const
   {

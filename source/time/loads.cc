@@ -43,6 +43,29 @@ namespace limber
 
 
   template <int dim>
+  typename ExternalLoads<dim>::Areas
+  ExternalLoads<dim>::areas() const
+  {
+    Areas result;
+    for (const FaceLayer &layer : layers)
+      result.emplace_back(layer.area.begin(), layer.area.end());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::restore(const Areas &areas)
+  {
+    AssertDimension(areas.size(), layers.size());
+    for (std::size_t i = 0; i < layers.size(); ++i)
+      layers[i].area = {areas[i].begin(), areas[i].end()};
+  }
+
+
+
+  template <int dim>
   typename ExternalLoads<dim>::FaceLayer
   ExternalLoads<dim>::find_layer(const FaceLoad<dim> &load,
                                  MaterialBody<dim>   &body) const
@@ -61,8 +84,8 @@ namespace limber
                        "their shares of the face are unknown. Set 'Placement "
                        "= regular' in section 'Body " +
                        load.body + "'.");
-    std::vector<std::pair<dealii::types::particle_index, double>> own;
-    const PointView<dim> points = body.points.view();
+    std::vector<std::pair<std::uint64_t, double>> own;
+    const PointView<dim>                          points = body.points.view();
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const auto &cell = grid.geometry[points.cell[p]];

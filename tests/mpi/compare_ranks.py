@@ -46,7 +46,8 @@ def run(arguments, ranks, folder):
 def differences(names, reference, rows):
     """Yields (row, column name, difference) of what does not agree."""
     for c, name in enumerate(names):
-        scale = max(abs(row[c]) for row in reference)
+        scale = max((abs(row[c]) for row in reference if row[c] == row[c]),
+                    default=0)
         if name in ("energy drift", "momentum error"):
             scale = 1
         for r, (a, b) in enumerate(zip(reference, rows)):

@@ -88,6 +88,9 @@ namespace limber
     Admissible
     positive_integer(const std::string &example = "1");
 
+    Admissible
+    non_negative_integer(const std::string &example = "0");
+
     /** Exactly so many numbers, separated by commas. */
     Admissible
     numbers(const unsigned int count, const std::string &example);

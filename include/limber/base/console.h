@@ -51,6 +51,10 @@ namespace limber
     const std::map<std::string, unsigned int> &
     warning_counts() const;
 
+    /** Count on from those of a checkpoint. */
+    void
+    restore_counts(const std::map<std::string, unsigned int> &former);
+
   private:
     const bool                          speaks;
     std::ostream                       &screen;

@@ -81,6 +81,10 @@ namespace limber
     Section
     root() const;
 
+    /** Full names ("Grid/Cells") and values of all entries. */
+    std::vector<std::pair<std::string, std::string>>
+    entries() const;
+
     /** All entries with their present values. */
     void
     print(std::ostream &out, const PrintStyle style) const;

@@ -89,6 +89,19 @@ namespace limber
       return n_owned_cells() + cell_partitioner->n_ghost_indices();
     }
 
+    /** The rank that owns a ghost cell, and the cell's local number there. */
+    struct CellElsewhere
+    {
+      unsigned int  owner;
+      std::uint32_t number;
+    };
+
+    const CellElsewhere &
+    ghost_cell(const std::uint32_t cell) const
+    {
+      return ghost_cells[cell - n_owned_cells()];
+    }
+
     /** A layout of @p stride consecutive numbers per node or per cell. */
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner>
     node_records(const unsigned int stride) const;
@@ -126,6 +139,8 @@ namespace limber
     void
     build_cells();
     void
+    build_ghost_cells(const dealii::Utilities::MPI::Partitioner &cells);
+    void
     build_bins();
     void
     build_hanging_nodes();
@@ -133,6 +148,7 @@ namespace limber
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> node_partitioner;
     std::shared_ptr<const dealii::Utilities::MPI::Partitioner> cell_partitioner;
     std::vector<std::uint32_t> cell_numbers; // by active cell index
+    std::vector<CellElsewhere> ghost_cells;
   };
 } // namespace limber
 

@@ -40,8 +40,8 @@ namespace limber
     explicit Observables(const State<dim> &start);
 
     /** Continue those of a checkpoint. */
-    Observables(const Problem<dim>          &problem,
-                const ObservablesState<dim> &memory);
+    void
+    restore(const ObservablesState<dim> &former);
 
     /** A row; frequencies and reaction forces count on one per call. */
     std::vector<double>

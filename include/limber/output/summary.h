@@ -13,7 +13,8 @@ namespace limber
   /** How a run ended and what it took, for scripts. */
   struct Summary
   {
-    std::string   verdict; // "finished", "unstable", "stopped", "check missed"
+    // "finished", "check missed", "unstable", "stopped", "wall time"
+    std::string   verdict;
     std::string   message; // why, where it did not finish
     unsigned long steps             = 0;
     unsigned long points            = 0; // at the end

@@ -98,7 +98,11 @@ namespace limber
     explicit Balance(const State<dim> &start);
 
     /** Continue that of a checkpoint. */
-    explicit Balance(const BalanceState<dim> &start);
+    void
+    restore(const BalanceState<dim> &former)
+    {
+      start = former;
+    }
 
     /** All totals of the present state; collective, a pass over the points. */
     Totals<dim>

@@ -14,10 +14,10 @@ namespace limber
   template <int dim>
   struct TrackedPoint
   {
-    unsigned int                  body = 0;
-    dealii::types::particle_index id   = 0;
-    dealii::Point<dim>            reference; // where it was at the start, m
-    bool                          lost = false;
+    unsigned int       body = 0;
+    std::uint64_t      id   = 0;
+    dealii::Point<dim> reference; // where it was at the start, m
+    bool               lost = false;
   };
 
 

@@ -31,11 +31,18 @@ namespace limber
   {
   public:
     /** @p folder: the run folder, which exists. */
-    explicit Writer(const std::string &folder, const WriterState &former = {});
+    explicit Writer(const std::string &folder);
 
     /** Collective; throws FileError on all ranks. */
     void
     write(const State<dim> &state);
+
+    /**
+     * Continue the series of a checkpoint: later pictures are removed.
+     * Collective; throws FileError on all ranks.
+     */
+    void
+    restore(const WriterState &former, MPI_Comm communicator);
 
     const WriterState &
     state() const

@@ -7,6 +7,7 @@
 #include <limber/grid/background_grid.h>
 #include <limber/points/point_view.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,20 +29,21 @@ namespace limber
   template <int dim>
   struct LostPoint
   {
-    dealii::types::particle_index id = 0;
-    dealii::Point<dim>            position;
-    dealii::Tensor<1, dim>        momentum; // kg m/s
-    double                        mass         = 0;
-    bool                          left_the_box = false;
+    std::uint64_t          id = 0;
+    dealii::Point<dim>     position;
+    dealii::Tensor<1, dim> momentum; // kg m/s
+    double                 mass         = 0;
+    bool                   left_the_box = false;
   };
 
 
 
   /**
-   * The points of one body. A deal.II ParticleHandler carries them across
-   * ranks and changes of the mesh; it is the truth when points are
-   * synchronised. In between, the sweeps work on arrays, one per quantity,
-   * and points that change cell only get a new cell number.
+   * The points of one body: one array per quantity, on which the sweeps work.
+   * Points that change cell only get a new cell number; synchronise() hands
+   * those over that have entered cells of other ranks. deal.II's
+   * ParticleHandler takes all of them through a change of the mesh and is
+   * empty otherwise.
    */
   template <int dim>
   class MaterialPoints
@@ -49,13 +51,17 @@ namespace limber
   public:
     MaterialPoints(const BackgroundGrid<dim> &grid, const PointLayout &layout);
 
+    /** Make room for this many points, so that add() need not. */
+    void
+    reserve(std::size_t n);
+
     /** A new point in a locally owned cell; mass in kg. */
     void
     add(const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
         const dealii::Point<dim>                                        &place,
         double                                                           mass);
 
-    /** After all add(): number the points over all ranks and gather them. */
+    /** After all add(): number the points over all ranks. Collective. */
     void
     finish_adding();
 
@@ -75,12 +81,22 @@ namespace limber
     std::size_t
     n_global() const;
 
-    dealii::types::particle_index
-    id(const std::size_t p) const;
+    /** The number that the point keeps for good, its own on all ranks. */
+    std::uint64_t
+    id(const std::size_t p) const
+    {
+      return ids[p];
+    }
 
     /** Where the point was at the start; needs PointLayout::reference. */
     dealii::Point<dim>
     reference_position(const std::size_t p) const;
+
+    bool
+    has_reference() const
+    {
+      return layout.reference;
+    }
 
     /** Changes whenever points change their places in the arrays. */
     unsigned long
@@ -102,55 +118,88 @@ namespace limber
     remove_lost();
 
     /**
-     * Write the arrays back into the ParticleHandler, hand points over to the
-     * ranks that own their cells, and gather the arrays anew. Points must not
-     * have gone beyond the ghost layer since the last time. On one rank, where
-     * the handler carries nothing, the arrays are only sorted.
+     * Hand the points in ghost cells over to the ranks that own these, and
+     * sort. All points have a cell: none may have gone beyond the ghost layer
+     * since the last time. Collective.
      */
     void
     synchronise();
 
-    /** Before and after the mesh is partitioned anew, on several ranks. */
+    /**
+     * Before and after the mesh is changed or partitioned anew; in between
+     * there are no arrays. Collective.
+     */
     void
     prepare_mesh_change();
     void
     finish_mesh_change();
 
-    /** Memory of the arrays, bytes. */
-    std::size_t
-    memory_consumption() const;
+    /** Points in an owned cell, while the mesh changes. */
+    unsigned int
+    n_in_cell(const typename dealii::Triangulation<dim>::active_cell_iterator
+                &cell) const
+    {
+      return carrier->n_particles_in_cell(cell);
+    }
 
-    dealii::Particles::ParticleHandler<dim> handler;
+    /** What a point carries, as "mass" or "velocity x", in a fixed order. */
+    std::vector<std::string>
+    field_names() const;
+
+    /** The array of a field, by its place among the names. */
+    const std::vector<double> &
+    field(const unsigned int f) const
+    {
+      return fields[f];
+    }
+
+    const std::vector<std::uint64_t> &
+    all_ids() const
+    {
+      return ids;
+    }
+
+    /** Forget all points, to take others from elsewhere. */
+    void
+    clear();
+
+    /** Points with a number already, in owned cells; a vector per field. */
+    void
+    append(const std::vector<std::uint32_t>       &new_cells,
+           const std::vector<std::uint64_t>       &new_ids,
+           const std::vector<std::vector<double>> &new_fields);
 
   private:
     void
-    write_back();
+    resize(std::size_t n);
+    void
+    move(std::size_t from, std::size_t to);
     void
     hand_over();
-    bool
-    is_carried() const;
+
+    // A point as consecutive numbers: its fields, then its id.
+    std::size_t
+    record_size() const
+    {
+      return fields.size() + 1;
+    }
     void
-    gather();
+    write_record(std::size_t p, double *record) const;
     void
-    resize(std::size_t n);
+    read_record(const double *record, std::size_t p);
 
     const BackgroundGrid<dim> &grid;
     const PointLayout          layout;
-    const unsigned int         n_fields;     // arrays
-    const unsigned int         n_properties; // doubles in the handler
 
-    const unsigned int first_carried; // property
-
-    // Position, velocity, mass, pressure, deviator, history, affine part. The
-    // properties of the handler are the reference position, if asked for, and
-    // then, where there are several ranks, the same without the position.
+    // Position, velocity, mass, pressure, deviator, history, affine part; the
+    // reference position, if asked for, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
-    std::vector<std::uint32_t>       handle; // slot in the handler's pool
-    std::vector<std::uint32_t>       lost_handles;
-    std::vector<std::uint32_t>       offset;        // per cell, for sorting
-    std::vector<double>              seeded_masses; // until finish_adding()
+    std::vector<std::uint64_t>       ids;
     unsigned long                    n_reorderings = 0;
+
+    // Only while the mesh changes
+    std::unique_ptr<dealii::Particles::ParticleHandler<dim>> carrier;
   };
 } // namespace limber
 

@@ -144,6 +144,13 @@ namespace limber
     double                   progress_interval   = 5; // s of wall time
   };
 
+  struct CheckpointRequest
+  {
+    double       interval        = 3600; // s of wall time; 0: none
+    unsigned int steps           = 0;    // between checkpoints; 0: none
+    double       wall_time_limit = 0;    // s; 0: none
+  };
+
   enum class ObservableKind
   {
     displacement,
@@ -198,9 +205,12 @@ namespace limber
     Loads<dim>                     loads;
     Method                         method;
     OutputRequest                  output;
+    CheckpointRequest              checkpoint;
     std::vector<Observable<dim>>   observables;
     std::vector<Check>             checks;
     std::vector<std::string> notes; // what the reader decided, for the log
+    // Entries that a run cannot change on its way, as "name = value"
+    std::vector<std::string> fixed_entries;
   };
 } // namespace limber
 

@@ -162,6 +162,12 @@ namespace limber
   OutputRequest
   read_output(const Section &section);
 
+  void
+  declare_checkpoint(Parameters &parameters);
+
+  CheckpointRequest
+  read_checkpoint(const Section &section);
+
   // Observables and checks (source/problem/read_observables.cc)
 
   void

@@ -10,6 +10,7 @@
 #include <limber/output/summary.h>
 #include <limber/output/totals.h>
 #include <limber/output/writer.h>
+#include <limber/simulation/checkpoints.h>
 #include <limber/time/explicit_integrator.h>
 
 #include <memory>
@@ -31,10 +32,15 @@ namespace limber
                Console            &console,
                MPI_Comm            communicator);
 
+    /** Go on from the checkpoint in the run folder; before run(). */
+    void
+    resume();
+
     /**
-     * Step to the end time. Returns success, check_missed or, after a signal,
-     * stopped_by_signal + n. When the run fails, the last state and the
-     * summary are written before the Failure goes on.
+     * Step to the end time. Returns success, check_missed or, after a signal
+     * n or the wall time limit (as after a termination signal),
+     * stopped_by_signal + n. When the run fails, pictures of the last state
+     * and the summary are written before the Failure goes on.
      */
     int
     run();
@@ -44,14 +50,25 @@ namespace limber
     describe() const;
 
   private:
+    /** Why the loop ends before the end time; the larger one prevails. */
+    static constexpr int wall_time_limit = 1, first_signal = 2;
+
     void
     loop();
+    int
+    finish_stopped();
+    [[noreturn]] void
+    finish_failed(const std::string &reason);
+    std::string
+    describe_last_state();
     double
     next_step() const;
     void
     record();
     void
     write_pictures();
+    void
+    write_checkpoint();
     void
     report_lost_points();
     void
@@ -66,8 +83,8 @@ namespace limber
     show_summary(const Summary &summary) const;
     bool
     row_is_due() const;
-    bool
-    stop_requested();
+    void
+    look_at_the_clock();
 
     const Problem<dim>                             &problem;
     Console                                        &console;
@@ -81,6 +98,7 @@ namespace limber
     Observables<dim>                                observables;
     Checks                                          checks;
     Writer<dim>                                     writer;
+    Checkpoints<dim>                                checkpoints;
     std::optional<Statistics>                       statistics;
 
     Totals<dim>         totals; // of the last row
@@ -90,7 +108,14 @@ namespace limber
     double              next_pictures = 0;    // s
     double              start_wall = 0, start_cpu = 0, output_cpu = 0;
     double              last_progress = 0;
-    int                 signal        = 0;
+
+    // Of a run that is resumed: where it has been taken up
+    std::optional<RunState<dim>> resumed;
+
+    int           stop              = 0;     // reason, 0: none
+    bool          checkpoint_is_due = false; // by the clock
+    double        last_checkpoint   = 0;     // s of wall time
+    unsigned long saved_step        = 0;     // of the last checkpoint
   };
 } // namespace limber
 

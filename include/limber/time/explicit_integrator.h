@@ -8,7 +8,9 @@
 #include <limber/time/loads.h>
 
 #include <array>
+#include <map>
 #include <string>
+#include <vector>
 
 namespace limber
 {
@@ -29,6 +31,20 @@ namespace limber
 
   const char *
   name_of(Verb verb);
+
+
+
+  /** What the integrator takes from step to step; plain, for checkpoints. */
+  struct IntegratorState
+  {
+    // Of the last step, over all ranks: m/s, m/s, cells, kg
+    double wave_speed   = 0;
+    double point_speed  = 0;
+    double displacement = 0;
+    double largest_mass = 0;
+    // Area by id of point for each face load, m^(dim-1)
+    std::vector<std::map<std::uint64_t, double>> face_areas;
+  };
 
 
 
@@ -68,6 +84,13 @@ namespace limber
     /** Adopt a mesh that has changed, and points that have moved with it. */
     void
     reinit();
+
+    IntegratorState
+    state() const;
+
+    /** Adopt points that have been replaced by those of a checkpoint. */
+    void
+    restore(const IntegratorState &former);
 
     /** Share of all points on the fullest rank times the number of ranks. */
     double

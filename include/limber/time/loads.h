@@ -6,7 +6,9 @@
 
 #include <limber/state/material_body.h>
 
+#include <map>
 #include <unordered_map>
+#include <vector>
 
 namespace limber
 {
@@ -38,6 +40,13 @@ namespace limber
     void
     add(NodalFields<dim> &nodes, double time);
 
+    /** Area by id of point for each face load, m^(dim-1), for checkpoints. */
+    using Areas = std::vector<std::map<std::uint64_t, double>>;
+    Areas
+    areas() const;
+    void
+    restore(const Areas &areas);
+
     /** The sum of the forces on a node since the last add(), N. */
     dealii::Tensor<1, dim>
     on_node(std::uint32_t node) const;
@@ -48,7 +57,7 @@ namespace limber
       const FaceLoad<dim> *load;
       MaterialBody<dim>   *body;
       // Area by id of point, m^(dim-1); the same on all ranks.
-      std::unordered_map<dealii::types::particle_index, double> area;
+      std::unordered_map<std::uint64_t, double>   area;
       std::vector<std::pair<std::size_t, double>> here; // point, area
       unsigned long order = 0; // of the points, when `here` was made
     };

@@ -105,7 +105,8 @@ namespace limber::test
     PointView<2>         points = run.points().view();
     for (std::size_t p = 0; p < points.size; ++p)
       points.position[1][p] -= 0.01;
-    Observables<2> after(run.problem, before.state());
+    Observables<2> after(run.state);
+    after.restore(before.state());
     EXPECT_NEAR(after.evaluate(run.state, run.totals)[0], -0.01, 1e-14);
   }
 

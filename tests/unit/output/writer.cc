@@ -78,6 +78,32 @@ namespace limber::test
 
 
 
+  TEST(Writer, TakesASeriesUpWhereACheckpointLeftIt)
+  {
+    SampleRun<2>      run(false);
+    const std::string folder = fresh_folder("writer.dir");
+    WriterState       former;
+    {
+      Writer<2> writer(folder);
+      writer.write(run.state);
+      former = writer.state();
+      for (run.state.time = 1; run.state.time < 3; ++run.state.time)
+        writer.write(run.state);
+    }
+    Writer<2> writer(folder);
+    writer.restore(former, MPI_COMM_WORLD);
+    EXPECT_FALSE(has(content(folder + "/points.pvd"), "points_00001"));
+    EXPECT_EQ(content(folder + "/points/points_00002.vtu"), "");
+    writer.write(run.state);
+    EXPECT_TRUE(has(content(folder + "/grid.pvd"), "grid_00001"));
+
+    writer.restore({}, MPI_COMM_WORLD);
+    EXPECT_EQ(content(folder + "/grid/grid_00000.vtu"), "");
+    EXPECT_EQ(content(folder + "/grid.pvd"), "");
+  }
+
+
+
   TEST(Writer, ThreeDimensionsWithoutFields)
   {
     SampleRun<3> run(false);

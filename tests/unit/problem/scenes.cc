@@ -240,6 +240,29 @@ TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 
 
 
+TEST(Scenes, EndAndOutputAreNotAmongTheFixedEntries)
+{
+  const std::string path = prm_folder() + "cantilever.prm";
+  const auto        read = [&](const std::vector<std::string> &overrides) {
+    return read_problem<2>(SceneFile(path, overrides));
+  };
+  const Problem<2> plain = read({}),
+                   late  = read({"End time=70",
+                                 "Output/Fields=none",
+                                 "Checkpoint/Interval=60",
+                                 "Checkpoint/Steps=7",
+                                 "Checkpoint/Wall time limit=3400"}),
+                   other = read({"Method/Courant number=0.3"});
+  EXPECT_EQ(late.fixed_entries, plain.fixed_entries);
+  EXPECT_NE(other.fixed_entries, plain.fixed_entries);
+  EXPECT_EQ(plain.checkpoint.steps, 0u);
+  EXPECT_EQ(late.checkpoint.steps, 7u);
+  EXPECT_EQ(late.checkpoint.interval, 60);
+  EXPECT_EQ(late.checkpoint.wall_time_limit, 3400);
+}
+
+
+
 TEST(Scenes, MissingFileIsWrongInput)
 {
   try

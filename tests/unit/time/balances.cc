@@ -12,7 +12,7 @@ using namespace limber;
 namespace
 {
   // 2 m x 1 m on the floor, 2000 kg/m
-  const std::string block = R"(
+  const std::string block_on_floor = R"(
     set Bodies = block
     subsection Body block
       subsection Box
@@ -41,7 +41,7 @@ namespace
   constexpr double mass = 2000, g = 10;
 
   // 4 m x 1 m held at the left, without Poisson's effect
-  const std::string bar = R"(
+  const std::string loaded_bar = R"(
     set Bodies = bar
     subsection Body bar
       subsection Box
@@ -73,7 +73,7 @@ namespace
   double
   mean_strain(const std::string &load)
   {
-    SceneRun<2>  run(bar + "\n" + load + "\nend\nend\n");
+    SceneRun<2>  run(loaded_bar + "\n" + load + "\nend\nend\n");
     const auto   start  = run.positions();
     const double period = 16 / std::sqrt(1000.);
     run.advance_to(4 * period);
@@ -118,7 +118,7 @@ namespace
                                         digits(courant_number),
                                       "Grid/Cells=" + cells};
       set.insert(set.end(), variant.begin(), variant.end());
-      SceneRun<2> run(block, set);
+      SceneRun<2> run(block_on_floor, set);
       run.advance_to(0.8, [&]() {
         const auto   totals = run.totals();
         const double error  = std::abs(totals.energy_drift);
@@ -171,7 +171,7 @@ TEST(Balances, FrictionDecelerates)
   for (const std::string order : {"first", "last, remapped"})
     {
       SCOPED_TRACE(order);
-      SceneRun<2> run(block,
+      SceneRun<2> run(block_on_floor,
                       {"Body block/Initial velocity=2; 0",
                        "Boundaries/bottom=friction",
                        "Loads/Gravity=0, -10",
@@ -198,7 +198,7 @@ TEST(Balances, MovingAndStickingFloorsTakeTheBlockAlong)
     for (const std::string floor : {"velocity", "no slip"})
       {
         SCOPED_TRACE(order + ", " + floor);
-        SceneRun<2> run(block,
+        SceneRun<2> run(block_on_floor,
                         {"Body block/Initial velocity=0.2; 0",
                          "Boundaries/bottom=" + floor,
                          "Method/Damping time=0.005",
@@ -222,7 +222,7 @@ TEST(Balances, ReactionOfARestingBlockIsItsWeight)
   for (const std::string &order : stress_update_orders)
     {
       SCOPED_TRACE(order);
-      SceneRun<2> run(block,
+      SceneRun<2> run(block_on_floor,
                       {"Loads/Gravity=0, -10",
                        "Method/Damping time=0.005",
                        "Method/Stress update=" + order});
@@ -251,10 +251,10 @@ TEST(Balances, ConstantBodyForceIsGravity)
 {
   for (const std::string &order : stress_update_orders)
     {
-      SceneRun<2> gravity(block,
+      SceneRun<2> gravity(block_on_floor,
                           {"Loads/Gravity=1, -10",
                            "Method/Stress update=" + order});
-      SceneRun<2> formula(block,
+      SceneRun<2> formula(block_on_floor,
                           {"Loads/Body force=1; -10",
                            "Method/Stress update=" + order});
       gravity.advance(1e-3, 300);

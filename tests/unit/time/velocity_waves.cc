@@ -18,7 +18,7 @@ namespace
   constexpr double       speed   = 1e-12; // m/s: no point moves
 
   // The ends are free: a cosine is even there, so they change nothing.
-  const std::string strip = R"(
+  const std::string wave_strip = R"(
     set Bodies = fluid
     subsection Body fluid
       subsection Box
@@ -125,7 +125,7 @@ TEST(VelocityWaves, PicMultipliesByTheSymbol)
     for (const auto &[kh, share] : expected)
       {
         SCOPED_TRACE(order + ", k h = " + std::to_string(kh));
-        SceneRun<2> run(strip,
+        SceneRun<2> run(wave_strip,
                         {"Method/Transfer=pic",
                          "Method/Stress update=" + order});
         set_wave(run, kh);
@@ -147,7 +147,7 @@ TEST(VelocityWaves, PicIsAViscosity)
   const unsigned int n  = 40;
   for (const double damping_time : {0., 4 * step})
     {
-      SceneRun<2> run(strip,
+      SceneRun<2> run(wave_strip,
                       {std::string("Method/Transfer=") +
                          (damping_time > 0 ? "flip" : "pic"),
                        "Method/Damping time=" + std::to_string(damping_time)});
@@ -166,7 +166,7 @@ TEST(VelocityWaves, FlipKeepsEveryWave)
 {
   for (const double kh : {0.25, 0.5, 1.})
     {
-      SceneRun<2> run(strip);
+      SceneRun<2> run(wave_strip);
       set_wave(run, kh * dealii::numbers::PI);
       run.advance(step, 1000);
       EXPECT_NEAR(amplitude(run, kh * dealii::numbers::PI).first, 1, 1e-10);
@@ -184,7 +184,7 @@ TEST(VelocityWaves, NullModeIsKeptByFlipAndRemovedByPic)
       const auto share_of_energy = [&](const std::string &transfer,
                                        const double       damping_time,
                                        const unsigned int n) {
-        SceneRun<2> run(strip,
+        SceneRun<2> run(wave_strip,
                         {"Method/Transfer=" + transfer,
                          "Method/Damping time=" + std::to_string(damping_time),
                          "Method/Stress update=" + order});

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/base/timing.h>
+#include <limber/simulation/set_up.h>
+#include <limber/simulation/simulation.h>
+
+#include <sstream>
+
+/** @file The two ways between a Simulation and a RunState. */
+namespace limber
+{
+  template <int dim>
+  void
+  Simulation<dim>::resume()
+  {
+    resumed    = checkpoints.load(bodies);
+    state.step = saved_step = resumed->step;
+    state.time              = resumed->time;
+    state.step_size         = resumed->step_size;
+    // A sum over ranks may stand on any of them.
+    state.ledger = {};
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      state.ledger = resumed->ledger;
+    next_pictures = resumed->next_pictures;
+
+    // Points were read by the owners of their cells.
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+      balance(grid, bodies);
+    integrator.restore(resumed->integrator);
+
+    // The scales of the balance grow with rows only.
+    balance_of_start.restore(resumed->balance);
+    totals = balance_of_start.evaluate(state);
+    balance_of_start.restore(resumed->balance);
+    if (totals.points + totals.lost_points != n_points_at_start)
+      throw FileError("The checkpoint " + in_quotes(checkpoints.good_file()) +
+                      " has " + std::to_string(totals.points) +
+                      " points instead of " +
+                      std::to_string(n_points_at_start - totals.lost_points) +
+                      ". Usually the file was damaged. Restore it, or run "
+                      "without --resume.");
+    observables.restore(resumed->observables);
+    checks.restore(resumed->checks);
+    writer.restore(resumed->pictures, communicator);
+    console.restore_counts(resumed->warnings);
+
+    std::ostringstream text;
+    text << "Resumed after step " << state.step << ", time " << state.time
+         << " s, from " << checkpoints.good_file();
+    console.say(text.str());
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::write_checkpoint()
+  {
+    const double before = cpu_time();
+    if (statistics)
+      statistics->flush();
+    RunState<dim> now;
+    now.step              = state.step;
+    now.time              = state.time;
+    now.step_size         = state.step_size;
+    now.ledger            = state.ledger.sum_over_ranks(communicator);
+    now.integrator        = integrator.state();
+    now.balance           = balance_of_start.state();
+    now.observables       = observables.state();
+    now.checks            = checks.state();
+    now.pictures          = writer.state();
+    now.next_pictures     = next_pictures;
+    now.statistics_length = statistics ? statistics->length() : 0;
+    now.warnings          = console.warning_counts();
+    checkpoints.save(now, bodies);
+
+    std::ostringstream text;
+    text << "Checkpoint of step " << state.step << ", time " << state.time
+         << " s: " << checkpoints.good_file();
+    console.say(text.str());
+    saved_step      = state.step;
+    last_checkpoint = wall_time();
+    output_cpu += cpu_time() - before;
+  }
+
+
+
+  template void
+  Simulation<2>::resume();
+  template void
+  Simulation<3>::resume();
+  template void
+  Simulation<2>::write_checkpoint();
+  template void
+  Simulation<3>::write_checkpoint();
+} // namespace limber
