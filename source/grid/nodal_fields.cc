@@ -8,6 +8,8 @@ namespace limber
   template <int dim>
   NodalFields<dim>::NodalFields(const BackgroundGrid<dim> &grid)
     : grid(grid)
+    , nodes_to_share(grid.shared_nodes)
+    , cells_to_share(grid.shared_cells)
   {
     reinit();
   }
@@ -18,14 +20,16 @@ namespace limber
   void
   NodalFields<dim>::reinit()
   {
-    values.reinit(grid.node_records(Layout::stride));
-    parallel = dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1;
-    is_occupied.assign(grid.n_cells(), 0);
-    is_active.assign(grid.n_nodes(), 0);
+    values.reinit(std::size_t(grid.n_nodes()) * Layout::stride);
+    is_occupied.reinit(grid.n_cells());
+    is_active.reinit(grid.n_nodes());
+    nodes_to_share = ExchangePlan(grid.shared_nodes);
+    cells_to_share = ExchangePlan(grid.shared_cells);
     // What was active belongs to the numbers of the former mesh.
-    occupied.clear();
+    occupied_owned.clear();
+    occupied_ghost.clear();
     entered.clear();
-    active_owned.clear();
+    active.clear();
     active_boundary.clear();
     set_occupied({});
   }
@@ -38,7 +42,7 @@ namespace limber
   {
     GridView<dim> result;
     result.cells    = grid.geometry.data();
-    result.nodes    = values.begin();
+    result.nodes    = values.data();
     result.bins     = grid.bins;
     result.occupied = is_occupied.data();
     result.entered  = &entered;
@@ -50,39 +54,63 @@ namespace limber
 
   template <int dim>
   void
+  NodalFields<dim>::plan_exchange(const std::vector<std::uint32_t> &cells)
+  {
+    std::vector<std::uint32_t> reach;
+    for (const std::uint32_t cell : cells)
+      grid.add_reach(cell, reach);
+    LazyArray<std::uint8_t> may_touch(grid.n_cells());
+    for (const std::uint32_t cell : reach)
+      may_touch[cell] = 1;
+    cells_to_share = ExchangePlan(grid.shared_cells,
+                                  [&](const auto c) { return may_touch[c]; });
+
+    // The owner adds the mean pressure of a cell, whoever holds its points.
+    for (const std::uint32_t cell : cells_to_share.received)
+      if (cell < grid.n_owned_cells())
+        reach.push_back(cell);
+    LazyArray<std::uint8_t> may_add(grid.n_nodes());
+    for (const std::uint32_t cell : reach)
+      for (const std::uint32_t offset : grid.geometry[cell].node)
+        may_add[offset / Layout::stride] = 1;
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      if (may_add[hanging.node])
+        for (const auto &[master, weight] : hanging.masters)
+          may_add[master] = 1;
+    nodes_to_share =
+      ExchangePlan(grid.shared_nodes, [&](const auto n) { return may_add[n]; });
+  }
+
+
+
+  template <int dim>
+  void
   NodalFields<dim>::set_occupied(std::vector<std::uint32_t> &&cells)
   {
     // Nodes that are given up keep zero records: whoever looks at a node
     // without mass finds nothing there.
     clear();
-    for (const std::uint32_t cell : occupied)
-      is_occupied[cell] = 0;
-    for (const std::uint32_t cell : entered)
-      is_occupied[cell] = 0;
-    std::fill(is_active.begin(), is_active.end(), 0);
-    active_owned.clear();
-    active_boundary.clear();
-    entered.clear();
-
+    for (const auto *const former :
+         {&occupied_owned, &occupied_ghost, &entered})
+      for (const std::uint32_t cell : *former)
+        is_occupied[cell] = 0;
+    for (const std::uint32_t node : active)
+      is_active[node] = 0;
     occupied_owned.clear();
-    occupied = std::move(cells);
-    for (const std::uint32_t cell : occupied)
+    occupied_ghost.clear();
+    entered.clear();
+    active.clear();
+    active_boundary.clear();
+
+    for (const std::uint32_t cell : cells)
       activate(cell);
     // Other ranks may give to these without this one knowing.
-    for (const std::uint32_t cell : grid.shared_cells())
+    for (const std::uint32_t cell : cells_to_share.received)
       if (!is_occupied[cell])
-        {
-          occupied.push_back(cell);
-          activate(cell);
-        }
-    for (const std::uint32_t node : grid.shared_nodes())
-      if (!is_active[node])
-        {
-          is_active[node] = 1;
-          active_owned.push_back(node);
-          if (grid.sides_of_node[node])
-            active_boundary.push_back(node);
-        }
+        activate(cell);
+    for (const std::uint32_t node : nodes_to_share.received)
+      activate_node(node);
+    activate_masters();
   }
 
 
@@ -92,10 +120,9 @@ namespace limber
   NodalFields<dim>::add_entered()
   {
     for (const std::uint32_t cell : entered)
-      {
-        occupied.push_back(cell);
-        activate(cell);
-      }
+      activate(cell);
+    if (!entered.empty())
+      activate_masters();
     entered.clear();
   }
 
@@ -106,20 +133,37 @@ namespace limber
   NodalFields<dim>::activate(const std::uint32_t cell)
   {
     is_occupied[cell] = 1;
-    if (cell < grid.n_owned_cells())
-      occupied_owned.push_back(cell);
+    (cell < grid.n_owned_cells() ? occupied_owned : occupied_ghost)
+      .push_back(cell);
     for (const std::uint32_t offset : grid.geometry[cell].node)
-      {
-        const std::uint32_t node = offset / Layout::stride;
-        if (is_active[node])
-          continue;
-        is_active[node] = 1;
-        if (node >= grid.n_owned_nodes())
-          continue;
-        active_owned.push_back(node);
-        if (grid.sides_of_node[node])
-          active_boundary.push_back(node);
-      }
+      activate_node(offset / Layout::stride);
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::activate_node(const std::uint32_t node)
+  {
+    if (is_active[node])
+      return;
+    is_active[node] = 1;
+    active.push_back(node);
+    if (grid.sides_of_node[node])
+      active_boundary.push_back(node);
+  }
+
+
+
+  // Masters of hanging nodes may belong to no occupied cell.
+  template <int dim>
+  void
+  NodalFields<dim>::activate_masters()
+  {
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      if (is_active[hanging.node])
+        for (const auto &[master, weight] : hanging.masters)
+          activate_node(master);
   }
 
 
@@ -129,22 +173,15 @@ namespace limber
   NodalFields<dim>::clear()
   {
     left = false;
-    for (const std::uint32_t node : active_owned)
+    for (const std::uint32_t node : active)
       std::fill_n(record(node), Layout::stride, 0.);
-    // Masters of hanging nodes get their share whether active or not.
-    for (const HangingNode &hanging : grid.hanging_nodes)
-      for (const auto &[master, weight] : hanging.masters)
-        std::fill_n(record(master), Layout::stride, 0.);
-    if (parallel)
-      values.zero_out_ghost_values();
   }
 
 
 
   template <int dim>
   void
-  NodalFields<dim>::sum_shared(const unsigned int first,
-                               const unsigned int last)
+  NodalFields<dim>::start_sum(const unsigned int first, const unsigned int last)
   {
     // Linear, so every rank condenses its own contributions.
     for (const HangingNode &hanging : grid.hanging_nodes)
@@ -155,38 +192,24 @@ namespace limber
             record(master)[k] += weight * from[k];
         std::fill(from + first, from + last, 0.);
       }
-
-    if (!parallel)
-      return;
-    // Ghosts may hold copies in other slots, which must not be added again.
-    for (std::uint32_t node = grid.n_owned_nodes(); node < grid.n_nodes();
-         ++node)
-      {
-        std::fill(record(node), record(node) + first, 0.);
-        std::fill(record(node) + last, record(node) + Layout::stride, 0.);
-      }
-    values.set_ghost_state(false);
-    values.compress(dealii::VectorOperation::add);
+    exchange.start(nodes_to_share, values.data(), first, last);
   }
 
 
 
   template <int dim>
   void
-  NodalFields<dim>::start_share()
+  NodalFields<dim>::finish_sum()
   {
-    if (parallel)
-      values.update_ghost_values_start();
+    exchange.finish(values.data());
   }
 
 
 
   template <int dim>
   void
-  NodalFields<dim>::end_share()
+  NodalFields<dim>::interpolate_hanging()
   {
-    if (parallel)
-      values.update_ghost_values_finish();
     for (const HangingNode &hanging : grid.hanging_nodes)
       {
         double *const to = record(hanging.node);
@@ -212,8 +235,7 @@ namespace limber
   void
   CellFields<dim>::reinit()
   {
-    values.reinit(grid.cell_records(CellSums<dim>::stride));
-    parallel = dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1;
+    values.reinit(std::size_t(grid.n_cells()) * CellSums<dim>::stride);
   }
 
 
@@ -222,7 +244,7 @@ namespace limber
   CellSums<dim>
   CellFields<dim>::view()
   {
-    return {values.begin()};
+    return {values.data()};
   }
 
 
@@ -232,52 +254,29 @@ namespace limber
   CellFields<dim>::clear(const std::vector<std::uint32_t> &cells)
   {
     for (const std::uint32_t cell : cells)
-      std::fill_n(values.begin() + std::size_t(cell) * CellSums<dim>::stride,
+      std::fill_n(values.data() + std::size_t(cell) * CellSums<dim>::stride,
                   CellSums<dim>::stride,
                   0.);
-    if (parallel)
-      values.zero_out_ghost_values();
   }
 
 
 
   template <int dim>
   void
-  CellFields<dim>::sum_shared(const unsigned int first, const unsigned int last)
+  CellFields<dim>::start_sum(const ExchangePlan &plan,
+                             const unsigned int  first,
+                             const unsigned int  last)
   {
-    if (!parallel)
-      return;
-    // Ghosts may hold copies in other slots, which must not be added again.
-    constexpr unsigned int stride = CellSums<dim>::stride;
-    for (std::uint32_t cell = grid.n_owned_cells(); cell < grid.n_cells();
-         ++cell)
-      {
-        double *const ghost = values.begin() + std::size_t(cell) * stride;
-        std::fill(ghost, ghost + first, 0.);
-        std::fill(ghost + last, ghost + stride, 0.);
-      }
-    values.set_ghost_state(false);
-    values.compress(dealii::VectorOperation::add);
+    exchange.start(plan, values.data(), first, last);
   }
 
 
 
   template <int dim>
   void
-  CellFields<dim>::start_share(const unsigned int channel)
+  CellFields<dim>::finish_sum()
   {
-    if (parallel)
-      values.update_ghost_values_start(channel);
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::end_share()
-  {
-    if (parallel)
-      values.update_ghost_values_finish();
+    exchange.finish(values.data());
   }
 
 

@@ -58,7 +58,7 @@ namespace limber
 
   template <int dim>
   PointPressure<dim>::PointPressure(const BackgroundGrid<dim> &grid)
-    : grid(grid)
+    : plan(grid.shared_cells)
     , sums(grid)
   {}
 
@@ -84,7 +84,7 @@ namespace limber
   {
     sums.clear(touched);
     // Points may sit in ghost cells, and those of other ranks in cells here.
-    touched            = grid.shared_cells();
+    touched            = plan.received;
     double *const data = sums.view().data;
     for (std::size_t p = 0; p < points.size; ++p)
       {
@@ -98,9 +98,8 @@ namespace limber
         record[CellSums<dim>::pressure] += points.mass[p] * points.pressure[p];
         record[CellSums<dim>::volumetric] += points.mass[p] * volume_ratios[p];
       }
-    sums.sum_shared();
-    sums.start_share(0);
-    sums.end_share();
+    sums.start_sum(plan);
+    sums.finish_sum();
   }
 
 

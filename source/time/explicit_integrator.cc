@@ -40,7 +40,7 @@ namespace limber
                                             "sum shared nodes",
                                             "advance nodes",
                                             "apply boundaries",
-                                            "share nodes",
+                                            "check nodes",
                                             "grid to points",
                                             "update stress",
                                             "relocate"};
@@ -82,7 +82,7 @@ namespace limber
           }
       }
     reduce_extremes();
-    sort_points();
+    sort_points(/*agree=*/true);
   }
 
 
@@ -97,7 +97,7 @@ namespace limber
         body->cell_sums->reinit();
     loads.reinit();
     travelled = 0;
-    sort_points();
+    sort_points(/*agree=*/true);
   }
 
 
@@ -133,7 +133,7 @@ namespace limber
     average_cells(/*add_force=*/false);
     sum_shared_nodes(0, Layout::stride);
     divide_remapped(Layout::momentum);
-    share_nodes(/*with_cells=*/true);
+    interpolate_hanging();
     update_stress(/*remapped=*/true, /*move=*/false);
 
     points_to_grid(/*momentum=*/false, /*force=*/true);
@@ -143,7 +143,7 @@ namespace limber
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes(/*with_cells=*/false);
+    interpolate_hanging();
     check_nodes();
     grid_to_points(/*remap=*/false, /*move=*/true);
   }
@@ -166,14 +166,14 @@ namespace limber
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes(/*with_cells=*/true);
+    interpolate_hanging();
     check_nodes();
     grid_to_points(remap, /*move=*/false);
     if (remap)
       {
         sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
         divide_remapped(Layout::remapped);
-        share_nodes(/*with_cells=*/false);
+        interpolate_hanging();
       }
     update_stress(remap, /*move=*/true);
   }
@@ -187,7 +187,10 @@ namespace limber
     nodes.clear();
     for (auto &body : bodies)
       if (body->cell_sums)
-        body->cell_sums->clear(nodes.occupied_cells());
+        {
+          body->cell_sums->clear(nodes.owned_occupied_cells());
+          body->cell_sums->clear(nodes.ghost_occupied_cells());
+        }
     speed_squared = wave_squared = displacement = 0;
     n_batches                                   = 0;
     lost.clear();
@@ -227,25 +230,31 @@ namespace limber
   {
     for (auto &body : bodies)
       if (body->cell_sums)
-        body->cell_sums->sum_shared(first, last);
+        body->cell_sums->start_sum(nodes.cell_plan(), first, last);
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        body->cell_sums->finish_sum();
     lap(Verb::sum_shared_nodes);
   }
 
 
 
+  // All who hold a cell know its complete sums; its force acts once.
   template <int dim>
   void
   ExplicitIntegrator<dim>::average_cells(const bool add_force)
   {
+    const auto &owned = nodes.owned_occupied_cells();
+    const auto &ghost = nodes.ghost_occupied_cells();
+    const auto  grid  = nodes.view();
     for (auto &body : bodies)
       if (body->cell_sums)
         {
-          const auto &cells = nodes.owned_occupied_cells();
-          limber::average_cells<dim>(cells.data(),
-                                     cells.size(),
-                                     nodes.view(),
-                                     body->cell_sums->view(),
-                                     add_force);
+          const auto sums = body->cell_sums->view();
+          limber::average_cells<dim>(
+            owned.data(), owned.size(), grid, sums, add_force);
+          limber::average_cells<dim>(
+            ghost.data(), ghost.size(), grid, sums, /*add_force=*/false);
         }
     lap(Verb::points_to_grid);
   }
@@ -287,7 +296,8 @@ namespace limber
   ExplicitIntegrator<dim>::sum_shared_nodes(const unsigned int first,
                                             const unsigned int last)
   {
-    nodes.sum_shared(first, last);
+    nodes.start_sum(first, last);
+    nodes.finish_sum();
     lap(Verb::sum_shared_nodes);
   }
 
@@ -326,7 +336,8 @@ namespace limber
             record[Layout::velocity + d]  = after;
             squared += after * after;
           }
-        total_mass += mass;
+        if (nodes.owns(node))
+          total_mass += mass;
         largest_mass = std::max(largest_mass, mass);
         all += squared;
         if (mass > checked_mass)
@@ -358,6 +369,7 @@ namespace limber
   {
     if (parallel)
       MPI_Wait(&check_request, MPI_STATUS_IGNORE);
+    lap(Verb::check_nodes);
     const double cells = fastest_node;
     if (cells <= 1)
       return;
@@ -387,7 +399,7 @@ namespace limber
     for (const std::uint32_t node : nodes.active_nodes())
       {
         const double *const record = nodes.record(node);
-        if (!(record[Layout::mass] > 0))
+        if (!nodes.owns(node) || !(record[Layout::mass] > 0))
           continue;
         const auto force = loads.on_node(node);
         ledger.load_impulse += step * force;
@@ -444,20 +456,10 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::share_nodes(const bool with_cells)
+  ExplicitIntegrator<dim>::interpolate_hanging()
   {
-    nodes.start_share();
-    unsigned int channel = 0;
-    if (with_cells)
-      for (auto &body : bodies)
-        if (body->cell_sums)
-          body->cell_sums->start_share(++channel);
-    nodes.end_share();
-    if (with_cells)
-      for (auto &body : bodies)
-        if (body->cell_sums)
-          body->cell_sums->end_share();
-    lap(Verb::share_nodes);
+    nodes.interpolate_hanging();
+    lap(Verb::apply_boundaries);
   }
 
 
@@ -575,7 +577,7 @@ namespace limber
     if (exchange)
       exchange_points();
     else if (excess_batches > n_points / 4)
-      sort_points();
+      sort_points(/*agree=*/false);
     lap(Verb::relocate);
     return exchange;
   }
@@ -618,14 +620,16 @@ namespace limber
     for (auto &body : bodies)
       body->points.synchronise();
     travelled = 0;
-    sort_points();
+    sort_points(/*agree=*/true);
   }
 
 
 
+  // Once points are in cells of their own rank, ranks agree on what they will
+  // share until the next time.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::sort_points()
+  ExplicitIntegrator<dim>::sort_points(const bool agree)
   {
     std::vector<std::uint32_t> cells;
     n_batches_sorted = 0;
@@ -638,6 +642,8 @@ namespace limber
       }
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    if (agree)
+      nodes.plan_exchange(cells);
     nodes.set_occupied(std::move(cells));
     excess_batches = 0;
   }

@@ -2,16 +2,16 @@
 #ifndef limber_grid_nodal_fields_h
 #define limber_grid_nodal_fields_h
 
-#include <deal.II/lac/la_parallel_vector.h>
-
+#include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
 
 namespace limber
 {
   /**
-   * The records of all nodes (NodeLayout) in one distributed vector, and the
-   * cells and nodes that take part in a step. Sweeps reach both through
-   * view(); communication and hanging nodes are dealt with here.
+   * The records of all nodes (NodeLayout), owned and ghost, and the cells and
+   * nodes that take part in a step. Sweeps reach both through view();
+   * communication and hanging nodes are dealt with here. What is done to an
+   * active node every rank that holds it does alike, from the same sums.
    */
   template <int dim>
   class NodalFields
@@ -28,6 +28,14 @@ namespace limber
     GridView<dim>
     view();
 
+    /**
+     * Let ranks agree on the nodes and cells that they have to sum up for
+     * each other until points with these occupied cells have moved by one
+     * edge of a cell; collective. Without it they sum up all that they share.
+     */
+    void
+    plan_exchange(const std::vector<std::uint32_t> &cells);
+
     /** Make exactly these cells the occupied ones (local numbers, sorted). */
     void
     set_occupied(std::vector<std::uint32_t> &&cells);
@@ -36,21 +44,30 @@ namespace limber
     void
     add_entered();
 
-    /**
-     * Cells that may hold points, here or, for owned cells next to other
-     * ranks, there.
-     */
-    const std::vector<std::uint32_t> &
-    occupied_cells() const
-    {
-      return occupied;
-    }
-
-    /** Those of them that this rank owns. */
+    /** Owned cells that may hold points, here or on other ranks. */
     const std::vector<std::uint32_t> &
     owned_occupied_cells() const
     {
       return occupied_owned;
+    }
+
+    /** Ghost cells that may. */
+    const std::vector<std::uint32_t> &
+    ghost_occupied_cells() const
+    {
+      return occupied_ghost;
+    }
+
+    /** What travels between ranks when nodes, or cells, are summed up. */
+    const ExchangePlan &
+    node_plan() const
+    {
+      return nodes_to_share;
+    }
+    const ExchangePlan &
+    cell_plan() const
+    {
+      return cells_to_share;
     }
 
     /** Whether points have left the cells of this rank since clear(). */
@@ -66,26 +83,24 @@ namespace limber
 
     /**
      * Complete the sums over points in slots [first, last) of the records:
-     * hand those of hanging nodes to their masters and add what other ranks
-     * have contributed. Other slots stay on the owners.
+     * hand those of hanging nodes to their masters, send to other ranks, and
+     * add what they send. Between start and finish these slots must not
+     * change.
      */
     void
-    sum_shared(unsigned int first = 0, unsigned int last = Layout::stride);
-
-    /**
-     * Give other ranks, and hanging nodes, the values of their nodes. Between
-     * start and end other messages may be under way.
-     */
+    start_sum(unsigned int first = 0, unsigned int last = Layout::stride);
     void
-    start_share();
-    void
-    end_share();
+    finish_sum();
 
-    /** Records of active nodes that this rank owns, by local number. */
+    /** Give hanging nodes the values that follow from their masters. */
+    void
+    interpolate_hanging();
+
+    /** Active nodes, owned and ghost, by local number. */
     const std::vector<std::uint32_t> &
     active_nodes() const
     {
-      return active_owned;
+      return active;
     }
 
     /** Those of them that lie on a side of the box. */
@@ -95,16 +110,23 @@ namespace limber
       return active_boundary;
     }
 
+    /** Sums over the nodes of all ranks meet each node once, where this is. */
+    bool
+    owns(const std::uint32_t node) const
+    {
+      return node < grid.n_owned_nodes();
+    }
+
     double *
     record(const std::uint32_t node)
     {
-      return values.begin() + std::size_t(node) * Layout::stride;
+      return values.data() + std::size_t(node) * Layout::stride;
     }
 
     const double *
     record(const std::uint32_t node) const
     {
-      return values.begin() + std::size_t(node) * Layout::stride;
+      return values.data() + std::size_t(node) * Layout::stride;
     }
 
     const BackgroundGrid<dim> &grid;
@@ -112,21 +134,25 @@ namespace limber
   private:
     void
     activate(std::uint32_t cell);
+    void
+    activate_node(std::uint32_t node);
+    void
+    activate_masters();
 
-    dealii::LinearAlgebra::distributed::Vector<double> values;
-
-    std::vector<std::uint32_t> occupied, occupied_owned, entered;
-    std::vector<std::uint8_t>  is_occupied, is_active;
-    std::vector<std::uint32_t> active_owned, active_boundary;
-    bool                       parallel = false;
-    bool                       left     = false;
+    LazyArray<double>          values;
+    RecordExchange             exchange{Layout::stride};
+    ExchangePlan               nodes_to_share, cells_to_share;
+    std::vector<std::uint32_t> occupied_owned, occupied_ghost, entered;
+    LazyArray<std::uint8_t>    is_occupied, is_active;
+    std::vector<std::uint32_t> active, active_boundary;
+    bool                       left = false;
   };
 
 
 
   /**
-   * A few numbers per cell in one distributed vector over DGQ0: the sums of
-   * one body from which the Hu-Washizu averages follow (CellSums).
+   * A few numbers per cell, owned or ghost: the sums of one body from which
+   * the Hu-Washizu averages follow (CellSums).
    */
   template <int dim>
   class CellFields
@@ -143,34 +169,29 @@ namespace limber
     const double *
     record(const std::uint32_t cell) const
     {
-      return values.begin() + std::size_t(cell) * CellSums<dim>::stride;
+      return values.data() + std::size_t(cell) * CellSums<dim>::stride;
     }
 
-    /** Set the sums of the given cells, and of all ghosts, to zero. */
+    /** Set the sums of the given cells to zero. */
     void
     clear(const std::vector<std::uint32_t> &cells);
 
     /**
-     * Add the contributions of other ranks to slots [first, last) of the owned
-     * cells. Other slots stay on the owners.
+     * Complete slots [first, last) of the sums with those of other ranks, on
+     * all that hold the cell. Between start and finish these slots must not
+     * change.
      */
     void
-    sum_shared(unsigned int first = 0,
-               unsigned int last  = CellSums<dim>::stride);
-
-    /**
-     * Give other ranks the sums of the cells that they hold as ghosts; the
-     * @p channel tells messages apart that are under way at the same time.
-     */
+    start_sum(const ExchangePlan &plan,
+              unsigned int        first = 0,
+              unsigned int        last  = CellSums<dim>::stride);
     void
-    start_share(unsigned int channel);
-    void
-    end_share();
+    finish_sum();
 
   private:
-    const BackgroundGrid<dim>                         &grid;
-    dealii::LinearAlgebra::distributed::Vector<double> values;
-    bool                                               parallel = false;
+    const BackgroundGrid<dim> &grid;
+    LazyArray<double>          values;
+    RecordExchange             exchange{CellSums<dim>::stride};
   };
 } // namespace limber
 

@@ -97,7 +97,7 @@ namespace limber
     void
     sum_over_cells();
 
-    const BackgroundGrid<dim> &grid;
+    const ExchangePlan         plan; // all cells that ranks share
     CellFields<dim>            sums;
     std::vector<std::uint32_t> touched; // cells whose sums are not zero
     PointView<dim>             points;

@@ -20,7 +20,7 @@ namespace limber
     sum_shared_nodes,
     advance_nodes,
     apply_boundaries,
-    share_nodes,
+    check_nodes,
     grid_to_points,
     update_stress,
     relocate,
@@ -121,7 +121,7 @@ namespace limber
     void
     divide_remapped(unsigned int momentum);
     void
-    share_nodes(bool with_cells);
+    interpolate_hanging();
     void
     grid_to_points(bool remap, bool move);
     void
@@ -131,7 +131,7 @@ namespace limber
     void
     remove_lost_points();
     void
-    sort_points();
+    sort_points(bool agree);
     void
     reduce_extremes();
     void
