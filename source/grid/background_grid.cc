@@ -14,8 +14,6 @@
 #include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -88,8 +86,6 @@ namespace limber
                                                       description.upper,
                                                       /*colorize=*/true);
     triangulation.refine_global(refinements);
-    // Refinement needs for a while twice what the mesh keeps; points come next.
-    malloc_trim(0);
     rebuild();
   }
 

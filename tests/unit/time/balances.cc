@@ -41,7 +41,7 @@ namespace
   constexpr double mass = 2000, g = 10;
 
   // 4 m x 1 m held at the left, without Poisson's effect
-  const std::string bar = R"(
+  const std::string loaded_bar = R"(
     set Bodies = bar
     subsection Body bar
       subsection Box
@@ -73,7 +73,7 @@ namespace
   double
   mean_strain(const std::string &load)
   {
-    SceneRun<2>  run(bar + "\n" + load + "\nend\nend\n");
+    SceneRun<2>  run(loaded_bar + "\n" + load + "\nend\nend\n");
     const auto   start  = run.positions();
     const double period = 16 / std::sqrt(1000.);
     run.advance_to(4 * period);
