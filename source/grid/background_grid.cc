@@ -196,60 +196,25 @@ namespace limber
     bins.table = bin_table.data();
 
     for (std::uint32_t c = 0; c < geometry.size(); ++c)
-      for_each_bin(bins_of(c, 0),
-                   [&](const std::size_t bin) { bin_table[bin] = c; });
-  }
-
-
-
-  // The range of bins in each direction that a cell covers, together with as
-  // many of its edges around it as the margin says.
-  template <int dim>
-  typename BackgroundGrid<dim>::BinRange
-  BackgroundGrid<dim>::bins_of(const std::uint32_t cell,
-                               const std::int64_t  margin) const
-  {
-    BinRange range;
-    for (int d = 0; d < dim; ++d)
       {
-        const std::int64_t first = std::lround(
-          (geometry[cell].origin[d] - bins.lower[d]) * bins.inverse_edge[d]);
-        const std::int64_t count =
-          std::lround(bins.inverse_edge[d] / geometry[cell].inverse_edge[d]);
-        range[d] = {{std::max<std::int64_t>(0, first - margin * count),
-                     std::min(bins.n[d], first + (1 + margin) * count)}};
+        std::array<std::int64_t, 3> first{}, count{{1, 1, 1}};
+        for (int d = 0; d < dim; ++d)
+          {
+            first[d] = std::lround((geometry[c].origin[d] - bins.lower[d]) *
+                                   bins.inverse_edge[d]);
+            count[d] =
+              std::lround(bins.inverse_edge[d] / geometry[c].inverse_edge[d]);
+          }
+        for (std::int64_t k = 0; k < count[2]; ++k)
+          for (std::int64_t j = 0; j < count[1]; ++j)
+            for (std::int64_t i = 0; i < count[0]; ++i)
+              {
+                std::int64_t bin = first[1] + j;
+                if constexpr (dim == 3)
+                  bin += (first[2] + k) * bins.n[1];
+                bin_table[bin * bins.n[0] + first[0] + i] = c;
+              }
       }
-    return range;
-  }
-
-
-
-  template <int dim>
-  template <class Work>
-  void
-  BackgroundGrid<dim>::for_each_bin(const BinRange &range,
-                                    const Work     &work) const
-  {
-    std::array<std::int64_t, 2> layers{{0, 1}};
-    if constexpr (dim == 3)
-      layers = range[2];
-    for (std::int64_t k = layers[0]; k < layers[1]; ++k)
-      for (std::int64_t j = range[1][0]; j < range[1][1]; ++j)
-        for (std::int64_t i = range[0][0]; i < range[0][1]; ++i)
-          work((k * bins.n[1] + j) * bins.n[0] + i);
-  }
-
-
-
-  template <int dim>
-  void
-  BackgroundGrid<dim>::add_reach(const std::uint32_t         cell,
-                                 std::vector<std::uint32_t> &cells) const
-  {
-    for_each_bin(bins_of(cell, 1), [&](const std::size_t bin) {
-      if (bin_table[bin] != invalid_cell)
-        cells.push_back(bin_table[bin]);
-    });
   }
 
 

@@ -21,17 +21,43 @@ namespace limber
   NodalFields<dim>::reinit()
   {
     values.reinit(std::size_t(grid.n_nodes()) * Layout::stride);
+    has_own_points.reinit(grid.n_cells());
     is_occupied.reinit(grid.n_cells());
     is_active.reinit(grid.n_nodes());
     nodes_to_share = ExchangePlan(grid.shared_nodes);
     cells_to_share = ExchangePlan(grid.shared_cells);
+    find_roles();
     // What was active belongs to the numbers of the former mesh.
+    with_own_points.clear();
     occupied_owned.clear();
     occupied_ghost.clear();
     entered.clear();
     active.clear();
     active_boundary.clear();
     set_occupied({});
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::find_roles()
+  {
+    roles.reinit(grid.n_nodes());
+    if (grid.shared_nodes.neighbours.empty())
+      return;
+    for (const std::uint32_t node : nodes_to_share.received)
+      roles[node] = is_shared;
+    for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
+      for (const std::uint32_t offset : grid.geometry[cell].node)
+        roles[offset / Layout::stride] |= is_corner_of_owned_cell;
+    // What is done to a hanging node is done to its masters.
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      for (const auto &[master, weight] : hanging.masters)
+        {
+          roles[hanging.node] |= roles[master] & is_shared;
+          roles[master] |= roles[hanging.node] & is_corner_of_owned_cell;
+        }
   }
 
 
@@ -44,41 +70,10 @@ namespace limber
     result.cells    = grid.geometry.data();
     result.nodes    = values.data();
     result.bins     = grid.bins;
-    result.occupied = is_occupied.data();
+    result.occupied = has_own_points.data();
     result.entered  = &entered;
     result.left     = &left;
     return result;
-  }
-
-
-
-  template <int dim>
-  void
-  NodalFields<dim>::plan_exchange(const std::vector<std::uint32_t> &cells)
-  {
-    std::vector<std::uint32_t> reach;
-    for (const std::uint32_t cell : cells)
-      grid.add_reach(cell, reach);
-    LazyArray<std::uint8_t> may_touch(grid.n_cells());
-    for (const std::uint32_t cell : reach)
-      may_touch[cell] = 1;
-    cells_to_share = ExchangePlan(grid.shared_cells,
-                                  [&](const auto c) { return may_touch[c]; });
-
-    // The owner adds the mean pressure of a cell, whoever holds its points.
-    for (const std::uint32_t cell : cells_to_share.received)
-      if (cell < grid.n_owned_cells())
-        reach.push_back(cell);
-    LazyArray<std::uint8_t> may_add(grid.n_nodes());
-    for (const std::uint32_t cell : reach)
-      for (const std::uint32_t offset : grid.geometry[cell].node)
-        may_add[offset / Layout::stride] = 1;
-    for (const HangingNode &hanging : grid.hanging_nodes)
-      if (may_add[hanging.node])
-        for (const auto &[master, weight] : hanging.masters)
-          may_add[master] = 1;
-    nodes_to_share =
-      ExchangePlan(grid.shared_nodes, [&](const auto n) { return may_add[n]; });
   }
 
 
@@ -90,8 +85,10 @@ namespace limber
     // Nodes that are given up keep zero records: whoever looks at a node
     // without mass finds nothing there.
     clear();
-    for (const auto *const former :
-         {&occupied_owned, &occupied_ghost, &entered})
+    for (const auto *const former : {&with_own_points, &entered})
+      for (const std::uint32_t cell : *former)
+        has_own_points[cell] = 0;
+    for (const auto *const former : {&occupied_owned, &occupied_ghost})
       for (const std::uint32_t cell : *former)
         is_occupied[cell] = 0;
     for (const std::uint32_t node : active)
@@ -102,12 +99,104 @@ namespace limber
     active.clear();
     active_boundary.clear();
 
-    for (const std::uint32_t cell : cells)
-      activate(cell);
-    // Other ranks may give to these without this one knowing.
-    for (const std::uint32_t cell : cells_to_share.received)
-      if (!is_occupied[cell])
+    with_own_points = std::move(cells);
+    for (const std::uint32_t cell : with_own_points)
+      {
+        has_own_points[cell] = 1;
         activate(cell);
+      }
+    activate_received();
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::add_entered()
+  {
+    if (entered.empty())
+      return;
+    for (const std::uint32_t cell : entered)
+      {
+        with_own_points.push_back(cell);
+        activate(cell);
+      }
+    entered.clear();
+    activate_masters();
+  }
+
+
+
+  template <int dim>
+  bool
+  NodalFields<dim>::is_at_border(const std::uint32_t cell) const
+  {
+    for (const std::uint32_t offset : grid.geometry[cell].node)
+      if (roles[offset / Layout::stride] & is_shared)
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  NodalFields<dim>::has_entered_shared() const
+  {
+    return std::any_of(entered.begin(), entered.end(), [&](const auto cell) {
+      return is_at_border(cell);
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::agree_on_sums()
+  {
+    if (grid.shared_nodes.neighbours.empty())
+      return;
+
+    // The owner adds the mean pressure of a cell, whoever holds its points.
+    cells_to_share = ExchangePlan(
+      grid.shared_cells,
+      [&](const auto cell) { return has_own_points[cell] != 0; },
+      [&](const auto cell) {
+        return has_own_points[cell] || cell < grid.n_owned_cells();
+      });
+
+    for (const auto &neighbour : grid.shared_nodes.neighbours)
+      for (const std::uint32_t node : neighbour.records)
+        roles[node] &= ~may_be_added_to;
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      roles[hanging.node] &= ~may_be_added_to;
+    for (const auto *const cells : {&with_own_points, &cells_to_share.received})
+      for (const std::uint32_t cell : *cells)
+        if (is_at_border(cell))
+          for (const std::uint32_t offset : grid.geometry[cell].node)
+            roles[offset / Layout::stride] |= may_be_added_to;
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      for (const auto &[master, weight] : hanging.masters)
+        roles[master] |= roles[hanging.node] & may_be_added_to;
+
+    nodes_to_share = ExchangePlan(
+      grid.shared_nodes,
+      [&](const auto node) { return (roles[node] & may_be_added_to) != 0; },
+      [&](const auto node) {
+        return (roles[node] & (may_be_added_to | is_corner_of_owned_cell)) != 0;
+      });
+    activate_received();
+  }
+
+
+
+  // To these other ranks may add without this one knowing.
+  template <int dim>
+  void
+  NodalFields<dim>::activate_received()
+  {
+    for (const std::uint32_t cell : cells_to_share.received)
+      activate(cell);
     for (const std::uint32_t node : nodes_to_share.received)
       activate_node(node);
     activate_masters();
@@ -117,21 +206,10 @@ namespace limber
 
   template <int dim>
   void
-  NodalFields<dim>::add_entered()
-  {
-    for (const std::uint32_t cell : entered)
-      activate(cell);
-    if (!entered.empty())
-      activate_masters();
-    entered.clear();
-  }
-
-
-
-  template <int dim>
-  void
   NodalFields<dim>::activate(const std::uint32_t cell)
   {
+    if (is_occupied[cell])
+      return;
     is_occupied[cell] = 1;
     (cell < grid.n_owned_cells() ? occupied_owned : occupied_ghost)
       .push_back(cell);

@@ -85,18 +85,21 @@ namespace limber
 
 
   ExchangePlan::ExchangePlan(const SharedRecords                      &shared,
-                             const std::function<bool(std::uint32_t)> &may_add)
+                             const std::function<bool(std::uint32_t)> &may_add,
+                             const std::function<bool(std::uint32_t)> &wants)
     : communicator(shared.communicator)
     , rank(dealii::Utilities::MPI::this_mpi_process(communicator))
   {
     const std::size_t                       n = shared.neighbours.size();
     std::vector<std::vector<unsigned char>> here(n), there(n);
     std::vector<MPI_Request>                requests(2 * n);
+    constexpr unsigned char                 adds = 1, reads = 2;
     for (std::size_t k = 0; k < n; ++k)
       {
         const auto &[other, records] = shared.neighbours[k];
         for (const std::uint32_t record : records)
-          here[k].push_back(may_add(record));
+          here[k].push_back((may_add(record) ? adds : 0) |
+                            (wants(record) ? reads : 0));
         there[k].resize(records.size());
         MPI_Irecv(there[k].data(),
                   records.size(),
@@ -121,9 +124,9 @@ namespace limber
         Neighbour neighbour{other, {}, {}};
         for (std::size_t i = 0; i < records.size(); ++i)
           {
-            if (here[k][i])
+            if ((here[k][i] & adds) && (there[k][i] & reads))
               neighbour.send.push_back(records[i]);
-            if (there[k][i])
+            if ((there[k][i] & adds) && (here[k][i] & reads))
               neighbour.receive.push_back(records[i]);
           }
         neighbours.push_back(std::move(neighbour));
@@ -141,8 +144,14 @@ namespace limber
                       neighbour.receive.begin(),
                       neighbour.receive.end());
     std::sort(received.begin(), received.end());
-    received.erase(std::unique(received.begin(), received.end()),
-                   received.end());
+    for (std::size_t i = 1; i < received.size(); ++i)
+      if (received[i] == received[i - 1])
+        contested.push_back(received[i]);
+    const auto drop_copies = [](std::vector<std::uint32_t> &records) {
+      records.erase(std::unique(records.begin(), records.end()), records.end());
+    };
+    drop_copies(received);
+    drop_copies(contested);
   }
 
 
@@ -231,9 +240,10 @@ namespace limber
   void
   RecordExchange::finish(double *const values)
   {
-    // The order of ranks: this one's share comes after those of lower ranks.
-    pack(plan->received, values, stride, first, last, own);
-    for (const std::uint32_t record : plan->received)
+    // Two shares may be added either way. Of more, this one's comes after
+    // those of lower ranks.
+    pack(plan->contested, values, stride, first, last, own);
+    for (const std::uint32_t record : plan->contested)
       std::fill_n(values + std::size_t(record) * stride + first,
                   last - first,
                   0.);
@@ -243,7 +253,7 @@ namespace limber
     for (; k < plan->neighbours.size() && plan->neighbours[k].rank < plan->rank;
          ++k)
       add(plan->neighbours[k].receive, received[k], values);
-    add(plan->received, own, values);
+    add(plan->contested, own, values);
     for (; k < plan->neighbours.size(); ++k)
       add(plan->neighbours[k].receive, received[k], values);
   }

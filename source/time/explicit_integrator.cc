@@ -526,18 +526,24 @@ namespace limber
   void
   ExplicitIntegrator<dim>::reduce_extremes()
   {
-    any_lost = nodes.points_have_left() ? 1 : 0;
+    any_lost           = nodes.points_have_left() ? 1 : 0;
+    any_entered_shared = nodes.has_entered_shared() ? 1 : 0;
     if (parallel)
       {
-        double extremes[] = {
-          speed_squared, wave_squared, displacement, largest_mass, any_lost};
+        double extremes[] = {speed_squared,
+                             wave_squared,
+                             displacement,
+                             largest_mass,
+                             any_lost,
+                             any_entered_shared};
         MPI_Allreduce(
-          MPI_IN_PLACE, extremes, 5, MPI_DOUBLE, MPI_MAX, grid.communicator);
-        speed_squared = extremes[0];
-        wave_squared  = extremes[1];
-        displacement  = extremes[2];
-        largest_mass  = extremes[3];
-        any_lost      = extremes[4];
+          MPI_IN_PLACE, extremes, 6, MPI_DOUBLE, MPI_MAX, grid.communicator);
+        speed_squared      = extremes[0];
+        wave_squared       = extremes[1];
+        displacement       = extremes[2];
+        largest_mass       = extremes[3];
+        any_lost           = extremes[4];
+        any_entered_shared = extremes[5];
       }
     wave_speed  = std::sqrt(wave_squared);
     point_speed = std::sqrt(speed_squared);
@@ -553,6 +559,8 @@ namespace limber
     if (any_lost > 0)
       remove_lost_points();
     nodes.add_entered();
+    if (any_entered_shared > 0)
+      nodes.agree_on_sums();
 
     travelled += displacement;
     if (n_batches > n_batches_sorted)
@@ -625,8 +633,6 @@ namespace limber
 
 
 
-  // Once points are in cells of their own rank, ranks agree on what they will
-  // share until the next time.
   template <int dim>
   void
   ExplicitIntegrator<dim>::sort_points(const bool agree)
@@ -642,9 +648,9 @@ namespace limber
       }
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    if (agree)
-      nodes.plan_exchange(cells);
     nodes.set_occupied(std::move(cells));
+    if (agree)
+      nodes.agree_on_sums();
     excess_batches = 0;
   }
 

@@ -83,13 +83,6 @@ namespace limber
       return geometry.size();
     }
 
-    /**
-     * Append the cells known here that points of this cell may reach while
-     * they move by less than one of its edges, itself among them.
-     */
-    void
-    add_reach(std::uint32_t cell, std::vector<std::uint32_t> &cells) const;
-
     const GridDescription<dim>                        description;
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
@@ -110,8 +103,6 @@ namespace limber
 
   private:
     struct Numbering;
-    // First bin and the one behind the last, in each direction
-    using BinRange = std::array<std::array<std::int64_t, 2>, dim>;
 
     void
     build_cells(const Numbering &numbering);
@@ -121,11 +112,6 @@ namespace limber
     build_hanging_nodes(const Numbering &numbering);
     void
     complete_boundary();
-    BinRange
-    bins_of(std::uint32_t cell, std::int64_t margin) const;
-    template <class Work>
-    void
-    for_each_bin(const BinRange &range, const Work &work) const;
 
     unsigned int               nodes_owned = 0, cells_owned = 0;
     std::vector<std::uint32_t> cell_numbers; // by active cell index

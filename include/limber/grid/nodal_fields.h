@@ -28,14 +28,6 @@ namespace limber
     GridView<dim>
     view();
 
-    /**
-     * Let ranks agree on the nodes and cells that they have to sum up for
-     * each other until points with these occupied cells have moved by one
-     * edge of a cell; collective. Without it they sum up all that they share.
-     */
-    void
-    plan_exchange(const std::vector<std::uint32_t> &cells);
-
     /** Make exactly these cells the occupied ones (local numbers, sorted). */
     void
     set_occupied(std::vector<std::uint32_t> &&cells);
@@ -43,6 +35,18 @@ namespace limber
     /** Let cells that points have entered since take part. */
     void
     add_entered();
+
+    /**
+     * Let ranks agree on the nodes and cells that they have to sum up for
+     * each other while their points are in the cells that are occupied now;
+     * collective. Without it they sum up all that they share.
+     */
+    void
+    agree_on_sums();
+
+    /** Whether points have entered cells that such an agreement lacks. */
+    bool
+    has_entered_shared() const;
 
     /** Owned cells that may hold points, here or on other ranks. */
     const std::vector<std::uint32_t> &
@@ -138,13 +142,26 @@ namespace limber
     activate_node(std::uint32_t node);
     void
     activate_masters();
+    void
+    activate_received();
+
+    bool
+    is_at_border(std::uint32_t cell) const;
+    void
+    find_roles();
+
+    // What a node has to do with other ranks, directly or through masters
+    static constexpr std::uint8_t is_shared               = 1;
+    static constexpr std::uint8_t is_corner_of_owned_cell = 2;
+    static constexpr std::uint8_t may_be_added_to         = 4; // as agreed
 
     LazyArray<double>          values;
+    LazyArray<std::uint8_t>    roles; // of nodes
     RecordExchange             exchange{Layout::stride};
     ExchangePlan               nodes_to_share, cells_to_share;
-    std::vector<std::uint32_t> occupied_owned, occupied_ghost, entered;
-    LazyArray<std::uint8_t>    is_occupied, is_active;
-    std::vector<std::uint32_t> active, active_boundary;
+    std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
+    std::vector<std::uint32_t> entered, active, active_boundary;
+    LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
     bool                       left = false;
   };
 

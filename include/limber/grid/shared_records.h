@@ -51,17 +51,18 @@ namespace limber
     explicit ExchangePlan(const SharedRecords &shared);
 
     /**
-     * Those to which the sender may add, by local number; collective. A rank
-     * that holds a record hears of all that is added to it elsewhere, whether
-     * it may add to it or not.
+     * Those to which the sender may add and which the receiver wants to know;
+     * collective. Both are asked for local numbers of shared records.
      */
     ExchangePlan(const SharedRecords                      &shared,
-                 const std::function<bool(std::uint32_t)> &may_add);
+                 const std::function<bool(std::uint32_t)> &may_add,
+                 const std::function<bool(std::uint32_t)> &wants);
 
     MPI_Comm                   communicator;
     unsigned int               rank; // this one
     std::vector<Neighbour>     neighbours;
-    std::vector<std::uint32_t> received; // each once, ascending
+    std::vector<std::uint32_t> received;  // each once, ascending
+    std::vector<std::uint32_t> contested; // those from several neighbours
 
   private:
     void

@@ -167,9 +167,11 @@ namespace limber
     double                                              largest_mass  = 1e300;
     std::vector<std::pair<std::string, LostPoint<dim>>> lost;
 
-    double      any_lost      = 0;
-    double      fastest_node  = 0; // over all ranks, cells in this step
-    MPI_Request check_request = MPI_REQUEST_NULL;
+    // Over all ranks
+    double      any_lost           = 0;
+    double      any_entered_shared = 0;
+    double      fastest_node       = 0; // cells in this step
+    MPI_Request check_request      = MPI_REQUEST_NULL;
 
     // Sum of largest displacements since ranks exchanged points, in cells
     double travelled = 0;
