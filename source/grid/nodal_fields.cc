@@ -105,7 +105,7 @@ namespace limber
         has_own_points[cell] = 1;
         activate(cell);
       }
-    activate_received();
+    activate_agreed();
   }
 
 
@@ -185,20 +185,25 @@ namespace limber
       [&](const auto node) {
         return (roles[node] & (may_be_added_to | is_corner_of_owned_cell)) != 0;
       });
-    activate_received();
+    activate_agreed();
   }
 
 
 
-  // To these other ranks may add without this one knowing.
+  // Others may add to these without this rank knowing, or expect its share,
+  // which then has to be zero if no point is there any more.
   template <int dim>
   void
-  NodalFields<dim>::activate_received()
+  NodalFields<dim>::activate_agreed()
   {
-    for (const std::uint32_t cell : cells_to_share.received)
-      activate(cell);
-    for (const std::uint32_t node : nodes_to_share.received)
-      activate_node(node);
+    for (const auto &neighbour : cells_to_share.neighbours)
+      for (const auto *const cells : {&neighbour.send, &neighbour.receive})
+        for (const std::uint32_t cell : *cells)
+          activate(cell);
+    for (const auto &neighbour : nodes_to_share.neighbours)
+      for (const auto *const records : {&neighbour.send, &neighbour.receive})
+        for (const std::uint32_t node : *records)
+          activate_node(node);
     activate_masters();
   }
 

@@ -28,7 +28,10 @@ namespace limber
     GridView<dim>
     view();
 
-    /** Make exactly these cells the occupied ones (local numbers, sorted). */
+    /**
+     * Make these cells the occupied ones (local numbers, sorted), and those
+     * that ranks have agreed on, whether they still hold points or not.
+     */
     void
     set_occupied(std::vector<std::uint32_t> &&cells);
 
@@ -48,7 +51,7 @@ namespace limber
     bool
     has_entered_shared() const;
 
-    /** Owned cells that may hold points, here or on other ranks. */
+    /** Owned cells that may hold points of this rank or of others. */
     const std::vector<std::uint32_t> &
     owned_occupied_cells() const
     {
@@ -143,7 +146,7 @@ namespace limber
     void
     activate_masters();
     void
-    activate_received();
+    activate_agreed();
 
     bool
     is_at_border(std::uint32_t cell) const;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -269,6 +270,29 @@ namespace limber
                       linear(places.at(hanging.node)),
                       1e-14);
         }
+    }
+
+
+
+    /** Or a rank would send what a cell held before its points left. */
+    TEST(NodalFields, CellsAgreedOnStayOccupiedWhenPointsLeave)
+    {
+      BackgroundGrid<2>          grid(unit_box<2>(), MPI_COMM_WORLD);
+      NodalFields<2>             nodes(grid);
+      std::vector<std::uint32_t> cells(grid.n_cells());
+      for (std::uint32_t c = 0; c < cells.size(); ++c)
+        cells[c] = c;
+      nodes.set_occupied(std::move(cells));
+      nodes.agree_on_sums();
+      nodes.set_occupied({});
+
+      auto kept = nodes.owned_occupied_cells();
+      kept.insert(kept.end(),
+                  nodes.ghost_occupied_cells().begin(),
+                  nodes.ghost_occupied_cells().end());
+      for (const auto &neighbour : nodes.cell_plan().neighbours)
+        for (const std::uint32_t cell : neighbour.send)
+          EXPECT_EQ(std::count(kept.begin(), kept.end(), cell), 1);
     }
 
 
