@@ -80,7 +80,8 @@ namespace limber
 
   template <int dim>
   void
-  NodalFields<dim>::set_occupied(std::vector<std::uint32_t> &&cells)
+  NodalFields<dim>::set_occupied(std::vector<std::uint32_t> &&cells,
+                                 const bool                   agree)
   {
     // Nodes that are given up keep zero records: whoever looks at a node
     // without mass finds nothing there.
@@ -101,10 +102,11 @@ namespace limber
 
     with_own_points = std::move(cells);
     for (const std::uint32_t cell : with_own_points)
-      {
-        has_own_points[cell] = 1;
-        activate(cell);
-      }
+      has_own_points[cell] = 1;
+    if (agree)
+      plan_sums();
+    for (const std::uint32_t cell : with_own_points)
+      activate(cell);
     activate_agreed();
   }
 
@@ -154,6 +156,16 @@ namespace limber
   void
   NodalFields<dim>::agree_on_sums()
   {
+    plan_sums();
+    activate_agreed();
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::plan_sums()
+  {
     if (grid.shared_nodes.neighbours.empty())
       return;
 
@@ -185,7 +197,6 @@ namespace limber
       [&](const auto node) {
         return (roles[node] & (may_be_added_to | is_corner_of_owned_cell)) != 0;
       });
-    activate_agreed();
   }
 
 

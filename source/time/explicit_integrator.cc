@@ -648,9 +648,7 @@ namespace limber
       }
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    nodes.set_occupied(std::move(cells));
-    if (agree)
-      nodes.agree_on_sums();
+    nodes.set_occupied(std::move(cells), agree);
     excess_batches = 0;
   }
 

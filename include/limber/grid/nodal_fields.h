@@ -30,10 +30,11 @@ namespace limber
 
     /**
      * Make these cells the occupied ones (local numbers, sorted), and those
-     * that ranks have agreed on, whether they still hold points or not.
+     * that ranks have agreed on, whether they still hold points or not. With
+     * @p agree, collective, they agree first.
      */
     void
-    set_occupied(std::vector<std::uint32_t> &&cells);
+    set_occupied(std::vector<std::uint32_t> &&cells, bool agree = false);
 
     /** Let cells that points have entered since take part. */
     void
@@ -150,6 +151,8 @@ namespace limber
 
     bool
     is_at_border(std::uint32_t cell) const;
+    void
+    plan_sums();
     void
     find_roles();
 

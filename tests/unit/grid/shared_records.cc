@@ -207,8 +207,7 @@ namespace limber
       std::vector<std::uint32_t> cells(grid.n_owned_cells());
       for (std::uint32_t c = 0; c < cells.size(); ++c)
         cells[c] = c;
-      nodes.set_occupied(std::vector<std::uint32_t>(cells));
-      nodes.agree_on_sums();
+      nodes.set_occupied(std::vector<std::uint32_t>(cells), /*agree=*/true);
 
       // mass and first moment of mass, of the points and of the nodes
       std::array<double, 1 + dim> given{}, found{};
@@ -282,8 +281,7 @@ namespace limber
       std::vector<std::uint32_t> cells(grid.n_cells());
       for (std::uint32_t c = 0; c < cells.size(); ++c)
         cells[c] = c;
-      nodes.set_occupied(std::move(cells));
-      nodes.agree_on_sums();
+      nodes.set_occupied(std::move(cells), /*agree=*/true);
       nodes.set_occupied({});
 
       auto kept = nodes.owned_occupied_cells();
