@@ -1,54 +1,62 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/partitioner.h>
+
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_dgq.h>
+#include <deal.II/fe/fe_q.h>
 
 #include <deal.II/grid/grid_generator.h>
 
-#include <limber/grid/background_grid.h>
+#include <deal.II/lac/affine_constraints.h>
 
-#include <malloc.h>
+#include <limber/base/lazy_array.h>
+#include <limber/grid/background_grid.h>
 
 #include <algorithm>
 #include <cmath>
 
 namespace limber
 {
-  namespace
+  /** deal.II's numbers of nodes and cells, from which the tables are made. */
+  template <int dim>
+  struct BackgroundGrid<dim>::Numbering
   {
     using Partitioner = dealii::Utilities::MPI::Partitioner;
 
-    /** The same owners and ghosts, with @p stride numbers in place of one. */
-    std::shared_ptr<const Partitioner>
-    scale(const Partitioner &one, const unsigned int stride)
+    explicit Numbering(const BackgroundGrid<dim> &grid)
+      : nodes(grid.triangulation)
+      , cells(grid.triangulation)
     {
-      const auto widen = [stride](const dealii::IndexSet &set) {
-        dealii::IndexSet wide(set.size() * stride);
-        for (auto range = set.begin_intervals(); range != set.end_intervals();
-             ++range)
-          wide.add_range(*range->begin() * stride,
-                         (range->last() + 1) * stride);
-        wide.compress();
-        return wide;
-      };
-      return std::make_shared<Partitioner>(widen(one.locally_owned_range()),
-                                           widen(one.ghost_indices()),
-                                           one.get_mpi_communicator());
+      nodes.distribute_dofs(node_element);
+      cells.distribute_dofs(cell_element);
+
+      dealii::IndexSet relevant_nodes, relevant_cells;
+      dealii::DoFTools::extract_locally_relevant_dofs(nodes, relevant_nodes);
+      dealii::DoFTools::extract_locally_relevant_dofs(cells, relevant_cells);
+      constraints.reinit(relevant_nodes);
+      dealii::DoFTools::make_hanging_node_constraints(nodes, constraints);
+      constraints.close();
+      // Masters of relevant nodes may lie beyond the ghost layer.
+      for (const auto &line : constraints.get_lines())
+        for (const auto &[master, weight] : line.entries)
+          relevant_nodes.add_index(master);
+
+      node_records.reinit(nodes.locally_owned_dofs(),
+                          relevant_nodes,
+                          grid.communicator);
+      cell_records.reinit(cells.locally_owned_dofs(),
+                          relevant_cells,
+                          grid.communicator);
     }
 
-
-
-    /** Local numbers of what is owned here and held elsewhere, ascending. */
-    std::vector<std::uint32_t>
-    exported(const Partitioner &partitioner)
-    {
-      std::vector<std::uint32_t> result;
-      for (const auto &[begin, end] : partitioner.import_indices())
-        for (unsigned int i = begin; i < end; ++i)
-          result.push_back(i);
-      std::sort(result.begin(), result.end());
-      result.erase(std::unique(result.begin(), result.end()), result.end());
-      return result;
-    }
-  } // namespace
+    const dealii::FE_Q<dim>           node_element{1};
+    const dealii::FE_DGQ<dim>         cell_element{0};
+    dealii::DoFHandler<dim>           nodes, cells;
+    dealii::AffineConstraints<double> constraints;
+    Partitioner                       node_records, cell_records;
+  };
 
 
 
@@ -60,8 +68,6 @@ namespace limber
     , triangulation(
         communicator,
         dealii::Triangulation<dim>::limit_level_difference_at_vertices)
-    , node_handler(triangulation)
-    , cell_handler(triangulation)
   {
     std::vector<unsigned int> coarse(description.cells.begin(),
                                      description.cells.end());
@@ -80,8 +86,6 @@ namespace limber
                                                       description.upper,
                                                       /*colorize=*/true);
     triangulation.refine_global(refinements);
-    // Refinement needs for a while twice what the mesh keeps; points come next.
-    malloc_trim(0);
     rebuild();
   }
 
@@ -91,59 +95,43 @@ namespace limber
   void
   BackgroundGrid<dim>::rebuild()
   {
-    node_handler.distribute_dofs(node_element);
-    cell_handler.distribute_dofs(cell_element);
-
-    dealii::IndexSet relevant_nodes, relevant_cells;
-    dealii::DoFTools::extract_locally_relevant_dofs(node_handler,
-                                                    relevant_nodes);
-    dealii::DoFTools::extract_locally_relevant_dofs(cell_handler,
-                                                    relevant_cells);
-    constraints.clear();
-    constraints.reinit(relevant_nodes);
-    dealii::DoFTools::make_hanging_node_constraints(node_handler, constraints);
-    constraints.close();
-    // Masters of relevant nodes may lie beyond the ghost layer.
-    for (const auto &line : constraints.get_lines())
-      for (const auto &[master, weight] : line.entries)
-        relevant_nodes.add_index(master);
-
-    node_partitioner =
-      std::make_shared<Partitioner>(node_handler.locally_owned_dofs(),
-                                    relevant_nodes,
-                                    communicator);
-    cell_partitioner =
-      std::make_shared<Partitioner>(cell_handler.locally_owned_dofs(),
-                                    relevant_cells,
-                                    communicator);
-
-    build_cells();
-    build_ghost_cells(*cell_partitioner);
+    {
+      const Numbering numbering(*this);
+      nodes_owned  = numbering.node_records.locally_owned_size();
+      cells_owned  = numbering.cell_records.locally_owned_size();
+      shared_nodes = SharedRecords(numbering.node_records);
+      shared_cells = SharedRecords(numbering.cell_records);
+      build_cells(numbering);
+      build_ghost_cells(numbering);
+      build_hanging_nodes(numbering);
+    }
     build_bins();
-    build_hanging_nodes();
+    complete_boundary();
   }
 
 
 
   template <int dim>
   void
-  BackgroundGrid<dim>::build_cells()
+  BackgroundGrid<dim>::build_cells(const Numbering &numbering)
   {
-    geometry.assign(n_cells(), {});
+    const auto &cells = numbering.cell_records;
+    const auto &nodes = numbering.node_records;
+    geometry.assign(cells.locally_owned_size() + cells.n_ghost_indices(), {});
     boundary_places.clear();
-    sides_of_node.assign(n_nodes(), 0);
+    sides_of_node.assign(nodes.locally_owned_size() + nodes.n_ghost_indices(),
+                         0);
     cell_numbers.assign(triangulation.n_active_cells(), invalid_cell);
 
     double                                       smallest = 1e300;
-    std::vector<dealii::types::global_dof_index> nodes(1 << dim), self(1);
-    for (const auto &cell : node_handler.active_cell_iterators())
+    std::vector<dealii::types::global_dof_index> corners(1 << dim), self(1);
+    for (const auto &cell : numbering.nodes.active_cell_iterators())
       if (!cell->is_artificial())
         {
           typename dealii::DoFHandler<dim>::active_cell_iterator own(
-            &triangulation, cell->level(), cell->index(), &cell_handler);
+            &triangulation, cell->level(), cell->index(), &numbering.cells);
           own->get_dof_indices(self);
-          const std::uint32_t number =
-            cell_partitioner->global_to_local(self[0]);
+          const std::uint32_t number = cells.global_to_local(self[0]);
           cell_numbers[cell->active_cell_index()] = number;
 
           CellGeometry<dim> &entry = geometry[number];
@@ -155,13 +143,13 @@ namespace limber
               entry.inverse_edge[d] = 1 / edge[d];
               smallest              = std::min(smallest, edge[d]);
             }
-          cell->get_dof_indices(nodes);
-          for (unsigned int i = 0; i < nodes.size(); ++i)
-            entry.node[i] = node_partitioner->global_to_local(nodes[i]) *
-                            NodeLayout<dim>::stride;
+          cell->get_dof_indices(corners);
+          for (unsigned int i = 0; i < corners.size(); ++i)
+            entry.node[i] =
+              nodes.global_to_local(corners[i]) * NodeLayout<dim>::stride;
           for (const unsigned int f : cell->face_indices())
             if (cell->at_boundary(f))
-              for (unsigned int i = 0; i < nodes.size(); ++i)
+              for (unsigned int i = 0; i < corners.size(); ++i)
                 if ((i >> f / 2 & 1) == f % 2)
                   {
                     const std::uint32_t node =
@@ -234,16 +222,16 @@ namespace limber
 
   template <int dim>
   void
-  BackgroundGrid<dim>::build_hanging_nodes()
+  BackgroundGrid<dim>::build_hanging_nodes(const Numbering &numbering)
   {
+    const auto &nodes = numbering.node_records;
     hanging_nodes.clear();
-    for (const auto &line : constraints.get_lines())
+    for (const auto &line : numbering.constraints.get_lines())
       {
         HangingNode node;
-        node.node = node_partitioner->global_to_local(line.index);
+        node.node = nodes.global_to_local(line.index);
         for (const auto &[master, weight] : line.entries)
-          node.masters.emplace_back(node_partitioner->global_to_local(master),
-                                    weight);
+          node.masters.emplace_back(nodes.global_to_local(master), weight);
         hanging_nodes.push_back(node);
       }
   }
@@ -252,10 +240,11 @@ namespace limber
 
   template <int dim>
   void
-  BackgroundGrid<dim>::build_ghost_cells(const Partitioner &cells)
+  BackgroundGrid<dim>::build_ghost_cells(const Numbering &numbering)
   {
     // A rank's cells are numbered consecutively over all ranks.
-    const auto first =
+    const auto &cells = numbering.cell_records;
+    const auto  first =
       dealii::Utilities::MPI::all_gather(communicator,
                                          cells.local_range().first);
     ghost_cells.clear();
@@ -267,38 +256,34 @@ namespace limber
 
 
 
+  // No cell around a master beyond the ghost layer is known here; its owner
+  // tells on which sides it lies, and where.
   template <int dim>
-  std::shared_ptr<const Partitioner>
-  BackgroundGrid<dim>::node_records(const unsigned int stride) const
+  void
+  BackgroundGrid<dim>::complete_boundary()
   {
-    return scale(*node_partitioner, stride);
-  }
-
-
-
-  template <int dim>
-  std::shared_ptr<const Partitioner>
-  BackgroundGrid<dim>::cell_records(const unsigned int stride) const
-  {
-    return scale(*cell_partitioner, stride);
-  }
-
-
-
-  template <int dim>
-  std::vector<std::uint32_t>
-  BackgroundGrid<dim>::shared_nodes() const
-  {
-    return exported(*node_partitioner);
-  }
-
-
-
-  template <int dim>
-  std::vector<std::uint32_t>
-  BackgroundGrid<dim>::shared_cells() const
-  {
-    return exported(*cell_partitioner);
+    if (dealii::Utilities::MPI::max(hanging_nodes.size(), communicator) == 0)
+      return;
+    constexpr unsigned int stride = 1 + dim;
+    LazyArray<double>      values(n_nodes() * stride);
+    for (const auto &[node, place] : boundary_places)
+      if (node < n_owned_nodes())
+        {
+          values[node * stride] = sides_of_node[node];
+          for (int d = 0; d < dim; ++d)
+            values[node * stride + 1 + d] = place[d];
+        }
+    const ExchangePlan plan(shared_nodes);
+    RecordExchange     exchange(stride);
+    exchange.start(plan, values.data(), 0, stride);
+    exchange.finish(values.data());
+    for (std::uint32_t node = n_owned_nodes(); node < n_nodes(); ++node)
+      if (values[node * stride] != 0)
+        {
+          sides_of_node[node] = std::uint8_t(values[node * stride]);
+          for (int d = 0; d < dim; ++d)
+            boundary_places[node][d] = values[node * stride + 1 + d];
+        }
   }
 
 

@@ -111,7 +111,7 @@ namespace limber
         // bring to the node against the side is lost, as in an impact.
         const auto step_change = velocity - old_velocity;
         for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (change[side] != dealii::Tensor<1, dim>())
+          if (nodes.owns(node) && change[side] != dealii::Tensor<1, dim>())
             {
               double work = change[side] * velocity;
               for (int d = 0; d < dim; ++d)

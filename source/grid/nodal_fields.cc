@@ -8,6 +8,8 @@ namespace limber
   template <int dim>
   NodalFields<dim>::NodalFields(const BackgroundGrid<dim> &grid)
     : grid(grid)
+    , nodes_to_share(grid.shared_nodes)
+    , cells_to_share(grid.shared_cells)
   {
     reinit();
   }
@@ -18,16 +20,44 @@ namespace limber
   void
   NodalFields<dim>::reinit()
   {
-    values.reinit(grid.node_records(Layout::stride));
-    parallel = dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1;
-    is_occupied.assign(grid.n_cells(), 0);
-    is_active.assign(grid.n_nodes(), 0);
+    values.reinit(std::size_t(grid.n_nodes()) * Layout::stride);
+    has_own_points.reinit(grid.n_cells());
+    is_occupied.reinit(grid.n_cells());
+    is_active.reinit(grid.n_nodes());
+    nodes_to_share = ExchangePlan(grid.shared_nodes);
+    cells_to_share = ExchangePlan(grid.shared_cells);
+    find_roles();
     // What was active belongs to the numbers of the former mesh.
-    occupied.clear();
+    with_own_points.clear();
+    occupied_owned.clear();
+    occupied_ghost.clear();
     entered.clear();
-    active_owned.clear();
+    active.clear();
     active_boundary.clear();
     set_occupied({});
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::find_roles()
+  {
+    roles.reinit(grid.n_nodes());
+    if (grid.shared_nodes.neighbours.empty())
+      return;
+    for (const std::uint32_t node : nodes_to_share.received)
+      roles[node] = is_shared;
+    for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
+      for (const std::uint32_t offset : grid.geometry[cell].node)
+        roles[offset / Layout::stride] |= is_corner_of_owned_cell;
+    // What is done to a hanging node is done to its masters.
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      for (const auto &[master, weight] : hanging.masters)
+        {
+          roles[hanging.node] |= roles[master] & is_shared;
+          roles[master] |= roles[hanging.node] & is_corner_of_owned_cell;
+        }
   }
 
 
@@ -38,9 +68,9 @@ namespace limber
   {
     GridView<dim> result;
     result.cells    = grid.geometry.data();
-    result.nodes    = values.begin();
+    result.nodes    = values.data();
     result.bins     = grid.bins;
-    result.occupied = is_occupied.data();
+    result.occupied = has_own_points.data();
     result.entered  = &entered;
     result.left     = &left;
     return result;
@@ -50,39 +80,34 @@ namespace limber
 
   template <int dim>
   void
-  NodalFields<dim>::set_occupied(std::vector<std::uint32_t> &&cells)
+  NodalFields<dim>::set_occupied(std::vector<std::uint32_t> &&cells,
+                                 const bool                   agree)
   {
     // Nodes that are given up keep zero records: whoever looks at a node
     // without mass finds nothing there.
     clear();
-    for (const std::uint32_t cell : occupied)
-      is_occupied[cell] = 0;
-    for (const std::uint32_t cell : entered)
-      is_occupied[cell] = 0;
-    std::fill(is_active.begin(), is_active.end(), 0);
-    active_owned.clear();
-    active_boundary.clear();
-    entered.clear();
-
+    for (const auto *const former : {&with_own_points, &entered})
+      for (const std::uint32_t cell : *former)
+        has_own_points[cell] = 0;
+    for (const auto *const former : {&occupied_owned, &occupied_ghost})
+      for (const std::uint32_t cell : *former)
+        is_occupied[cell] = 0;
+    for (const std::uint32_t node : active)
+      is_active[node] = 0;
     occupied_owned.clear();
-    occupied = std::move(cells);
-    for (const std::uint32_t cell : occupied)
+    occupied_ghost.clear();
+    entered.clear();
+    active.clear();
+    active_boundary.clear();
+
+    with_own_points = std::move(cells);
+    for (const std::uint32_t cell : with_own_points)
+      has_own_points[cell] = 1;
+    if (agree)
+      plan_sums();
+    for (const std::uint32_t cell : with_own_points)
       activate(cell);
-    // Other ranks may give to these without this one knowing.
-    for (const std::uint32_t cell : grid.shared_cells())
-      if (!is_occupied[cell])
-        {
-          occupied.push_back(cell);
-          activate(cell);
-        }
-    for (const std::uint32_t node : grid.shared_nodes())
-      if (!is_active[node])
-        {
-          is_active[node] = 1;
-          active_owned.push_back(node);
-          if (grid.sides_of_node[node])
-            active_boundary.push_back(node);
-        }
+    activate_agreed();
   }
 
 
@@ -91,12 +116,106 @@ namespace limber
   void
   NodalFields<dim>::add_entered()
   {
+    if (entered.empty())
+      return;
     for (const std::uint32_t cell : entered)
       {
-        occupied.push_back(cell);
+        with_own_points.push_back(cell);
         activate(cell);
       }
     entered.clear();
+    activate_masters();
+  }
+
+
+
+  template <int dim>
+  bool
+  NodalFields<dim>::is_at_border(const std::uint32_t cell) const
+  {
+    for (const std::uint32_t offset : grid.geometry[cell].node)
+      if (roles[offset / Layout::stride] & is_shared)
+        return true;
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  NodalFields<dim>::has_entered_shared() const
+  {
+    return std::any_of(entered.begin(), entered.end(), [&](const auto cell) {
+      return is_at_border(cell);
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::agree_on_sums()
+  {
+    plan_sums();
+    activate_agreed();
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::plan_sums()
+  {
+    if (grid.shared_nodes.neighbours.empty())
+      return;
+
+    // The owner adds the mean pressure of a cell, whoever holds its points.
+    cells_to_share = ExchangePlan(
+      grid.shared_cells,
+      [&](const auto cell) { return has_own_points[cell] != 0; },
+      [&](const auto cell) {
+        return has_own_points[cell] || cell < grid.n_owned_cells();
+      });
+
+    for (const auto &neighbour : grid.shared_nodes.neighbours)
+      for (const std::uint32_t node : neighbour.records)
+        roles[node] &= ~may_be_added_to;
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      roles[hanging.node] &= ~may_be_added_to;
+    for (const auto *const cells : {&with_own_points, &cells_to_share.received})
+      for (const std::uint32_t cell : *cells)
+        if (is_at_border(cell))
+          for (const std::uint32_t offset : grid.geometry[cell].node)
+            roles[offset / Layout::stride] |= may_be_added_to;
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      for (const auto &[master, weight] : hanging.masters)
+        roles[master] |= roles[hanging.node] & may_be_added_to;
+
+    nodes_to_share = ExchangePlan(
+      grid.shared_nodes,
+      [&](const auto node) { return (roles[node] & may_be_added_to) != 0; },
+      [&](const auto node) {
+        return (roles[node] & (may_be_added_to | is_corner_of_owned_cell)) != 0;
+      });
+  }
+
+
+
+  // Others may add to these without this rank knowing, or expect its share,
+  // which then has to be zero if no point is there any more.
+  template <int dim>
+  void
+  NodalFields<dim>::activate_agreed()
+  {
+    for (const auto &neighbour : cells_to_share.neighbours)
+      for (const auto *const cells : {&neighbour.send, &neighbour.receive})
+        for (const std::uint32_t cell : *cells)
+          activate(cell);
+    for (const auto &neighbour : nodes_to_share.neighbours)
+      for (const auto *const records : {&neighbour.send, &neighbour.receive})
+        for (const std::uint32_t node : *records)
+          activate_node(node);
+    activate_masters();
   }
 
 
@@ -105,21 +224,40 @@ namespace limber
   void
   NodalFields<dim>::activate(const std::uint32_t cell)
   {
+    if (is_occupied[cell])
+      return;
     is_occupied[cell] = 1;
-    if (cell < grid.n_owned_cells())
-      occupied_owned.push_back(cell);
+    (cell < grid.n_owned_cells() ? occupied_owned : occupied_ghost)
+      .push_back(cell);
     for (const std::uint32_t offset : grid.geometry[cell].node)
-      {
-        const std::uint32_t node = offset / Layout::stride;
-        if (is_active[node])
-          continue;
-        is_active[node] = 1;
-        if (node >= grid.n_owned_nodes())
-          continue;
-        active_owned.push_back(node);
-        if (grid.sides_of_node[node])
-          active_boundary.push_back(node);
-      }
+      activate_node(offset / Layout::stride);
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::activate_node(const std::uint32_t node)
+  {
+    if (is_active[node])
+      return;
+    is_active[node] = 1;
+    active.push_back(node);
+    if (grid.sides_of_node[node])
+      active_boundary.push_back(node);
+  }
+
+
+
+  // Masters of hanging nodes may belong to no occupied cell.
+  template <int dim>
+  void
+  NodalFields<dim>::activate_masters()
+  {
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      if (is_active[hanging.node])
+        for (const auto &[master, weight] : hanging.masters)
+          activate_node(master);
   }
 
 
@@ -129,22 +267,15 @@ namespace limber
   NodalFields<dim>::clear()
   {
     left = false;
-    for (const std::uint32_t node : active_owned)
+    for (const std::uint32_t node : active)
       std::fill_n(record(node), Layout::stride, 0.);
-    // Masters of hanging nodes get their share whether active or not.
-    for (const HangingNode &hanging : grid.hanging_nodes)
-      for (const auto &[master, weight] : hanging.masters)
-        std::fill_n(record(master), Layout::stride, 0.);
-    if (parallel)
-      values.zero_out_ghost_values();
   }
 
 
 
   template <int dim>
   void
-  NodalFields<dim>::sum_shared(const unsigned int first,
-                               const unsigned int last)
+  NodalFields<dim>::start_sum(const unsigned int first, const unsigned int last)
   {
     // Linear, so every rank condenses its own contributions.
     for (const HangingNode &hanging : grid.hanging_nodes)
@@ -155,38 +286,24 @@ namespace limber
             record(master)[k] += weight * from[k];
         std::fill(from + first, from + last, 0.);
       }
-
-    if (!parallel)
-      return;
-    // Ghosts may hold copies in other slots, which must not be added again.
-    for (std::uint32_t node = grid.n_owned_nodes(); node < grid.n_nodes();
-         ++node)
-      {
-        std::fill(record(node), record(node) + first, 0.);
-        std::fill(record(node) + last, record(node) + Layout::stride, 0.);
-      }
-    values.set_ghost_state(false);
-    values.compress(dealii::VectorOperation::add);
+    exchange.start(nodes_to_share, values.data(), first, last);
   }
 
 
 
   template <int dim>
   void
-  NodalFields<dim>::start_share()
+  NodalFields<dim>::finish_sum()
   {
-    if (parallel)
-      values.update_ghost_values_start();
+    exchange.finish(values.data());
   }
 
 
 
   template <int dim>
   void
-  NodalFields<dim>::end_share()
+  NodalFields<dim>::interpolate_hanging()
   {
-    if (parallel)
-      values.update_ghost_values_finish();
     for (const HangingNode &hanging : grid.hanging_nodes)
       {
         double *const to = record(hanging.node);
@@ -212,9 +329,9 @@ namespace limber
   void
   CellFields<dim>::reinit()
   {
-    now.reinit(grid.cell_records(CellSums<dim>::stride));
-    next.reinit(now);
-    parallel = dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1;
+    const std::size_t size = std::size_t(grid.n_cells()) * CellSums<dim>::stride;
+    now.reinit(size);
+    next.reinit(size);
   }
 
 
@@ -223,28 +340,50 @@ namespace limber
   CellSums<dim>
   CellFields<dim>::view()
   {
-    return {now.begin(), next.begin()};
+    return {now.data(), next.data()};
   }
 
 
 
   template <int dim>
   void
-  CellFields<dim>::complete(const std::vector<std::uint32_t> &cells)
+  CellFields<dim>::clear(const std::vector<std::uint32_t> &cells)
   {
-    if (parallel)
-      {
-        next.set_ghost_state(false);
-        next.compress(dealii::VectorOperation::add);
-        next.update_ghost_values();
-      }
-    now.swap(next);
+    std::swap(now, next);
+    clear_next(cells);
+    std::swap(now, next);
+    clear_next(cells);
+  }
+
+
+
+  template <int dim>
+  void
+  CellFields<dim>::start_completion(const ExchangePlan &plan)
+  {
+    exchange.start(plan, next.data(), 0, CellSums<dim>::stride);
+  }
+
+
+
+  template <int dim>
+  void
+  CellFields<dim>::finish_completion()
+  {
+    exchange.finish(next.data());
+    std::swap(now, next);
+  }
+
+
+
+  template <int dim>
+  void
+  CellFields<dim>::clear_next(const std::vector<std::uint32_t> &cells)
+  {
     for (const std::uint32_t cell : cells)
-      std::fill_n(next.begin() + std::size_t(cell) * CellSums<dim>::stride,
+      std::fill_n(next.data() + std::size_t(cell) * CellSums<dim>::stride,
                   CellSums<dim>::stride,
                   0.);
-    if (parallel)
-      next.zero_out_ghost_values();
   }
 
 

@@ -58,7 +58,7 @@ namespace limber
 
   template <int dim>
   PointPressure<dim>::PointPressure(const BackgroundGrid<dim> &grid)
-    : grid(grid)
+    : plan(grid.shared_cells)
     , sums(grid)
   {}
 
@@ -83,9 +83,8 @@ namespace limber
   PointPressure<dim>::sum_over_cells()
   {
     // Points may sit in ghost cells, and those of other ranks in cells here.
-    auto cells = grid.shared_cells();
-    cells.insert(cells.end(), touched.begin(), touched.end());
-    touched.clear();
+    sums.clear(touched);
+    touched            = plan.received;
     double *const data = sums.view().next;
     for (std::size_t p = 0; p < points.size; ++p)
       {
@@ -99,8 +98,8 @@ namespace limber
         record[1] += points.mass[p] * volume_ratios[p];
         record[2] += points.mass[p] * points.pressure[p];
       }
-    cells.insert(cells.end(), touched.begin(), touched.end());
-    sums.complete(cells);
+    sums.start_completion(plan);
+    sums.finish_completion();
   }
 
 

@@ -107,6 +107,7 @@ namespace limber
         }
       for (const std::uint32_t node : state.nodes.active_nodes())
         sums.active_nodes() +=
+          state.nodes.owns(node) &&
           state.nodes.record(node)[NodeLayout<dim>::mass] > 0;
       return sums;
     }

@@ -158,7 +158,7 @@ namespace limber
     for (auto &body : bodies)
       body->points.prepare_mesh_change();
 
-    // A cell without points costs next to nothing but still counts a little.
+    // A cell without points takes memory but no time.
     using Cell        = typename dealii::Triangulation<dim>::cell_iterator;
     using Status      = typename dealii::Triangulation<dim>::CellStatus;
     const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
@@ -166,7 +166,7 @@ namespace limber
       if (cell->is_active() && cell->is_locally_owned())
         for (const auto &body : bodies)
           n += body->points.n_in_cell(cell);
-      return 1 + 20 * n;
+      return 1 + 100 * n;
     };
     const auto connection = grid.triangulation.signals.weight.connect(weight);
     grid.triangulation.repartition();

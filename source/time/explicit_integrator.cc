@@ -40,7 +40,7 @@ namespace limber
                                             "sum shared nodes",
                                             "advance nodes",
                                             "apply boundaries",
-                                            "share nodes",
+                                            "check nodes",
                                             "grid to points",
                                             "update stress",
                                             "relocate"};
@@ -82,7 +82,7 @@ namespace limber
           }
       }
     reduce_extremes();
-    sort_points();
+    sort_points(/*agree=*/true);
     gather_cells();
   }
 
@@ -98,7 +98,7 @@ namespace limber
         body->cell_sums->reinit();
     loads.reinit();
     travelled = 0;
-    sort_points();
+    sort_points(/*agree=*/true);
     gather_cells();
   }
 
@@ -133,7 +133,7 @@ namespace limber
     points_to_grid(/*momentum=*/true, /*force=*/false);
     sum_shared_nodes(0, Layout::stride);
     divide_remapped(Layout::momentum);
-    share_nodes();
+    interpolate_hanging();
     update_stress(/*remapped=*/true, /*move=*/false);
 
     points_to_grid(/*momentum=*/false, /*force=*/true);
@@ -141,7 +141,7 @@ namespace limber
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes();
+    interpolate_hanging();
     check_nodes();
     grid_to_points(/*remap=*/false, /*move=*/true);
   }
@@ -162,14 +162,14 @@ namespace limber
     add_loads();
     advance_nodes();
     apply_boundaries();
-    share_nodes();
+    interpolate_hanging();
     check_nodes();
     grid_to_points(remap, /*move=*/false);
     if (remap)
       {
         sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
         divide_remapped(Layout::remapped);
-        share_nodes();
+        interpolate_hanging();
       }
     update_stress(remap, /*move=*/true);
   }
@@ -229,7 +229,8 @@ namespace limber
   ExplicitIntegrator<dim>::sum_shared_nodes(const unsigned int first,
                                             const unsigned int last)
   {
-    nodes.sum_shared(first, last);
+    nodes.start_sum(first, last);
+    nodes.finish_sum();
     lap(Verb::sum_shared_nodes);
   }
 
@@ -268,7 +269,8 @@ namespace limber
             record[Layout::velocity + d]  = after;
             squared += after * after;
           }
-        total_mass += mass;
+        if (nodes.owns(node))
+          total_mass += mass;
         largest_mass = std::max(largest_mass, mass);
         all += squared;
         if (mass > checked_mass)
@@ -300,6 +302,7 @@ namespace limber
   {
     if (parallel)
       MPI_Wait(&check_request, MPI_STATUS_IGNORE);
+    lap(Verb::check_nodes);
     const double cells = fastest_node;
     if (cells <= 1)
       return;
@@ -329,7 +332,7 @@ namespace limber
     for (const std::uint32_t node : nodes.active_nodes())
       {
         const double *const record = nodes.record(node);
-        if (!(record[Layout::mass] > 0))
+        if (!nodes.owns(node) || !(record[Layout::mass] > 0))
           continue;
         const auto force = loads.on_node(node);
         ledger.load_impulse += step * force;
@@ -386,11 +389,10 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::share_nodes()
+  ExplicitIntegrator<dim>::interpolate_hanging()
   {
-    nodes.start_share();
-    nodes.end_share();
-    lap(Verb::share_nodes);
+    nodes.interpolate_hanging();
+    lap(Verb::apply_boundaries);
   }
 
 
@@ -460,18 +462,24 @@ namespace limber
   void
   ExplicitIntegrator<dim>::reduce_extremes()
   {
-    any_lost = nodes.points_have_left() ? 1 : 0;
+    any_lost           = nodes.points_have_left() ? 1 : 0;
+    any_entered_shared = nodes.has_entered_shared() ? 1 : 0;
     if (parallel)
       {
-        double extremes[] = {
-          speed_squared, wave_squared, displacement, largest_mass, any_lost};
+        double extremes[] = {speed_squared,
+                             wave_squared,
+                             displacement,
+                             largest_mass,
+                             any_lost,
+                             any_entered_shared};
         MPI_Allreduce(
-          MPI_IN_PLACE, extremes, 5, MPI_DOUBLE, MPI_MAX, grid.communicator);
-        speed_squared = extremes[0];
-        wave_squared  = extremes[1];
-        displacement  = extremes[2];
-        largest_mass  = extremes[3];
-        any_lost      = extremes[4];
+          MPI_IN_PLACE, extremes, 6, MPI_DOUBLE, MPI_MAX, grid.communicator);
+        speed_squared      = extremes[0];
+        wave_squared       = extremes[1];
+        displacement       = extremes[2];
+        largest_mass       = extremes[3];
+        any_lost           = extremes[4];
+        any_entered_shared = extremes[5];
       }
     wave_speed  = std::sqrt(wave_squared);
     point_speed = std::sqrt(speed_squared);
@@ -487,6 +495,8 @@ namespace limber
     if (any_lost > 0)
       remove_lost_points();
     nodes.add_entered();
+    if (any_entered_shared > 0)
+      nodes.agree_on_sums();
     complete_cells();
 
     travelled += displacement;
@@ -504,12 +514,19 @@ namespace limber
   {
     for (auto &body : bodies)
       if (body->cell_sums)
-        body->cell_sums->complete(nodes.occupied_cells());
+        body->cell_sums->start_completion(nodes.cell_plan());
+    for (auto &body : bodies)
+      if (body->cell_sums)
+        {
+          body->cell_sums->finish_completion();
+          body->cell_sums->clear_next(nodes.owned_occupied_cells());
+          body->cell_sums->clear_next(nodes.ghost_occupied_cells());
+        }
   }
 
 
 
-  // For points that have come to this rank by other ways.
+  // For points that have come to their cells other than by moving.
   template <int dim>
   void
   ExplicitIntegrator<dim>::gather_cells()
@@ -539,7 +556,7 @@ namespace limber
     if (exchange)
       exchange_points();
     else if (excess_batches > n_points / 4)
-      sort_points();
+      sort_points(/*agree=*/false);
     lap(Verb::relocate);
     return exchange;
   }
@@ -580,9 +597,16 @@ namespace limber
   ExplicitIntegrator<dim>::exchange_points()
   {
     for (auto &body : bodies)
-      body->points.synchronise();
+      {
+        if (body->cell_sums)
+          {
+            body->cell_sums->clear(nodes.owned_occupied_cells());
+            body->cell_sums->clear(nodes.ghost_occupied_cells());
+          }
+        body->points.synchronise();
+      }
     travelled = 0;
-    sort_points();
+    sort_points(/*agree=*/true);
     gather_cells();
   }
 
@@ -590,7 +614,7 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::sort_points()
+  ExplicitIntegrator<dim>::sort_points(const bool agree)
   {
     std::vector<std::uint32_t> cells;
     n_batches_sorted = 0;
@@ -603,7 +627,7 @@ namespace limber
       }
     std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    nodes.set_occupied(std::move(cells));
+    nodes.set_occupied(std::move(cells), agree);
     excess_batches = 0;
   }
 

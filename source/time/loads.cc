@@ -37,7 +37,7 @@ namespace limber
   ExternalLoads<dim>::reinit()
   {
     if (any())
-      forces.reinit(grid.node_records(dim));
+      forces.reinit(grid.n_nodes() * dim);
   }
 
 
@@ -142,8 +142,8 @@ namespace limber
                                    cell.inverse_edge[d]);
     for (int i = 0; i < Kernel::n_nodes; ++i)
       for (int d = 0; d < dim; ++d)
-        forces.local_element(cell.node[i] / NodeLayout<dim>::stride * dim +
-                             d) += weights[i] * force[d];
+        forces[cell.node[i] / NodeLayout<dim>::stride * dim + d] +=
+          weights[i] * force[d];
   }
 
 
@@ -207,7 +207,9 @@ namespace limber
   void
   ExternalLoads<dim>::add(NodalFields<dim> &nodes, const double time)
   {
-    forces = 0.;
+    for (const std::uint32_t node : nodes.active_nodes())
+      for (int d = 0; d < dim; ++d)
+        forces[node * dim + d] = 0;
     if (problem.loads.body_force)
       for (const auto &body : bodies)
         add_body_force(*body, time);
@@ -218,17 +220,18 @@ namespace limber
     for (const HangingNode &hanging : grid.hanging_nodes)
       for (int d = 0; d < dim; ++d)
         {
-          double &from = forces.local_element(hanging.node * dim + d);
+          double &from = forces[hanging.node * dim + d];
           for (const auto &[master, weight] : hanging.masters)
-            forces.local_element(master * dim + d) += weight * from;
+            forces[master * dim + d] += weight * from;
           from = 0;
         }
-    forces.compress(dealii::VectorOperation::add);
+    exchange.start(nodes.node_plan(), forces.data(), 0, dim);
+    exchange.finish(forces.data());
 
     for (const std::uint32_t node : nodes.active_nodes())
       for (int d = 0; d < dim; ++d)
         nodes.record(node)[NodeLayout<dim>::force + d] +=
-          forces.local_element(node * dim + d);
+          forces[node * dim + d];
   }
 
 
@@ -239,7 +242,7 @@ namespace limber
   {
     dealii::Tensor<1, dim> result;
     for (int d = 0; d < dim; ++d)
-      result[d] = forces.local_element(node * dim + d);
+      result[d] = forces[node * dim + d];
     return result;
   }
 

@@ -2,6 +2,10 @@
 #ifndef limber_tests_support_plain_dealii_h
 #define limber_tests_support_plain_dealii_h
 
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/fe_q.h>
+
 #include <deal.II/lac/vector.h>
 
 #include <deal.II/particles/particle_handler.h>
@@ -103,10 +107,13 @@ namespace limber
         , shear(body.description.material[1] / 2 /
                 (1 + body.description.material[2]))
         , handler(grid.triangulation, grid.mapping, n_properties)
-        , mass(grid.node_handler.n_dofs())
-        , momentum(dim, mass)
-        , force(dim, mass)
+        , node_handler(grid.triangulation)
       {
+        node_handler.distribute_dofs(fe);
+        mass.reinit(node_handler.n_dofs());
+        momentum.assign(dim, mass);
+        force.assign(dim, mass);
+
         using Cell = typename dealii::Triangulation<dim>::active_cell_iterator;
         std::vector<Cell> cells(grid.n_cells());
         for (const auto &cell : grid.triangulation.active_cell_iterators())
@@ -205,9 +212,8 @@ namespace limber
       void
       points_to_grid()
       {
-        const auto                                  &fe = grid.node_element;
         std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-        for (const auto &cell : grid.node_handler.active_cell_iterators())
+        for (const auto &cell : node_handler.active_cell_iterators())
           {
             cell->get_dof_indices(dofs);
             const auto extents = extents_of(cell);
@@ -239,9 +245,8 @@ namespace limber
       void
       grid_to_points(const double step)
       {
-        const auto                                  &fe = grid.node_element;
         std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-        for (const auto &cell : grid.node_handler.active_cell_iterators())
+        for (const auto &cell : node_handler.active_cell_iterators())
           {
             cell->get_dof_indices(dofs);
             const auto extents = extents_of(cell);
@@ -317,6 +322,8 @@ namespace limber
       const double                            density;
       const double                            bulk, shear; // K, G, Pa
       dealii::Particles::ParticleHandler<dim> handler;
+      const dealii::FE_Q<dim>                 fe{1};
+      dealii::DoFHandler<dim>                 node_handler;
       dealii::Vector<double>                  mass;
       std::vector<dealii::Vector<double>>     momentum, force;
     };

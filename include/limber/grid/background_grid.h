@@ -3,22 +3,15 @@
 #define limber_grid_background_grid_h
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/partitioner.h>
 
 #include <deal.II/distributed/tria.h>
 
-#include <deal.II/dofs/dof_handler.h>
-
-#include <deal.II/fe/fe_dgq.h>
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/mapping_cartesian.h>
 
-#include <deal.II/lac/affine_constraints.h>
-
 #include <limber/grid/grid_view.h>
+#include <limber/grid/shared_records.h>
 #include <limber/problem/problem.h>
 
-#include <memory>
 #include <unordered_map>
 #include <vector>
 
@@ -38,7 +31,8 @@ namespace limber
    * Q1 space for everything on nodes and one DGQ0 space for everything in
    * cells. A node's or a cell's local number is that of its degree of freedom
    * on this rank: owned ones first, then ghosts. From these the plain tables
-   * of the sweeps are built, anew after each change of the mesh.
+   * of the sweeps are built, anew after each change of the mesh; the degrees
+   * of freedom themselves are not kept.
    */
   template <int dim>
   class BackgroundGrid
@@ -67,26 +61,26 @@ namespace limber
     unsigned int
     n_owned_nodes() const
     {
-      return node_partitioner->locally_owned_size();
+      return nodes_owned;
     }
 
     /** Owned and ghost. */
     unsigned int
     n_nodes() const
     {
-      return n_owned_nodes() + node_partitioner->n_ghost_indices();
+      return sides_of_node.size();
     }
 
     unsigned int
     n_owned_cells() const
     {
-      return cell_partitioner->locally_owned_size();
+      return cells_owned;
     }
 
     unsigned int
     n_cells() const
     {
-      return n_owned_cells() + cell_partitioner->n_ghost_indices();
+      return geometry.size();
     }
 
     /** The rank that owns a ghost cell, and the cell's local number there. */
@@ -102,27 +96,10 @@ namespace limber
       return ghost_cells[cell - n_owned_cells()];
     }
 
-    /** A layout of @p stride consecutive numbers per node or per cell. */
-    std::shared_ptr<const dealii::Utilities::MPI::Partitioner>
-    node_records(const unsigned int stride) const;
-    std::shared_ptr<const dealii::Utilities::MPI::Partitioner>
-    cell_records(const unsigned int stride) const;
-
-    /** Owned nodes and cells that other ranks hold as ghosts. */
-    std::vector<std::uint32_t>
-    shared_nodes() const;
-    std::vector<std::uint32_t>
-    shared_cells() const;
-
     const GridDescription<dim>                        description;
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
     const dealii::MappingCartesian<dim>               mapping;
-    const dealii::FE_Q<dim>                           node_element{1};
-    const dealii::FE_DGQ<dim>                         cell_element{0};
-    dealii::DoFHandler<dim>                           node_handler;
-    dealii::DoFHandler<dim>                           cell_handler;
-    dealii::AffineConstraints<double>                 constraints;
 
     // Tables, by local number
     std::vector<CellGeometry<dim>> geometry;
@@ -134,19 +111,24 @@ namespace limber
     // Places of these nodes only
     std::unordered_map<std::uint32_t, dealii::Point<dim>> boundary_places;
     double smallest_edge = 0; // m, over all ranks
+    // Nodes and cells that other ranks hold as well
+    SharedRecords shared_nodes, shared_cells;
 
   private:
+    struct Numbering;
+
     void
-    build_cells();
+    build_cells(const Numbering &numbering);
     void
-    build_ghost_cells(const dealii::Utilities::MPI::Partitioner &cells);
+    build_ghost_cells(const Numbering &numbering);
     void
     build_bins();
     void
-    build_hanging_nodes();
+    build_hanging_nodes(const Numbering &numbering);
+    void
+    complete_boundary();
 
-    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> node_partitioner;
-    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> cell_partitioner;
+    unsigned int               nodes_owned = 0, cells_owned = 0;
     std::vector<std::uint32_t> cell_numbers; // by active cell index
     std::vector<CellElsewhere> ghost_cells;
   };

@@ -31,7 +31,8 @@ namespace limber
 
     /**
      * Change the new velocity of the nodes, and their increment with it, so
-     * that points near a side receive its impulse.
+     * that points near a side receive its impulse. Owned nodes are accounted
+     * for.
      */
     void
     apply(NodalFields<dim> &nodes, double time, const Account &account) const;

@@ -2,16 +2,16 @@
 #ifndef limber_grid_nodal_fields_h
 #define limber_grid_nodal_fields_h
 
-#include <deal.II/lac/la_parallel_vector.h>
-
+#include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
 
 namespace limber
 {
   /**
-   * The records of all nodes (NodeLayout) in one distributed vector, and the
-   * cells and nodes that take part in a step. Sweeps reach both through
-   * view(); communication and hanging nodes are dealt with here.
+   * The records of all nodes (NodeLayout), owned and ghost, and the cells and
+   * nodes that take part in a step. Sweeps reach both through view();
+   * communication and hanging nodes are dealt with here. What is done to an
+   * active node every rank that holds it does alike, from the same sums.
    */
   template <int dim>
   class NodalFields
@@ -28,29 +28,54 @@ namespace limber
     GridView<dim>
     view();
 
-    /** Make exactly these cells the occupied ones (local numbers, sorted). */
+    /**
+     * Make these cells the occupied ones (local numbers, sorted), and those
+     * that ranks have agreed on, whether they still hold points or not. With
+     * @p agree, collective, they agree first.
+     */
     void
-    set_occupied(std::vector<std::uint32_t> &&cells);
+    set_occupied(std::vector<std::uint32_t> &&cells, bool agree = false);
 
     /** Let cells that points have entered since take part. */
     void
     add_entered();
 
     /**
-     * Cells that may hold points, here or, for owned cells next to other
-     * ranks, there.
+     * Let ranks agree on the nodes and cells that they have to sum up for
+     * each other while their points are in the cells that are occupied now;
+     * collective. Without it they sum up all that they share.
      */
-    const std::vector<std::uint32_t> &
-    occupied_cells() const
-    {
-      return occupied;
-    }
+    void
+    agree_on_sums();
 
-    /** Those of them that this rank owns. */
+    /** Whether points have entered cells that such an agreement lacks. */
+    bool
+    has_entered_shared() const;
+
+    /** Owned cells that may hold points of this rank or of others. */
     const std::vector<std::uint32_t> &
     owned_occupied_cells() const
     {
       return occupied_owned;
+    }
+
+    /** Ghost cells that may. */
+    const std::vector<std::uint32_t> &
+    ghost_occupied_cells() const
+    {
+      return occupied_ghost;
+    }
+
+    /** What travels between ranks when nodes, or cells, are summed up. */
+    const ExchangePlan &
+    node_plan() const
+    {
+      return nodes_to_share;
+    }
+    const ExchangePlan &
+    cell_plan() const
+    {
+      return cells_to_share;
     }
 
     /** Whether points have left the cells of this rank since clear(). */
@@ -66,26 +91,24 @@ namespace limber
 
     /**
      * Complete the sums over points in slots [first, last) of the records:
-     * hand those of hanging nodes to their masters and add what other ranks
-     * have contributed. Other slots stay on the owners.
+     * hand those of hanging nodes to their masters, send to other ranks, and
+     * add what they send. Between start and finish these slots must not
+     * change.
      */
     void
-    sum_shared(unsigned int first = 0, unsigned int last = Layout::stride);
-
-    /**
-     * Give other ranks, and hanging nodes, the values of their nodes. Between
-     * start and end other messages may be under way.
-     */
+    start_sum(unsigned int first = 0, unsigned int last = Layout::stride);
     void
-    start_share();
-    void
-    end_share();
+    finish_sum();
 
-    /** Records of active nodes that this rank owns, by local number. */
+    /** Give hanging nodes the values that follow from their masters. */
+    void
+    interpolate_hanging();
+
+    /** Active nodes, owned and ghost, by local number. */
     const std::vector<std::uint32_t> &
     active_nodes() const
     {
-      return active_owned;
+      return active;
     }
 
     /** Those of them that lie on a side of the box. */
@@ -95,16 +118,23 @@ namespace limber
       return active_boundary;
     }
 
+    /** Sums over the nodes of all ranks meet each node once, where this is. */
+    bool
+    owns(const std::uint32_t node) const
+    {
+      return node < grid.n_owned_nodes();
+    }
+
     double *
     record(const std::uint32_t node)
     {
-      return values.begin() + std::size_t(node) * Layout::stride;
+      return values.data() + std::size_t(node) * Layout::stride;
     }
 
     const double *
     record(const std::uint32_t node) const
     {
-      return values.begin() + std::size_t(node) * Layout::stride;
+      return values.data() + std::size_t(node) * Layout::stride;
     }
 
     const BackgroundGrid<dim> &grid;
@@ -112,22 +142,41 @@ namespace limber
   private:
     void
     activate(std::uint32_t cell);
+    void
+    activate_node(std::uint32_t node);
+    void
+    activate_masters();
+    void
+    activate_agreed();
 
-    dealii::LinearAlgebra::distributed::Vector<double> values;
+    bool
+    is_at_border(std::uint32_t cell) const;
+    void
+    plan_sums();
+    void
+    find_roles();
 
-    std::vector<std::uint32_t> occupied, occupied_owned, entered;
-    std::vector<std::uint8_t>  is_occupied, is_active;
-    std::vector<std::uint32_t> active_owned, active_boundary;
-    bool                       parallel = false;
-    bool                       left     = false;
+    // What a node has to do with other ranks, directly or through masters
+    static constexpr std::uint8_t is_shared               = 1;
+    static constexpr std::uint8_t is_corner_of_owned_cell = 2;
+    static constexpr std::uint8_t may_be_added_to         = 4; // as agreed
+
+    LazyArray<double>          values;
+    LazyArray<std::uint8_t>    roles; // of nodes
+    RecordExchange             exchange{Layout::stride};
+    ExchangePlan               nodes_to_share, cells_to_share;
+    std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
+    std::vector<std::uint32_t> entered, active, active_boundary;
+    LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
+    bool                       left = false;
   };
 
 
 
   /**
-   * The sums of one body in each cell (CellSums), in distributed vectors over
-   * DGQ0: those of the present places of the points, complete on every rank
-   * that knows the cell, and those of the next places, which sweeps gather.
+   * The sums of one body in each cell (CellSums), owned or ghost: those of the
+   * present places of the points, complete where points of this rank are and
+   * on the owner, and those of the next places, which sweeps gather.
    */
   template <int dim>
   class CellFields
@@ -145,22 +194,34 @@ namespace limber
     const double *
     record(const std::uint32_t cell) const
     {
-      return now.begin() + std::size_t(cell) * CellSums<dim>::stride;
+      return now.data() + std::size_t(cell) * CellSums<dim>::stride;
     }
+
+    /** Set all sums of the given cells to zero. */
+    void
+    clear(const std::vector<std::uint32_t> &cells);
 
     /**
      * Complete the sums gathered since the last time with those of other
-     * ranks and make them the present ones. Then clear the next ones of the
-     * given cells, which are all that may have been touched, for the next
-     * gathering.
+     * ranks and make them the present ones. Between start and finish nothing
+     * must be gathered.
      */
     void
-    complete(const std::vector<std::uint32_t> &cells);
+    start_completion(const ExchangePlan &plan);
+    void
+    finish_completion();
+
+    /**
+     * After a completion: set the next sums of the given cells to zero, which
+     * have to be all that this time or the last time had any.
+     */
+    void
+    clear_next(const std::vector<std::uint32_t> &cells);
 
   private:
-    const BackgroundGrid<dim>                         &grid;
-    dealii::LinearAlgebra::distributed::Vector<double> now, next;
-    bool                                               parallel = false;
+    const BackgroundGrid<dim> &grid;
+    LazyArray<double>          now, next;
+    RecordExchange             exchange{CellSums<dim>::stride};
   };
 } // namespace limber
 

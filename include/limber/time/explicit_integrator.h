@@ -22,7 +22,7 @@ namespace limber
     sum_shared_nodes,
     advance_nodes,
     apply_boundaries,
-    share_nodes,
+    check_nodes,
     grid_to_points,
     update_stress,
     relocate,
@@ -138,7 +138,7 @@ namespace limber
     void
     divide_remapped(unsigned int momentum);
     void
-    share_nodes();
+    interpolate_hanging();
     void
     grid_to_points(bool remap, bool move);
     void
@@ -148,7 +148,7 @@ namespace limber
     void
     remove_lost_points();
     void
-    sort_points();
+    sort_points(bool agree);
     void
     reduce_extremes();
     void
@@ -188,9 +188,11 @@ namespace limber
     double                                              largest_mass  = 1e300;
     std::vector<std::pair<std::string, LostPoint<dim>>> lost;
 
-    double      any_lost      = 0;
-    double      fastest_node  = 0; // over all ranks, cells in this step
-    MPI_Request check_request = MPI_REQUEST_NULL;
+    // Over all ranks
+    double      any_lost           = 0;
+    double      any_entered_shared = 0;
+    double      fastest_node       = 0; // cells in this step
+    MPI_Request check_request      = MPI_REQUEST_NULL;
 
     // Sum of largest displacements since ranks exchanged points, in cells
     double travelled = 0;

@@ -2,8 +2,6 @@
 #ifndef limber_time_loads_h
 #define limber_time_loads_h
 
-#include <deal.II/lac/la_parallel_vector.h>
-
 #include <limber/state/material_body.h>
 
 #include <map>
@@ -36,7 +34,7 @@ namespace limber
     void
     reinit();
 
-    /** Add the forces at @p time to those of the nodes; collective. */
+    /** Add the forces at @p time to those of active nodes; collective. */
     void
     add(NodalFields<dim> &nodes, double time);
 
@@ -73,11 +71,12 @@ namespace limber
          std::size_t                   p,
          const dealii::Tensor<1, dim> &force);
 
-    const Problem<dim>                                &problem;
-    const BackgroundGrid<dim>                         &grid;
-    std::vector<std::unique_ptr<MaterialBody<dim>>>   &bodies;
-    std::vector<FaceLayer>                             layers;
-    dealii::LinearAlgebra::distributed::Vector<double> forces;
+    const Problem<dim>                              &problem;
+    const BackgroundGrid<dim>                       &grid;
+    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
+    std::vector<FaceLayer>                           layers;
+    LazyArray<double>                                forces; // dim per node, N
+    RecordExchange                                   exchange{dim};
   };
 } // namespace limber
 
