@@ -329,7 +329,8 @@ namespace limber
   void
   CellFields<dim>::reinit()
   {
-    const std::size_t size = std::size_t(grid.n_cells()) * CellSums<dim>::stride;
+    const std::size_t size =
+      std::size_t(grid.n_cells()) * CellSums<dim>::stride;
     now.reinit(size);
     next.reinit(size);
   }

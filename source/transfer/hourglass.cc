@@ -35,10 +35,10 @@ namespace limber
                    const std::vector<HourglassResistance<dim>> &bodies,
                    const double                                 step)
   {
-    using Kernel                = Linear<dim>;
-    using Nodes                 = typename Kernel::Nodes;
-    using Layout                = NodeLayout<dim>;
-    constexpr int n_nodes       = Kernel::n_nodes;
+    using Kernel          = Linear<dim>;
+    using Nodes           = typename Kernel::Nodes;
+    using Layout          = NodeLayout<dim>;
+    constexpr int n_nodes = Kernel::n_nodes;
     // shared by all cells around a node
     const double largest_share = 2. / n_nodes / step;
 

@@ -63,11 +63,12 @@ namespace limber
               const CellSums<dim>     *sums,
               ToNodes<dim>            &to_nodes)
     {
-      StressOperator<dim, kind, deviator> stress(cell, what.projection);
+      const CellMeans<dim>                means(sums, batch.cell);
+      StressOperator<dim, kind, deviator> stress(cell, what.projection, means);
       constexpr std::size_t               width = 1 << dim;
       for (std::size_t p = batch.begin; p < batch.end; p += width)
         stress.add(points, p, batch.end - p, what.inverse_density);
-      const auto forces = stress.forces(CellMeans<dim>(sums, batch.cell));
+      const auto forces = stress.forces();
       for (int d = 0; d < dim; ++d)
         to_nodes[NodeLayout<dim>::force + d] = forces[d];
     }

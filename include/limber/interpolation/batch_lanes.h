@@ -89,7 +89,7 @@ namespace limber
   {
     /** Out of the way of the loop over full packs. */
     template <class Work, class Lanes>
-    __attribute__((noinline, cold)) void
+    __attribute__((noinline)) void
     do_apart(const Work &work, const Lanes &lanes)
     {
       work(lanes);

@@ -43,6 +43,7 @@ namespace limber
     derivative(const Coefficients &c, const int d) const
     {
       double sum = 0;
+#pragma GCC unroll 8
       for (int k = 0; k < 1 << dim; ++k)
         if (k >> d & 1 && k != 1 << d)
           sum += c(k) * record[k ^ (1 << d)];
@@ -84,6 +85,7 @@ namespace limber
     {
       std::array<Number, 1 << dim> products;
       products[0] = mass;
+#pragma GCC unroll 8
       for (int k = 1; k < (1 << dim) - 1; ++k)
         products[k] = mass * monomial(xi, k);
       products[CellSums<dim>::volumetric] = mass * volumetric;
@@ -104,12 +106,14 @@ namespace limber
             continue;
           const CellGeometry<dim> &geometry = grid.cells[points.cell[p]];
           std::array<double, dim>  xi;
+#pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
             xi[d] = (points.position[d][p] - geometry.origin[d]) *
                     geometry.inverse_edge[d];
           double *const record = next + points.cell[p] * CellSums<dim>::stride;
           const double  mass   = points.mass[p];
           record[0] += mass;
+#pragma GCC unroll 8
           for (int k = 1; k < (1 << dim) - 1; ++k)
             record[k] += mass * monomial(xi, k);
           record[CellSums<dim>::volumetric] += mass * points.volumetric[p];
@@ -123,6 +127,7 @@ namespace limber
     {
       T    result{};
       bool first = true;
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         if (k >> d & 1)
           {

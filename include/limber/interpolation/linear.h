@@ -81,6 +81,24 @@ namespace limber
       return upper_ends[d];
     }
 
+    /** Lane of the monomial xi_d: 1, others 0. */
+    static Nodes
+    linear(const int d)
+    {
+      return linear_monomials[d];
+    }
+
+    /** Lanes of products of two or more coordinates: 1, others 0. */
+    static Nodes
+    bilinear()
+    {
+      Nodes result = broadcast<Nodes>(1.) - linear_monomials[0];
+      for (int d = 1; d < dim; ++d)
+        result -= linear_monomials[d];
+      result[0] = 0;
+      return result;
+    }
+
     /** Value at natural coordinates xi; c(k) is the k-th coefficient. */
     template <class Number, class Coefficient>
     static Number
@@ -138,12 +156,23 @@ namespace limber
       return result;
     }
 
+    template <int... k>
+    static constexpr std::array<Nodes, dim>
+    unit_lanes(std::integer_sequence<int, k...>)
+    {
+      std::array<Nodes, dim> result{};
+      for (int d = 0; d < dim; ++d)
+        result[d] = Nodes{(k == 1 << d ? 1. : 0.)...};
+      return result;
+    }
+
     using AllNodes = std::make_integer_sequence<int, n_nodes>;
 
-    static constexpr auto signs      = end_values(-1., 1., AllNodes());
-    static constexpr auto lower_ends = end_values(1., 0., AllNodes());
-    static constexpr auto upper_ends = end_values(0., 1., AllNodes());
-    static constexpr auto opposites  = opposite_nodes(AllNodes());
+    static constexpr auto signs            = end_values(-1., 1., AllNodes());
+    static constexpr auto lower_ends       = end_values(1., 0., AllNodes());
+    static constexpr auto linear_monomials = unit_lanes(AllNodes());
+    static constexpr auto upper_ends       = end_values(0., 1., AllNodes());
+    static constexpr auto opposites        = opposite_nodes(AllNodes());
   };
 } // namespace limber
 

@@ -48,19 +48,24 @@ namespace limber
                    const double             step)
       : velocity(velocity)
     {
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         scale[d] = step * cell.inverse_edge[d];
       if constexpr (kind == Projection::none)
         return;
       else if constexpr (kind == Projection::cell)
+#pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           divergence += mean_derivative(d, d, means);
       else
         {
+#pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
             for (int e = 0; e <= d; ++e)
               mean[d][e] = mean[e][d] = 0.5 * (mean_derivative(d, e, means) +
                                                mean_derivative(e, d, means));
+#pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
             divergence += mean[d][d];
           if constexpr (kind == Projection::assumed_strain)
@@ -68,28 +73,35 @@ namespace limber
         }
     }
 
-    /** dt D + dt W at natural coordinates xi; W is the spin as it is. */
-    template <class Number>
+    /**
+     * dt D + dt W at natural coordinates xi, with the spin W as it is; on
+     * request without it where averages make that cheaper.
+     */
+    template <class Number, bool with_spin = true>
     void
     evaluate(const std::array<Number, dim> &xi,
              MotionIncrement<dim, Number>  &motion) const
     {
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
           const auto gradient =
             Linear<dim>::template gradient<Number>(velocity(d), xi);
+#pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
             motion.gradient[d][e] = scale[e] * gradient[e];
         }
       if constexpr (kind == Projection::cell_shear ||
                     kind == Projection::cell_full ||
                     kind == Projection::assumed_strain)
+#pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
             if constexpr (kind == Projection::cell_full)
               motion.gradient[d][d] = broadcast<Number>(mean[d][d]);
             if constexpr (kind == Projection::assumed_strain)
               motion.gradient[d][d] = assumed_normal(d, xi);
+#pragma GCC unroll 8
             for (int e = 0; e < d; ++e)
               {
                 Number shear = broadcast<Number>(mean[d][e]);
@@ -98,8 +110,9 @@ namespace limber
                     const int f = 3 - d - e;
                     shear += torsion[f] * (xi[f] - centroid[f]);
                   }
-                const Number spin =
-                  0.5 * (motion.gradient[d][e] - motion.gradient[e][d]);
+                Number spin{};
+                if constexpr (with_spin)
+                  spin = 0.5 * (motion.gradient[d][e] - motion.gradient[e][d]);
                 motion.gradient[d][e] = shear + spin;
                 motion.gradient[e][d] = shear - spin;
               }
@@ -123,12 +136,15 @@ namespace limber
     set_hourglass(const CellMeans<dim>   &means,
                   const StrainProjection &projection)
     {
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
           centroid[d] = means[1 << d];
           linear[d]   = {};
         }
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
         for (int e = 0; e < dim; ++e)
           if (e != d)
             {
@@ -137,10 +153,12 @@ namespace limber
               linear[d][d] += projection.mate * scale[e] * velocity(e)(k);
             }
       if constexpr (dim == 3)
+#pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
             const int e = (d + 1) % 3, f = (d + 2) % 3;
             product_mean[d] = means[1 << e | 1 << f];
+#pragma GCC unroll 8
             for (int g = 0; g < dim; ++g)
               product[d][g] = (g == d ? projection.trilinear_own :
                                         projection.trilinear_mate) *
@@ -155,9 +173,11 @@ namespace limber
     assumed_normal(const int d, const std::array<Number, dim> &xi) const
     {
       Number result = broadcast<Number>(mean[d][d]);
+#pragma GCC unroll 8
       for (int e = 0; e < dim; ++e)
         result += linear[d][e] * (xi[e] - centroid[e]);
       if constexpr (dim == 3)
+#pragma GCC unroll 8
         for (int g = 0; g < dim; ++g)
           result += product[d][g] *
                     (xi[(g + 1) % 3] * xi[(g + 2) % 3] - product_mean[g]);
@@ -192,9 +212,11 @@ namespace limber
     using Nodes  = typename Linear<dim>::Nodes;
 
     StressOperator(const CellGeometry<dim> &cell,
-                   const StrainProjection  &projection)
+                   const StrainProjection  &projection,
+                   const CellMeans<dim>    &means)
       : cell(cell)
       , projection(projection)
+      , means(means)
     {}
 
     /**
@@ -211,9 +233,10 @@ namespace limber
         return load<Number>(array + first);
       };
       Number volume = inverse_density * read(points.mass);
-      if (n < pack_width<Number>)
+      if (n < std::size_t(pack_width<Number>))
         volume = first_lanes<Number>(n) ? volume : Number{};
       std::array<Number, dim> xi;
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         xi[d] =
           (read(points.position[d]) - cell.origin[d]) * cell.inverse_edge[d];
@@ -237,9 +260,12 @@ namespace limber
                 }
             }
           if constexpr (!mean_pressure)
+#pragma GCC unroll 8
             for (int d = 0; d < dim; ++d)
               t[d][d] -= p;
+#pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
             for (int e = 0; e <= d; ++e)
               if (deviator || d == e)
                 stress[d][e] += t[d][e];
@@ -249,37 +275,51 @@ namespace limber
 
     /** The forces on the nodes, one lane each, for each direction. */
     __attribute__((always_inline)) std::array<Nodes, dim>
-    forces(const CellMeans<dim> &means) const
+    forces() const
     {
       std::array<Nodes, dim> result{};
       if constexpr (deviator || !mean_pressure)
+#pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
-            // what acts on c_k in lane k
+            // what acts on the coefficient c_k of component d in lane k
             std::array<Number, 1 << dim> a{};
-            Nodes                        factor = broadcast<Nodes>(1.);
+#pragma GCC unroll 8
             for (int e = 0; e < dim; ++e)
-              {
-                a[1 << e]      = e <= d ? stress[d][e] : stress[e][d];
-                factor[1 << e] = cell.inverse_edge[e];
-              }
+              a[1 << e] = e <= d ? stress[d][e] : stress[e][d];
             if constexpr (kind != Projection::cell_full)
+#pragma GCC unroll 8
               for (int k = 3; k < 1 << dim; ++k)
                 if (k & (k - 1))
                   a[k] = hourglass[d][k];
-            result[d] = factor * sums_over_lanes(a);
+            const Nodes sums = sums_over_lanes(a);
+            if constexpr (kind == Projection::none || kind == Projection::cell)
+              {
+                Nodes scale = broadcast<Nodes>(1.);
+#pragma GCC unroll 8
+                for (int e = 0; e < dim; ++e)
+                  scale[1 << e] = cell.inverse_edge[e];
+                result[d] = scale * sums;
+              }
+            else
+              {
+                result[d] = Linear<dim>::bilinear() * sums;
+#pragma GCC unroll 8
+                for (int e = 0; e < dim; ++e)
+                  result[d] += (sums[1 << e] * cell.inverse_edge[e]) *
+                               (kind == Projection::cell_shear && d == e ?
+                                  Linear<dim>::linear(e) :
+                                  means.derivatives(e));
+              }
           }
-      if constexpr (kind == Projection::cell_shear ||
-                    kind == Projection::cell_full ||
-                    kind == Projection::assumed_strain)
-        for (int d = 0; d < dim; ++d)
-          add_means(result[d], d, means);
       if constexpr (mean_pressure)
         {
           const double total = sum(pressure);
+#pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
             result[d] -= (total * cell.inverse_edge[d]) * means.derivatives(d);
         }
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         result[d] = -Linear<dim>::to_nodes(result[d]);
       return result;
@@ -292,99 +332,72 @@ namespace limber
     /** What acts on coefficients of hourglass modes at the points. */
     __attribute__((always_inline)) void
     add_hourglass(const std::array<std::array<Number, dim>, dim> &t,
-                  const std::array<Number, dim>                  &xi)
+                  const std::array<Number, dim>                  &place)
     {
+      if constexpr (kind == Projection::cell_full)
+        return;
+      const double *const h = cell.inverse_edge.data();
+      // deviations from the mean, where strains are split so
+      std::array<Number, dim> xi = place;
+      if constexpr (kind == Projection::assumed_strain)
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          xi[d] -= means[1 << d];
+      if constexpr (kind == Projection::assumed_strain && dim == 3)
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          {
+            const int    e = (d + 1) % dim, f = (d + 2) % dim;
+            const Number product = place[e] * place[f] - means[1 << e | 1 << f];
+            hourglass[d][7] +=
+              (projection.trilinear_own * t[d][d] +
+               projection.trilinear_mate * (t[e][e] + t[f][f])) *
+              (h[d] * product);
+          }
+
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
           const int e = (d + 1) % dim, f = (d + 2) % dim;
-          if constexpr (dim == 2)
-            hourglass[d][3] += hourglass_pair(t, xi, d, e);
-          else if constexpr (kind != Projection::cell_full)
+          add_bilinear(t, xi, d, e);
+          if constexpr (dim == 3)
             {
-              hourglass[d][1 << d | 1 << e] += hourglass_pair(t, xi, d, e);
-              hourglass[d][1 << d | 1 << f] += hourglass_pair(t, xi, d, f);
-              const double *const h = cell.inverse_edge.data();
+              add_bilinear(t, xi, d, f);
               if constexpr (kind != Projection::cell_shear)
                 hourglass[d][1 << e | 1 << f] +=
                   t[d][e] * (h[e] * xi[f]) + t[d][f] * (h[f] * xi[e]);
+              if constexpr (kind == Projection::cell_shear)
+                hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f]));
               if constexpr (kind == Projection::none ||
                             kind == Projection::cell)
                 hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f])) +
                                    t[d][e] * (h[e] * (xi[d] * xi[f])) +
                                    t[d][f] * (h[f] * (xi[d] * xi[e]));
-              else if constexpr (kind == Projection::cell_shear)
-                hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f]));
-              else
-                hourglass[d][7] +=
-                  (projection.trilinear_own * t[d][d] +
-                   projection.trilinear_mate * (t[e][e] + t[f][f])) *
-                  (h[d] * (xi[e] * xi[f]));
             }
         }
     }
 
     /** Of the mode xi_d xi_e of component d. */
-    Number
-    hourglass_pair(const std::array<std::array<Number, dim>, dim> &t,
-                   const std::array<Number, dim>                  &xi,
-                   const int                                       d,
-                   const int                                       e) const
-    {
-      const double *const h = cell.inverse_edge.data();
-      if constexpr (kind == Projection::none || kind == Projection::cell)
-        return t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]);
-      else if constexpr (kind == Projection::cell_shear)
-        return t[d][d] * (h[d] * xi[e]);
-      else if constexpr (kind == Projection::assumed_strain)
-        return (projection.own * t[d][d] + projection.mate * t[e][e]) *
-               (h[d] * xi[e]);
-      else
-        return Number{};
-    }
-
-    /**
-     * Add what mean strains bring to the coefficients of hourglass modes:
-     * what of a stress has not gone to deviations from the mean at the points.
-     */
     __attribute__((always_inline)) void
-    add_means(Nodes &a, const int d, const CellMeans<dim> &means) const
+    add_bilinear(const std::array<std::array<Number, dim>, dim> &t,
+                 const std::array<Number, dim>                  &xi,
+                 const int                                       d,
+                 const int                                       e)
     {
-      const double *const     h = cell.inverse_edge.data();
-      std::array<double, dim> total; // sum V stress_de
-      for (int e = 0; e < dim; ++e)
-        total[e] = a[1 << e] / h[e];
-      for (int k = 3; k < 1 << dim; ++k)
-        {
-          if (!(k & (k - 1)))
-            continue;
-          for (int e = 0; e < dim; ++e)
-            if (k >> e & 1 && !(kind == Projection::cell_shear && e == d))
-              a[k] += total[e] * h[e] * means[k ^ (1 << e)];
-        }
+      const double *const h       = cell.inverse_edge.data();
+      Number             &on_mode = hourglass[d][1 << d | 1 << e];
       if constexpr (kind == Projection::assumed_strain)
-        {
-          std::array<double, dim> normal;
-          for (int e = 0; e < dim; ++e)
-            normal[e] = sum(stress[e][e]);
-          for (int e = 0; e < dim; ++e)
-            if (e != d)
-              a[1 << d | 1 << e] -=
-                (projection.own * normal[d] + projection.mate * normal[e]) *
-                h[d] * means[1 << e];
-          if constexpr (dim == 3)
-            {
-              const int e = (d + 1) % 3, f = (d + 2) % 3;
-              a[1 << e | 1 << f] -= total[e] * h[e] * means[1 << f] +
-                                    total[f] * h[f] * means[1 << e];
-              a[7] -= (projection.trilinear_own * normal[d] +
-                       projection.trilinear_mate * (normal[e] + normal[f])) *
-                      h[d] * means[1 << e | 1 << f];
-            }
-        }
+        on_mode += (projection.own * t[d][d] + projection.mate * t[e][e]) *
+                   (h[d] * xi[e]);
+      else if constexpr (kind == Projection::cell_shear)
+        on_mode += t[d][d] * (h[d] * xi[e]);
+      else
+        on_mode += t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]);
     }
 
     const CellGeometry<dim> &cell;
     const StrainProjection  &projection;
+    const CellMeans<dim>    &means;
 
     Number                                        pressure{};
     std::array<std::array<Number, dim>, dim>      stress{};

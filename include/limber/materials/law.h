@@ -109,6 +109,7 @@ namespace limber
    *    body may start under pressure;
    *  - n_history<dim>, how many doubles a point keeps besides the stress;
    *  - has_deviator, whether it bears shear;
+   *  - uses_spin, whether it looks at the skew part of the motion;
    *  - dissipates, whether update() may return dissipated energy;
    *  - accepts(), whether this variant of a law serves given parameters;
    *  - has_constant_wave_speed(), whether it is the same in every state;

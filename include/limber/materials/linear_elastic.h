@@ -29,6 +29,7 @@ namespace limber
     template <int>
     static constexpr int  n_history    = 0;
     static constexpr bool has_deviator = true;
+    static constexpr bool uses_spin    = false;
     static constexpr bool dissipates   = false;
     static constexpr int  volumetric   = -1;
 

@@ -35,6 +35,7 @@ namespace limber
     template <int dim>
     static constexpr int  n_history    = dim == 2 ? 4 : 6;
     static constexpr bool has_deviator = true;
+    static constexpr bool uses_spin    = true;
     static constexpr bool dissipates   = false;
     static constexpr int  volumetric   = 0;
 

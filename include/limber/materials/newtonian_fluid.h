@@ -55,6 +55,7 @@ namespace limber
     template <int>
     static constexpr int  n_history    = 1;
     static constexpr bool has_deviator = viscous;
+    static constexpr bool uses_spin    = false;
     static constexpr bool dissipates   = true;
     static constexpr int  volumetric   = 0;
 

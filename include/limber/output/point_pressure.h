@@ -97,8 +97,8 @@ namespace limber
     void
     sum_over_cells();
 
-    const ExchangePlan         plan; // all cells that ranks share
-    CellFields<dim>            sums; // mass, m J, m J p
+    const ExchangePlan         plan;    // all cells that ranks share
+    CellFields<dim>            sums;    // mass, m J, m J p
     std::vector<std::uint32_t> touched; // cells whose sums are not zero
     PointView<dim>             points;
     std::vector<double>        volume_ratios;

@@ -201,7 +201,7 @@ namespace limber
 
             MotionIncrement<dim, Number> motion;
             motion.step = what.step;
-            strain.evaluate(xi, motion);
+            strain.template evaluate<Number, Law::uses_spin>(xi, motion);
 
             auto state = load_state<Number>(points, [&](const double *a) {
               return lanes.load(a);

@@ -25,10 +25,11 @@ namespace limber
    *
    *   f_a -= s_a k q,  k = sum over bodies chi c m_cell / h,
    *
-   * with k at most half (a quarter in 3d) of the smallest nodal mass over the step, which keeps
-   * it stable. Adds to no force and no moment, and leaves linear fields alone
-   * (theory: doc/theory/treatments.md). Reads mass and momentum of the nodes,
-   * adds the forces to the re-mapped slots, which are not in use then.
+   * with k at most half (a quarter in 3d) of the smallest nodal mass over the
+   * step, which keeps it stable. Adds to no force and no moment, and leaves
+   * linear fields alone (theory: doc/theory/treatments.md). Reads mass and
+   * momentum of the nodes, adds the forces to the re-mapped slots, which are
+   * not in use then.
    */
   template <int dim>
   void

@@ -239,7 +239,6 @@ TYPED_TEST(Sweep, WhatLiesBehindThePointsDoesNotMatter)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<dim, Law, Projection::none>;
   using Averaged    = LawSweep<dim, Law, Projection::cell>;
   for (const auto &law : samples<Law>())
     for (const double behind : {0., -7., 1e300})
@@ -320,7 +319,6 @@ TYPED_TEST(Sweep, RelaxationKeepsTheMean)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<dim, Law, Projection::none>;
   using Averaged    = LawSweep<dim, Law, Projection::cell>;
   for (const auto &law : samples<Law>())
     for (const double relaxation : {0., 0.25, 1.})
@@ -441,7 +439,6 @@ TYPED_TEST(Sweep, SummariesAreSumsOverPoints)
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
   using Plain       = LawSweep<dim, Law, Projection::none>;
-  using Averaged    = LawSweep<dim, Law, Projection::cell>;
   for (const auto &law : samples<Law>())
     {
       auto                own    = this->stressed_points(law);
