@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <sstream>
 
@@ -131,7 +132,7 @@ namespace limber
 
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/false);
-    sum_shared_nodes(0, Layout::stride);
+    sum_shared_nodes(0, Layout::remapped);
     divide_remapped(Layout::momentum);
     interpolate_hanging();
     update_stress(/*remapped=*/true, /*move=*/false);
@@ -158,7 +159,7 @@ namespace limber
 
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/true);
-    sum_shared_nodes(0, Layout::stride);
+    sum_shared_nodes(0, Layout::remapped);
     add_loads();
     advance_nodes();
     apply_boundaries();
@@ -464,22 +465,28 @@ namespace limber
   {
     any_lost           = nodes.points_have_left() ? 1 : 0;
     any_entered_shared = nodes.has_entered_shared() ? 1 : 0;
+    most_points        = 0;
+    for (const auto &body : bodies)
+      most_points += body->points.size();
+    most_excess_batches = excess_batches;
     if (parallel)
       {
-        double extremes[] = {speed_squared,
-                             wave_squared,
-                             displacement,
-                             largest_mass,
-                             any_lost,
-                             any_entered_shared};
+        double *const extremes[] = {&speed_squared,
+                                    &wave_squared,
+                                    &displacement,
+                                    &largest_mass,
+                                    &any_lost,
+                                    &any_entered_shared,
+                                    &most_points,
+                                    &most_excess_batches};
+        constexpr int n          = std::size(extremes);
+        double        values[n];
+        for (int k = 0; k < n; ++k)
+          values[k] = *extremes[k];
         MPI_Allreduce(
-          MPI_IN_PLACE, extremes, 6, MPI_DOUBLE, MPI_MAX, grid.communicator);
-        speed_squared      = extremes[0];
-        wave_squared       = extremes[1];
-        displacement       = extremes[2];
-        largest_mass       = extremes[3];
-        any_lost           = extremes[4];
-        any_entered_shared = extremes[5];
+          MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_MAX, grid.communicator);
+        for (int k = 0; k < n; ++k)
+          *extremes[k] = values[k];
       }
     wave_speed  = std::sqrt(wave_squared);
     point_speed = std::sqrt(speed_squared);
@@ -491,6 +498,8 @@ namespace limber
   void
   ExplicitIntegrator<dim>::relocate()
   {
+    if (n_batches > n_batches_sorted)
+      excess_batches += n_batches - n_batches_sorted;
     reduce_extremes();
     if (any_lost > 0)
       remove_lost_points();
@@ -500,8 +509,6 @@ namespace limber
     complete_cells();
 
     travelled += displacement;
-    if (n_batches > n_batches_sorted)
-      excess_batches += n_batches - n_batches_sorted;
     lap(Verb::relocate);
   }
 
@@ -549,13 +556,11 @@ namespace limber
     // The next step may be somewhat longer than the last one.
     const bool exchange =
       parallel && travelled + 1.5 * displacement > travel_limit;
-    // A sort costs about as much as the detours of n / 4 surplus batches.
-    std::size_t n_points = 0;
-    for (const auto &body : bodies)
-      n_points += body->points.size();
+    // A sort costs about as much as the detours of n / 4 surplus batches. All
+    // ranks sort in the same step, or each would wait while the others do.
     if (exchange)
       exchange_points();
-    else if (excess_batches > n_points / 4)
+    else if (most_excess_batches > most_points / 4)
       sort_points(/*agree=*/false);
     lap(Verb::relocate);
     return exchange;
