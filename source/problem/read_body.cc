@@ -56,6 +56,14 @@ namespace limber
                    hourglass_words(),
                    "With the treatment 'assumed strain': how the normal "
                    "strains follow a motion that bends the cell.");
+      parameters.declare(
+        "Hourglass control",
+        "auto",
+        admissible::non_negative_number("0.05").or_word("auto"),
+        "chi, dimensionless: viscous resistance chi c m / h to motions of a "
+        "cell that averaged strain does not see (m its mass, c the wave "
+        "speed); 'auto' is 0.05 where averages leave such motions without "
+        "resistance, else 0.");
       declare_word(parameters,
                    "History",
                    "keep",
@@ -182,6 +190,30 @@ namespace limber
 
 
 
+    /**
+     * Whether averages leave hourglass modes without resistance: all modes
+     * where everything is averaged, or where the rest bears no load at rest;
+     * in 3d also the torsion of a cell where shear is averaged.
+     */
+    template <int dim>
+    bool
+    needs_hourglass_control(const Projection treatment, const bool fluid)
+    {
+      switch (treatment)
+        {
+          case Projection::none:
+            return false;
+          case Projection::cell_full:
+            return true;
+          case Projection::cell_shear:
+            return fluid || dim == 3;
+          default:
+            return fluid;
+        }
+    }
+
+
+
     template <int dim>
     void
     read_treatment(const Section &section, Body<dim> &body)
@@ -190,6 +222,21 @@ namespace limber
       body.hourglass =
         read_word(section, "Hourglass response", hourglass_words());
       body.history         = read_word(section, "History", history_words());
+
+      const bool fluid =
+        read_word(section, "Material", law_words()).takes_pressure;
+      body.hourglass_control =
+        section.text("Hourglass control") != "auto" ?
+          section.number("Hourglass control") :
+        needs_hourglass_control<dim>(body.treatment, fluid) ? 0.05 :
+                                                              0;
+      if (body.hourglass_control > 0 && body.treatment == Projection::none)
+        throw InputError(
+          "The hourglass control " + section.text("Hourglass control") +
+          " in " + section.where("Hourglass control") +
+          " has nothing to control with the locking treatment 'none', which "
+          "averages nothing. Set 'Hourglass control = 0', or another 'Locking "
+          "treatment'.");
       body.relaxation_time = section.number("Relaxation time");
 
       const bool relaxes = body.history == HistoryTreatment::relax;

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/time/explicit_integrator.h>
 #include <limber/transfer/grid_to_points.h>
+#include <limber/transfer/hourglass.h>
 #include <limber/transfer/points_to_grid.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 namespace limber
 {
@@ -139,6 +141,7 @@ namespace limber
 
     points_to_grid(/*momentum=*/false, /*force=*/true);
     sum_shared_nodes(Layout::force, Layout::force + dim);
+    resist_hourglass();
     add_loads();
     advance_nodes();
     apply_boundaries();
@@ -160,6 +163,7 @@ namespace limber
     clear();
     points_to_grid(/*momentum=*/true, /*force=*/true);
     sum_shared_nodes(0, Layout::remapped);
+    resist_hourglass();
     add_loads();
     advance_nodes();
     apply_boundaries();
@@ -210,6 +214,51 @@ namespace limber
                                                  sums ? &*sums : nullptr);
       }
     lap(Verb::points_to_grid);
+  }
+
+
+
+  // Its forces are summed up in the re-mapped slots, which are not in use
+  // before the nodes advance, and then join the others.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::resist_hourglass()
+  {
+    using Layout = NodeLayout<dim>;
+
+    std::vector<HourglassResistance<dim>> resisting;
+    for (auto &body : bodies)
+      if (body->description.hourglass_control > 0)
+        resisting.push_back({body->cell_sums->view(),
+                             body->description.hourglass_control * wave_speed});
+    if (resisting.empty())
+      return;
+
+    for (const std::uint32_t node : nodes.active_nodes())
+      std::fill_n(nodes.record(node) + Layout::remapped, dim, 0.);
+    limber::resist_hourglass<dim>(nodes.owned_occupied_cells(),
+                                  nodes.view(),
+                                  resisting,
+                                  step);
+    lap(Verb::points_to_grid);
+    sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        const double  mass   = record[Layout::mass];
+        if (!(mass > 0))
+          continue;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double force = std::exchange(record[Layout::remapped + d], 0);
+            // heat, but for the change of velocity within the step
+            if (nodes.owns(node))
+              ledger.viscous -=
+                step * force * record[Layout::momentum + d] / mass;
+            record[Layout::force + d] += force;
+          }
+      }
+    lap(Verb::advance_nodes);
   }
 
 

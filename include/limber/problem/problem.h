@@ -87,7 +87,8 @@ namespace limber
 
     Projection        treatment       = Projection::none;
     HourglassResponse hourglass       = HourglassResponse::bending;
-    HistoryTreatment  history         = HistoryTreatment::keep;
+    double            hourglass_control = 0; // chi, without dimension
+    HistoryTreatment  history           = HistoryTreatment::keep;
     double            relaxation_time = 0; // s, for HistoryTreatment::relax
 
     /** Mass per volume in the reference state, kg/m^3. */

@@ -124,6 +124,8 @@ namespace limber
     void
     points_to_grid(bool momentum, bool force);
     void
+    resist_hourglass();
+    void
     add_loads();
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
