@@ -9,26 +9,12 @@
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
 
-#include <malloc.h>
-
 #include <iostream>
 #include <sstream>
 
 namespace
 {
   using namespace limber;
-
-  // Large arrays in pages of their own, which go back to the system when the
-  // array is freed: half of what refinement and sorts need is needed only for
-  // a while. One of the libraries that come with deal.II turns this off.
-  void
-  return_large_arrays()
-  {
-    mallopt(M_MMAP_MAX, 65536);
-    mallopt(M_MMAP_THRESHOLD, 1 << 20);
-  }
-
-
 
   std::string
   as_text(const PrintStyle style, const SceneFile &scene)
@@ -118,8 +104,7 @@ int
 main(int argc, char *argv[])
 {
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
-  return_large_arrays();
-  const bool first =
+  const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
 
   // Failures are the same on every rank, so one speaks and all end. What is

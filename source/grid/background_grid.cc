@@ -14,6 +14,8 @@
 #include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -107,6 +109,8 @@ namespace limber
     }
     build_bins();
     complete_boundary();
+    // Refinement and numbering need for a while twice what stays.
+    malloc_trim(0);
   }
 
 

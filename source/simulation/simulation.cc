@@ -3,6 +3,7 @@
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
 
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -50,6 +51,8 @@ namespace limber
   {
     targets.push_back(problem.end_time);
     std::sort(targets.begin(), targets.end());
+    // Seeding and sorting have needed more than stays.
+    malloc_trim(0);
   }
 
 
