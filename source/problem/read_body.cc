@@ -46,7 +46,7 @@ namespace limber
     {
       declare_word(parameters,
                    "Locking treatment",
-                   "cell",
+                   "auto",
                    locking_words(),
                    "What keeps a nearly incompressible material from locking; "
                    "see doc/theory.");
@@ -59,10 +59,10 @@ namespace limber
       parameters.declare(
         "Hourglass control",
         "auto",
-        admissible::non_negative_number("0.05").or_word("auto"),
+        admissible::non_negative_number("0.1").or_word("auto"),
         "chi, dimensionless: viscous resistance chi c m / h to motions of a "
         "cell that averaged strain does not see (m its mass, c the wave "
-        "speed); 'auto' is 0.05 where averages leave such motions without "
+        "speed); 'auto' is 0.1 where averages leave such motions without "
         "resistance, else 0.");
       declare_word(parameters,
                    "History",
@@ -214,21 +214,41 @@ namespace limber
 
 
 
+    /** The treatment for a material; says in the log what and why. */
+    template <int dim>
+    Projection
+    automatic_treatment(const Body<dim> &body,
+                        const bool       fluid,
+                        Problem<dim>    &problem)
+    {
+      problem.notes.push_back(
+        "Body " + in_quotes(body.name) + ": locking treatment 'auto' is " +
+        (fluid ? "'cell', as a liquid resists volume changes only." :
+                 "'assumed strain', which neither locks in volume nor in "
+                 "bending and leaves no motion of a cell without resistance."));
+      return fluid ? Projection::cell : Projection::assumed_strain;
+    }
+
+
+
     template <int dim>
     void
-    read_treatment(const Section &section, Body<dim> &body)
+    read_treatment(const Section &section,
+                   Body<dim>     &body,
+                   Problem<dim>  &problem)
     {
-      body.treatment = read_word(section, "Locking treatment", locking_words());
-      body.hourglass =
-        read_word(section, "Hourglass response", hourglass_words());
-      body.history         = read_word(section, "History", history_words());
-
       const bool fluid =
         read_word(section, "Material", law_words()).takes_pressure;
+      body.treatment = read_word(section, "Locking treatment", locking_words());
+      if (body.treatment == Projection::automatic)
+        body.treatment = automatic_treatment(body, fluid, problem);
+      body.hourglass =
+        read_word(section, "Hourglass response", hourglass_words());
+      body.history = read_word(section, "History", history_words());
       body.hourglass_control =
         section.text("Hourglass control") != "auto" ?
           section.number("Hourglass control") :
-        needs_hourglass_control<dim>(body.treatment, fluid) ? 0.05 :
+        needs_hourglass_control<dim>(body.treatment, fluid) ? 0.1 :
                                                               0;
       if (body.hourglass_control > 0 && body.treatment == Projection::none)
         throw InputError(
@@ -283,7 +303,7 @@ namespace limber
                                            body.shape->bounding_box());
       read_material(section, body, problem);
       read_initial_pressure(section, constants, problem, body);
-      read_treatment(section, body);
+      read_treatment(section, body, problem);
       return body;
     }
   } // namespace

@@ -105,6 +105,9 @@ namespace limber
   locking_words()
   {
     static const Words<Projection> words = {
+      {"auto",
+       Projection::automatic,
+       "'assumed strain' for solids, 'cell' for liquids"},
       {"none", Projection::none, "values of the points as they are"},
       {"cell",
        Projection::cell,
@@ -149,6 +152,9 @@ namespace limber
       {"relax",
        HistoryTreatment::relax,
        "it tends to the mean of the cell within 'Relaxation time'"},
+      {"crossing",
+       HistoryTreatment::crossing,
+       "the same within the time in which the fastest point crosses a cell"},
       {"replace",
        HistoryTreatment::replace,
        "it is set to the mean of the cell in every step"}};

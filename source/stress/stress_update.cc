@@ -57,6 +57,8 @@ namespace limber
       const auto projection = strain_projection(law, kind, response);
       switch (kind)
         {
+          case Projection::automatic:
+            throw std::logic_error("no projection chosen");
           case Projection::none:
             return std::make_unique<LawSweep<dim, Law, Projection::none>>(
               law, projection);
@@ -66,9 +68,9 @@ namespace limber
           default:
             break;
         }
-      // Without shear stress there is no more to project.
+      // Without shear stress there is no more to project than the pressure.
       if constexpr (!Law::has_deviator)
-        throw std::logic_error(std::string(Law::name) + " bears no shear");
+        return make_sweep<dim>(law, Projection::cell, response);
       else
         switch (kind)
           {

@@ -487,11 +487,14 @@ namespace limber
     for (auto &body : bodies)
       {
         const Body<dim> &description = body->description;
-        what.relaxation  = description.history == HistoryTreatment::replace ?
-                             1 :
-                           description.history == HistoryTreatment::relax ?
-                             -std::expm1(-step / description.relaxation_time) :
-                             0;
+        what.relaxation =
+          description.history == HistoryTreatment::replace ?
+            1 :
+          description.history == HistoryTreatment::relax ?
+            -std::expm1(-step / description.relaxation_time) :
+          description.history == HistoryTreatment::crossing ?
+            -std::expm1(-step * point_speed / grid.smallest_edge) :
+            0;
         const auto sums  = sums_of(*body);
         const auto found = body->stress->update(body->points.view(),
                                                 nodes.view(),

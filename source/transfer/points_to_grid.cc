@@ -136,6 +136,7 @@ namespace limber
     {
       switch (what.projection.kind)
         {
+          case Projection::automatic: // has been chosen long before
           case Projection::none:
             return choose_sums<dim, Projection::none, deviator>(points,
                                                                 grid,

@@ -10,6 +10,7 @@ namespace limber
    */
   enum class Projection
   {
+    automatic,     // to be chosen from the law when the scene is read
     none,          // nothing
     cell,          // the volumetric part
     cell_shear,    // the volumetric part and the shear components

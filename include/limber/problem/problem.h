@@ -32,9 +32,10 @@ namespace limber
   /** What happens to the scatter of the volume ratios within a cell. */
   enum class HistoryTreatment
   {
-    keep,   // every point keeps its own value
-    relax,  // it tends to the mean of the cell within a given time
-    replace // it is replaced by the mean of the cell in every step
+    keep,     // every point keeps its own value
+    relax,    // it tends to the mean of the cell within a given time
+    crossing, // the same within the time in which points cross a cell
+    replace   // it is replaced by the mean of the cell in every step
   };
 
   enum class StressUpdateOrder
@@ -85,11 +86,11 @@ namespace limber
     std::string         law;      // by name, as in the list of laws
     std::vector<double> material; // its entries, in its order
 
-    Projection        treatment       = Projection::none;
-    HourglassResponse hourglass       = HourglassResponse::bending;
+    Projection        treatment         = Projection::none;
+    HourglassResponse hourglass         = HourglassResponse::bending;
     double            hourglass_control = 0; // chi, without dimension
     HistoryTreatment  history           = HistoryTreatment::keep;
-    double            relaxation_time = 0; // s, for HistoryTreatment::relax
+    double            relaxation_time   = 0; // s, for HistoryTreatment::relax
 
     /** Mass per volume in the reference state, kg/m^3. */
     double

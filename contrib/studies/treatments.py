@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""Measures the treatments of locking and prints the table of
+doc/theory/treatments.md.
+
+    treatments.py [path of limber] [--quick]
+
+Runs the free soft beam, the cantilever, the dam break, the tank and the
+sliding block with every treatment; --quick leaves out the slow beams. Takes
+some 15 minutes on one core.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "contrib/plot"))
+import run_folder  # noqa: E402
+
+TREATMENTS = {
+    "none": {"Locking treatment": "none"},
+    "cell": {"Locking treatment": "cell"},
+    "cell, replaced": {"Locking treatment": "cell", "History": "replace"},
+    "cell shear": {"Locking treatment": "cell shear"},
+    "cell full": {"Locking treatment": "cell full"},
+    "assumed strain": {"Locking treatment": "assumed strain"},
+}
+FREE_BEAM = {"0.3": 3.3990, "0.499": 3.6963}  # Hz, fine Q2 finite elements
+
+
+class Runner:
+    def __init__(self, limber):
+        self.limber = limber
+        self.scratch = tempfile.TemporaryDirectory()
+        self.count = 0
+
+    def run(self, scene, body, treatment, settings=()):
+        """Returns the folder and the summary; None where the run failed."""
+        self.count += 1
+        folder = Path(self.scratch.name) / str(self.count)
+        command = [self.limber, str(TOP / "prm" / scene),
+                   "--output-directory", str(folder)]
+        for entry, value in TREATMENTS[treatment].items():
+            command += ["--set", f"Body {body}/{entry}={value}"]
+        for setting in settings:
+            command += ["--set", setting]
+        done = subprocess.run(command, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True)
+        if done.returncode not in (0, 4):
+            return None
+        return folder, json.loads((folder / "summary.json").read_text())
+
+
+def free_beam(runner, treatment, poisson, speed, end_time):
+    """Frequency error and E/E0 - 1 at the end."""
+    result = runner.run(
+        "verification/free_soft_beam.prm", "beam", treatment,
+        [f"Body beam/Neo hookean/Poisson's ratio={poisson}",
+         "Body beam/Constants=b = 0.7883401241, s = 0.98250221, "
+         f"v0 = {speed}", f"End time={end_time}"])
+    if result is None:
+        return ["failed", "failed"]
+    values, _ = run_folder.statistics(result[0])
+    energy = values["kinetic energy"] + values["strain energy"]
+    frequency = result[1]["checks"][0]["value"]
+    return [f"{100 * (frequency / FREE_BEAM[poisson] - 1):+.2f}",
+            f"{100 * (energy[-1] / energy[0] - 1):+.2f}"]
+
+
+def cell_pressures(path, edge):
+    """Pressures of the cells that hold at least half the points of a full
+    one, as an array with NaN elsewhere."""
+    data = run_folder.points(path)
+    index = np.floor(data["position"][:, :2] / edge).astype(int)
+    shape = index.max(axis=0) + 1
+    total, count = np.zeros(shape), np.zeros(shape)
+    np.add.at(total, tuple(index.T), data["pressure"])
+    np.add.at(count, tuple(index.T), 1)
+    full = count.max() if count.size else 1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(count >= 0.5 * min(full, 25), total / count, np.nan)
+
+
+def roughness(pressure):
+    """Rms of the second differences between neighbouring cells, halved, over
+    the range of the pressure: 1 for a chequerboard, 0 for a linear field."""
+    second = np.concatenate([
+        (pressure[:-2] - 2 * pressure[1:-1] + pressure[2:]).ravel(),
+        (pressure[:, :-2] - 2 * pressure[:, 1:-1] + pressure[:, 2:]).ravel()])
+    second = second[np.isfinite(second)] / 4
+    return np.sqrt(np.mean(second**2)) / (np.nanmax(pressure) -
+                                          np.nanmin(pressure))
+
+
+def dam_break(runner, treatment, settings=()):
+    """Front and height at T = 3, roughness of the pressure at T = 1, 2, 3."""
+    result = runner.run("dam_break.prm", "water", treatment,
+                        ["Output/Time interval=0.2258",
+                         "Output/Fields=pressure", *settings])
+    if result is None:
+        return ["failed"] * 3
+    folder, summary = result
+    checks = {check["name"]: check["value"] for check in summary["checks"]}
+    _, files = run_folder.series(folder)
+    rough = [100 * roughness(cell_pressures(f, 0.125)) for f in files[1:4]]
+    return [f"{checks['front at T=3']:.2f}",
+            f"{checks['height at T=3'] / 2:.3f}",
+            " / ".join(f"{r:.1f}" for r in rough)]
+
+
+def tank(runner, treatment, settings=()):
+    """Kinetic energy over rho g H^2 W / 2 and relative L2 error of pressure
+    at 4 s, with three points per cell edge."""
+    result = runner.run("verification/hydrostatic_tank.prm", "water",
+                        treatment,
+                        ["Output/Time interval=4", "Output/Fields=pressure",
+                         "Body water/Points per cell edge=3", *settings])
+    if result is None:
+        return ["failed", "failed"]
+    folder, _ = result
+    values, _ = run_folder.statistics(folder)
+    _, files = run_folder.series(folder)
+    data = run_folder.points(files[-1])
+    exact = 9810 * (1 - data["position"][:, 1])
+    error = np.sqrt(((data["pressure"] - exact)**2).sum() / (exact**2).sum())
+    return [f"{values['kinetic energy'][-1] / 4905:.1e}", f"{100*error:.1f}"]
+
+
+def block(runner, treatment, scene):
+    """Cost relative to no treatment: best of five, taking turns."""
+    costs = {treatment: [], "none": []}
+    for _ in range(5):
+        for name in ("none", treatment):
+            result = runner.run(f"benchmarks/{scene}.prm", "block", name)
+            costs[name].append(result[1]["ns_per_point_step"])
+    return f"{min(costs[treatment]) / min(costs['none']):.2f}"
+
+
+def main():
+    arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
+    quick = "--quick" in sys.argv
+    runner = Runner(arguments[0] if arguments else
+                    str(TOP / "build/release/limber"))
+
+    print("| treatment | f, nu .3 (%) | E (%) | f, nu .499 (%) | E (%) | "
+          "E, v0 = 3, nu .3 (%) | E, v0 = 3, nu .499 (%) | cost 2D | "
+          "cost 3D |")
+    print("| --- " + "| --: " * 8 + "|")
+    for treatment in TREATMENTS:
+        row = free_beam(runner, treatment, "0.3", 1, 1.5)
+        row += (["-"] * 2 if quick else
+                free_beam(runner, treatment, "0.499", 1, 1.5))
+        row += free_beam(runner, treatment, "0.3", 3, 2)[1:]
+        row += (["-"] if quick else
+                free_beam(runner, treatment, "0.499", 3, 2)[1:])
+        row += [block(runner, treatment, scene)
+                for scene in ("block_2d", "block_3d")]
+        print("| " + " | ".join([treatment, *row]) + " |", flush=True)
+
+    print("\n| liquid | chi | Z(3) | H(3) | roughness at T = 1 / 2 / 3 (%) | "
+          "tank, kinetic energy | tank, pressure error (%) |")
+    print("| --- " + "| --: " * 6 + "|")
+    for treatment in ("none", "cell", "cell, replaced"):
+        for chi in ("0",) if treatment == "none" else ("0", "0.05", "0.1"):
+            control = [f"Body water/Hourglass control={chi}"]
+            row = dam_break(runner, treatment, control)
+            row += tank(runner, treatment, control)
+            print("| " + " | ".join([treatment, chi, *row]) + " |",
+                  flush=True)
+
+
+if __name__ == "__main__":
+    main()
