@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/transfer/hourglass.h>
+
+#include <gtest/gtest.h>
+#include <support/small_grid.h>
+
+#include <numeric>
+
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  template <class Dimension>
+  class Hourglass : public testing::Test
+  {
+  public:
+    static constexpr int dim = Dimension::value;
+    using Layout             = NodeLayout<dim>;
+
+    /** Nodal masses and the sums of random points; all cells. */
+    Hourglass()
+      : points(random_points<dim>(grid, random))
+      , cells(grid.n_cells)
+    {
+      grid.gather(points.view());
+      std::iota(cells.begin(), cells.end(), 0u);
+      for (std::size_t n = 0; n < grid.n_nodes; ++n)
+        record(n)[Layout::mass] = random(0.5, 2);
+    }
+
+    double *
+    record(const std::size_t node)
+    {
+      return &grid.nodes[node * Layout::stride];
+    }
+
+    void
+    set_velocity(const std::size_t node, const Vector<dim> &v)
+    {
+      for (int d = 0; d < dim; ++d)
+        record(node)[Layout::momentum + d] = record(node)[Layout::mass] * v[d];
+    }
+
+    void
+    resist(const double chi, const double step)
+    {
+      for (std::size_t n = 0; n < grid.n_nodes; ++n)
+        std::fill_n(record(n) + Layout::remapped, dim, 0.);
+      resist_hourglass<dim>(cells,
+                            grid.view(),
+                            {{grid.cell_sums(), chi}},
+                            step);
+    }
+
+    Random                     random;
+    SmallGrid<dim>             grid;
+    SmallPoints<dim>           points;
+    std::vector<std::uint32_t> cells;
+  };
+
+  using Dimensions = testing::Types<std::integral_constant<int, 2>,
+                                    std::integral_constant<int, 3>>;
+  TYPED_TEST_SUITE(Hourglass, Dimensions);
+} // namespace
+
+
+
+TYPED_TEST(Hourglass, LinearFieldsMeetNoResistance)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  const auto a      = this->random.template vector<dim>();
+  const auto A      = this->random.template matrix<dim>(3.);
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    {
+      auto v = a;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          v[d] += A[d][e] * this->grid.place(n)[e];
+      this->set_velocity(n, v);
+    }
+  this->resist(0.5, 1e-9);
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    for (int d = 0; d < dim; ++d)
+      EXPECT_NEAR(this->record(n)[Layout::remapped + d], 0., 1e-11);
+}
+
+
+
+// No force and no moment on the whole, and energy is taken, never given; also
+// where the limit for a long step is at work.
+TYPED_TEST(Hourglass, MomentumIsKeptAndEnergyTaken)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  for (const double step : {1e-9, 0.1})
+    {
+      for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+        this->set_velocity(n, this->random.template vector<dim>());
+      this->resist(0.5, step);
+
+      Vector<dim> force{};
+      Matrix<dim> moment{};
+      double      power = 0, before = 0, after = 0;
+      for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+        {
+          const auto          x      = this->grid.place(n);
+          const double *const record = this->record(n);
+          const double        mass   = record[Layout::mass];
+          for (int d = 0; d < dim; ++d)
+            {
+              const double f = record[Layout::remapped + d];
+              const double v = record[Layout::momentum + d] / mass;
+              force[d] += f;
+              power += f * v;
+              before += 0.5 * mass * v * v;
+              after +=
+                0.5 * mass * (v + step * f / mass) * (v + step * f / mass);
+              for (int e = 0; e < dim; ++e)
+                moment[d][e] += x[d] * record[Layout::remapped + e] -
+                                x[e] * record[Layout::remapped + d];
+            }
+        }
+      const double size = std::abs(power);
+      EXPECT_LT(power, 0.);
+      EXPECT_LT(after, before);
+      for (int d = 0; d < dim; ++d)
+        {
+          EXPECT_NEAR(force[d], 0., 1e-13 * size);
+          for (int e = 0; e < dim; ++e)
+            EXPECT_NEAR(moment[d][e], 0., 1e-12 * size);
+        }
+    }
+}
+
+
+
+// f_a = - s_a chi c (m_cell / h) q on the mode xi eta of amplitude q
+TYPED_TEST(Hourglass, ResistanceIsThatOfTheFormula)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  for (std::uint32_t c = 0; c < this->grid.n_cells; ++c)
+    {
+      for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+        this->set_velocity(n, {});
+      const auto sign = [](const int i) {
+        return ((i & 1) != 0) == ((i & 2) != 0) ? 1. : -1.;
+      };
+      for (int i = 0; i < 1 << dim; ++i)
+        {
+          Vector<dim> v{};
+          v[1] = 0.3 * sign(i);
+          this->set_velocity(this->grid.node_number(c, i), v);
+        }
+      this->cells = {c};
+      this->resist(0.5, 1e-9);
+      const double h =
+        *std::min_element(this->grid.edge.begin(), this->grid.edge.end());
+      const double mass =
+        this->grid.sums[c * CellSums<dim>::stride + CellSums<dim>::mass];
+      for (int i = 0; i < 1 << dim; ++i)
+        for (int d = 0; d < dim; ++d)
+          EXPECT_NEAR(this->record(
+                        this->grid.node_number(c, i))[Layout::remapped + d],
+                      d == 1 ? -0.5 * mass / h * 0.3 * sign(i) : 0.,
+                      1e-12);
+    }
+}
