@@ -16,7 +16,7 @@
  *
  * Both use the coefficients c_k of the monomials of a component of velocity,
  * u = c_0 + c_1 xi + c_2 eta + c_3 xi eta + ... (bits of k: coordinates), and
- * the means over the points of the derivatives of these monomials. A bar is
+ * the means over the points of the derivatives of these monomials. Brackets are
  * such a mean, a prime the deviation from it; d, e, f are different axes.
  *
  *   none            D = grad v
@@ -29,6 +29,10 @@
  *                 2 D_de = <2 D_de> + (c^d_ef/h_e + c^e_df/h_d) xi_f' (3d)
  *
  * Derivation and proofs: doc/theory/treatments.md.
+ *
+ * Loops over directions are unrolled by hand: GCC does not do it in bodies as
+ * large as these, and an array with a variable index lives in memory, which
+ * makes the sweeps half as slow again in 3d.
  */
 namespace limber
 {
