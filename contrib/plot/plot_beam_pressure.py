@@ -1,0 +1,75 @@
+#!/usr/bin/python3
+"""Draws the pressure of a bent beam, the runs side by side at the same time.
+
+    plot_beam_pressure.py <time> <run folder> [<run folder> ...]
+
+The runs need pictures with the field 'pressure'. For each run the script
+prints the rms over the points of their pressure and of its mean over the block
+of 2 x 2 cells that they are in. The picture goes into the last folder: pressure.png.
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import run_folder
+
+LARGEST = 3  # MPa, end of the colours
+
+
+def rms(values):
+    return np.sqrt(np.mean(values**2))
+
+
+def block_means(values, blocks):
+    _, inverse, number = np.unique(blocks, axis=0, return_inverse=True,
+                                   return_counts=True)
+    inverse = inverse.ravel()
+    return (np.bincount(inverse, values) / number)[inverse]
+
+
+def main():
+    if len(sys.argv) < 3 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    wanted = float(sys.argv[1])
+    folders = [Path(name) for name in sys.argv[2:]]
+
+    figure, axes = plt.subplots(1, len(folders), squeeze=False, sharey=True,
+                                figsize=(3.4 * len(folders) + 1, 4),
+                                layout="constrained")
+    for axis, folder in zip(axes[0], folders):
+        parameters = run_folder.parameters(folder)
+        treatment = parameters["Body beam/Locking treatment"]
+        lower, upper, cells = (
+            run_folder.numbers(parameters["Grid/" + name])[:2]
+            for name in ("Lower corner", "Upper corner", "Cells"))
+        times, files = run_folder.series(folder)
+        nearest = np.argmin(abs(times - wanted))
+        cloud = run_folder.points(files[nearest])
+        place, pressure = cloud["position"][:, :2], cloud["pressure"] / 1e6
+
+        blocks = np.floor((place - lower) / (2 * (upper - lower) / cells))
+        print(f"{treatment}: t = {times[nearest]:.3g} s, rms of the pressure "
+              f"{rms(pressure):.3g} MPa, of its means over 2 x 2 cells "
+              f"{rms(block_means(pressure, blocks)):.3g} MPa")
+
+        dots = axis.scatter(place[:, 0], place[:, 1], c=pressure, s=2,
+                            linewidths=0, vmin=-LARGEST, vmax=LARGEST,
+                            cmap="coolwarm")
+        axis.set_title(treatment)
+        axis.set_aspect("equal")
+        axis.set_xlabel("x [m]")
+    axes[0, 0].set_ylabel("y [m]")
+    figure.colorbar(dots, ax=axes, label="pressure [MPa]", extend="both")
+
+    path = folders[-1] / "pressure.png"
+    figure.savefig(path, dpi=80)
+    print(path)
+
+
+if __name__ == "__main__":
+    main()

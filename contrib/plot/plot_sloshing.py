@@ -1,0 +1,88 @@
+#!/usr/bin/python3
+"""Draws the standing wave in a tank and holds it against linear theory.
+
+    plot_sloshing.py <run folder> [<run folder> ...]
+
+The runs need pictures with the field 'pressure'; those of the first run are
+drawn. Below, the centre of mass of each run and a cosine of the frequency
+w^2 = g k tanh(k H), k = pi / L. For each run the script prints the frequency,
+its error and the last swing as a share of the start. The picture goes into
+the first folder: sloshing.png.
+"""
+
+import sys
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+import run_folder
+
+GRAVITY, LENGTH, DEPTH = 9.81, 1, 0.5
+PERIODS = (0, 0.5, 2, 2.5)  # of the pictures
+
+
+def name_of(parameters):
+    treatment = parameters["Body water/Locking treatment"]
+    name = treatment
+    if treatment != "none":
+        name += ", " + parameters["Body water/History"]
+    if float(parameters["Method/Damping time"]) == 0:
+        name += ", no damping"
+    return name
+
+
+def main():
+    if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
+        sys.exit(__doc__)
+    folders = [Path(name) for name in sys.argv[1:]]
+    k = np.pi / LENGTH
+    angular = np.sqrt(GRAVITY * k * np.tanh(k * DEPTH))
+    period = 2 * np.pi / angular
+
+    figure = plt.figure(figsize=(11, 5), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=[4, 5])
+    axes = above.subplots(1, len(PERIODS), sharey=True)
+    times, files = run_folder.series(folders[0])
+    for axis, periods in zip(axes, PERIODS):
+        nearest = np.argmin(abs(times - periods * period))
+        cloud = run_folder.points(files[nearest])
+        dots = axis.scatter(*cloud["position"][:, :2].T, s=3, linewidths=0,
+                            c=cloud["pressure"] / 1e3, vmin=0, vmax=5,
+                            cmap="viridis")
+        axis.set_title(f"t = {times[nearest]:.2f} s", fontsize=10)
+        axis.set_aspect("equal")
+        axis.set_ylim(0, 0.56)
+    above.colorbar(dots, ax=axes, label="pressure [kPa]", extend="both")
+
+    axis = below.subplots()
+    for folder in folders:
+        name = name_of(run_folder.parameters(folder))
+        table, _ = run_folder.statistics(folder)
+        centre = table["centre"]
+        start = abs(centre[0])
+        axis.plot(table["time"], centre / start, label=name)
+        frequency = table["frequency"][-1]
+        crossings = np.flatnonzero(centre[:-1] * centre[1:] < 0)
+        swing = abs(centre[crossings[-1]:]).max() / start
+        print(f"{name}: {frequency:.4f} Hz, "
+              f"{100 * (frequency * period - 1):+.1f} %, last swing {swing:.2f}"
+              f", largest kinetic energy {table['kinetic energy'].max():.3g} J")
+    axis.plot(table["time"], -np.cos(angular * table["time"]), "k--",
+              linewidth=1, label="linear theory")
+    axis.set_xlabel("time [s]")
+    axis.set_ylabel("centre of mass / start")
+    axis.set_ylim(-1.15, 1.9)
+    axis.grid(alpha=0.3)
+    axis.legend(loc="upper center", fontsize=8, ncols=2,
+                bbox_to_anchor=(0.5, 0.98))
+
+    path = folders[0] / "sloshing.png"
+    figure.savefig(path, dpi=80)
+    print(path)
+
+
+if __name__ == "__main__":
+    main()
