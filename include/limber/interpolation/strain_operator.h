@@ -153,23 +153,42 @@ namespace limber
           if (e != d)
             {
               const int k = 1 << d | 1 << e;
-              linear[d][e] += projection.own * scale[d] * velocity(d)(k);
-              linear[d][d] += projection.mate * scale[e] * velocity(e)(k);
+              linear[d][e] +=
+                projection.own * scale[d] * at_centroid(d, k, means);
+              linear[d][d] +=
+                projection.mate * scale[e] * at_centroid(e, k, means);
             }
       if constexpr (dim == 3)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
             const int e = (d + 1) % 3, f = (d + 2) % 3;
-            product_mean[d] = means[1 << e | 1 << f];
+            product_mean[d] =
+              means[1 << e | 1 << f] - means[1 << e] * means[1 << f];
 #pragma GCC unroll 8
             for (int g = 0; g < dim; ++g)
               product[d][g] = (g == d ? projection.trilinear_own :
                                         projection.trilinear_mate) *
                               scale[g] * velocity(g)(7);
-            torsion[d] = 0.5 * (scale[f] * velocity(e)(1 << d | 1 << f) +
-                                scale[e] * velocity(f)(1 << d | 1 << e));
+            torsion[d] =
+              0.5 * (scale[f] * at_centroid(e, 1 << d | 1 << f, means) +
+                     scale[e] * at_centroid(f, 1 << d | 1 << e, means));
           }
+    }
+
+    /**
+     * The coefficient of the bilinear mode k in component d, in monomials of
+     * deviations from the centroid: those of the cell have a corner of it as
+     * their origin, which would leave its mirror image with another strain.
+     */
+    double
+    at_centroid(const int d, const int k, const CellMeans<dim> &means) const
+    {
+      const auto c = velocity(d);
+      if constexpr (dim == 2)
+        return c(k);
+      else
+        return c(k) + c(7) * means[7 ^ k];
     }
 
     template <class Number>
@@ -183,8 +202,10 @@ namespace limber
       if constexpr (dim == 3)
 #pragma GCC unroll 8
         for (int g = 0; g < dim; ++g)
-          result += product[d][g] *
-                    (xi[(g + 1) % 3] * xi[(g + 2) % 3] - product_mean[g]);
+          result +=
+            product[d][g] * ((xi[(g + 1) % 3] - centroid[(g + 1) % 3]) *
+                               (xi[(g + 2) % 3] - centroid[(g + 2) % 3]) -
+                             product_mean[g]);
       return result;
     }
 
@@ -308,6 +329,10 @@ namespace limber
             else
               {
                 result[d] = Linear<dim>::bilinear() * sums;
+                // bilinear modes about the centroid hold part of c_7
+                if constexpr (kind == Projection::assumed_strain && dim == 3)
+                  result[d][7] += sums[3] * means[4] + sums[5] * means[2] +
+                                  sums[6] * means[1];
 #pragma GCC unroll 8
                 for (int e = 0; e < dim; ++e)
                   result[d] += (sums[1 << e] * cell.inverse_edge[e]) *
@@ -352,7 +377,9 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           {
             const int    e = (d + 1) % dim, f = (d + 2) % dim;
-            const Number product = place[e] * place[f] - means[1 << e | 1 << f];
+            const Number product =
+              (place[e] - means[1 << e]) * (place[f] - means[1 << f]) -
+              (means[1 << e | 1 << f] - means[1 << e] * means[1 << f]);
             hourglass[d][7] +=
               (projection.trilinear_own * t[d][d] +
                projection.trilinear_mate * (t[e][e] + t[f][f])) *

@@ -219,3 +219,88 @@ TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
           EXPECT_NEAR(sum.projected[d][e], sum.plain[d][e], 1e-12);
     }
 }
+
+
+
+// The mirror image of a motion has the mirror image of its strain: no corner
+// of the cell is preferred.
+TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  for (int across = 0; across < dim; ++across)
+    {
+      // one cell with a few points, and its mirror image
+      CellGeometry<dim> cell;
+      for (int d = 0; d < dim; ++d)
+        {
+          cell.origin[d]       = 0;
+          cell.inverse_edge[d] = 1 + 0.5 * d;
+        }
+      for (int i = 0; i < 1 << dim; ++i)
+        cell.node[i] = i * Layout::stride;
+      std::vector<double> nodes((1 << dim) * Layout::stride);
+      for (double &value : nodes)
+        value = this->random();
+      auto mirrored_nodes = nodes;
+      for (int i = 0; i < 1 << dim; ++i)
+        for (int d = 0; d < dim; ++d)
+          mirrored_nodes[(i ^ 1 << across) * Layout::stride + Layout::velocity +
+                         d] = (d == across ? -1 : 1) *
+                              nodes[i * Layout::stride + Layout::velocity + d];
+
+      std::vector<std::array<double, dim>> places(5), mirrored_places;
+      std::vector<double> sums(1 << dim), mirrored_sums(1 << dim);
+      for (auto &xi : places)
+        {
+          for (double &x : xi)
+            x = this->random(0, 1);
+          mirrored_places.push_back(xi);
+          mirrored_places.back()[across] = 1 - xi[across];
+          for (int k = 0; k < (1 << dim) - 1; ++k)
+            {
+              double monomial = 1, mirrored = 1;
+              for (int d = 0; d < dim; ++d)
+                if (k >> d & 1)
+                  {
+                    monomial *= xi[d];
+                    mirrored *= mirrored_places.back()[d];
+                  }
+              sums[k] += monomial;
+              mirrored_sums[k] += mirrored;
+            }
+        }
+
+      const auto strain = [&](const std::vector<double>     &records,
+                              const std::vector<double>     &moments,
+                              const std::array<double, dim> &xi) {
+        CellSums<dim> view;
+        view.now = moments.data();
+        const NodalCoefficients<dim, Layout::velocity, dim> nodal(
+          cell, records.data());
+        const auto velocity = [&](const int d) { return nodal.component(d); };
+        const StrainOperator<dim, TestFixture::kind, decltype(velocity)> B(
+          velocity,
+          cell,
+          CellMeans<dim>(&view, 0),
+          projection_of(TestFixture::kind),
+          1.);
+        MotionIncrement<dim, double> result;
+        B.template evaluate<double>(xi, result);
+        return result;
+      };
+      for (std::size_t p = 0; p < places.size(); ++p)
+        {
+          const auto one = strain(nodes, sums, places[p]);
+          const auto two =
+            strain(mirrored_nodes, mirrored_sums, mirrored_places[p]);
+          EXPECT_NEAR(one.volumetric, two.volumetric, 1e-13);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              EXPECT_NEAR(one.gradient[d][e],
+                          ((d == across) != (e == across) ? -1 : 1) *
+                            two.gradient[d][e],
+                          1e-13);
+        }
+    }
+}
