@@ -27,7 +27,7 @@ ENVIRONMENT = {**os.environ,
 BIG_BOX = {"2d": ["Grid/Upper corner=4.96, 4.96", "Grid/Cells=496, 496"],
            "3d": ["Grid/Upper corner=5.3333333333, 2.6666666667, 2.6666666667",
                   "Grid/Cells=160, 80, 80"]}
-FINE = {"2d": ["Grid/Cells=992, 992", "End time=0.0005"],
+FINE = {"2d": ["Grid/Cells=1984, 1984", "End time=0.00025"],
         "3d": ["Grid/Cells=160, 160, 160", "End time=0.001"]}
 
 
