@@ -29,8 +29,8 @@ def name_of(parameters):
     name = treatment
     if treatment != "none":
         name += ", " + parameters["Body water/History"]
-    if float(parameters["Method/Damping time"]) == 0:
-        name += ", no damping"
+    if parameters["Body water/Hourglass control"] == "0":
+        name += ", no hourglass control"
     return name
 
 
