@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <support/scene_run.h>
 
+#include <limits>
+
 /**
  * @file The longest stable step of a bar in one cell, found by bisection on
  * the integrator, against the eigenvalues of the map of one step. With the
@@ -108,8 +110,11 @@ namespace
     if (order == "last")
       return clamped ? std::sqrt(4 * m.mean / (2 - m.square / m.mean)) :
                        std::sqrt(4 * spread / (2 - variance / spread));
-    return clamped ? 2 * m.mean / std::sqrt(m.square) :
-                     2 * spread / std::sqrt(std::max(0., variance));
+    if (clamped)
+      return 2 * m.mean / std::sqrt(m.square);
+    // one point alone has no spread, up to round-off
+    return variance > 1e-15 ? 2 * spread / std::sqrt(variance) :
+                              std::numeric_limits<double>::infinity();
   }
 
 
