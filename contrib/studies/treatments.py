@@ -86,8 +86,8 @@ def cell_pressures(path, edge):
 
 
 def roughness(pressure):
-    """Rms of the second differences between neighbouring cells, halved, over
-    the range of the pressure: 1 for a chequerboard, 0 for a linear field."""
+    """Rms of the second differences between neighbouring cells over four times
+    the range of the pressure: 1/2 for a chequerboard, 0 for a linear field."""
     second = np.concatenate([
         (pressure[:-2] - 2 * pressure[1:-1] + pressure[2:]).ravel(),
         (pressure[:, :-2] - 2 * pressure[:, 1:-1] + pressure[:, 2:]).ravel()])
