@@ -16,12 +16,6 @@ namespace limber
 {
   namespace
   {
-    // Points must not go beyond the ghost layer before ranks exchange them:
-    // the longest way between two exchanges, in cells.
-    constexpr double travel_limit = 0.9;
-
-
-
     /** The sums of a projected body for the sweeps; nothing for others. */
     template <int dim>
     std::optional<CellSums<dim>>
@@ -226,7 +220,7 @@ namespace limber
   {
     using Layout = NodeLayout<dim>;
 
-    std::vector<HourglassResistance<dim>> resisting;
+    resisting.clear();
     for (auto &body : bodies)
       if (body->description.hourglass_control > 0)
         resisting.push_back({body->cell_sums->view(),
@@ -510,186 +504,6 @@ namespace limber
 
 
 
-  // The one reduction over ranks that every step needs.
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::reduce_extremes()
-  {
-    any_lost           = nodes.points_have_left() ? 1 : 0;
-    any_entered_shared = nodes.has_entered_shared() ? 1 : 0;
-    most_points        = 0;
-    for (const auto &body : bodies)
-      most_points += body->points.size();
-    most_excess_batches = excess_batches;
-    if (parallel)
-      {
-        double *const extremes[] = {&speed_squared,
-                                    &wave_squared,
-                                    &displacement,
-                                    &largest_mass,
-                                    &any_lost,
-                                    &any_entered_shared,
-                                    &most_points,
-                                    &most_excess_batches};
-        constexpr int n          = std::size(extremes);
-        double        values[n];
-        for (int k = 0; k < n; ++k)
-          values[k] = *extremes[k];
-        MPI_Allreduce(
-          MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_MAX, grid.communicator);
-        for (int k = 0; k < n; ++k)
-          *extremes[k] = values[k];
-      }
-    wave_speed  = std::sqrt(wave_squared);
-    point_speed = std::sqrt(speed_squared);
-  }
-
-
-
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::relocate()
-  {
-    if (n_batches > n_batches_sorted)
-      excess_batches += n_batches - n_batches_sorted;
-    reduce_extremes();
-    if (any_lost > 0)
-      remove_lost_points();
-    nodes.add_entered();
-    if (any_entered_shared > 0)
-      nodes.agree_on_sums();
-    complete_cells();
-
-    travelled += displacement;
-    lap(Verb::relocate);
-  }
-
-
-
-  // The sums that the sweep has gathered which moved the points.
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::complete_cells()
-  {
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        body->cell_sums->start_completion(nodes.cell_plan());
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        {
-          body->cell_sums->finish_completion();
-          body->cell_sums->clear_next(nodes.owned_occupied_cells());
-          body->cell_sums->clear_next(nodes.ghost_occupied_cells());
-        }
-  }
-
-
-
-  // For points that have come to their cells other than by moving.
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::gather_cells()
-  {
-    for (auto &body : bodies)
-      if (body->cell_sums)
-        gather_cell_sums<dim>(body->points.view(),
-                              nodes.view(),
-                              body->cell_sums->view());
-    complete_cells();
-  }
-
-
-
-  template <int dim>
-  bool
-  ExplicitIntegrator<dim>::reorganise()
-  {
-    stopwatch.start();
-    // The next step may be somewhat longer than the last one.
-    const bool exchange =
-      parallel && travelled + 1.5 * displacement > travel_limit;
-    // A sort costs about as much as the detours of n / 4 surplus batches. All
-    // ranks sort in the same step, or each would wait while the others do.
-    if (exchange)
-      exchange_points();
-    else if (most_excess_batches > most_points / 4)
-      sort_points(/*agree=*/false);
-    lap(Verb::relocate);
-    return exchange;
-  }
-
-
-
-  // A point without a cell has left the box, or this rank's part of it.
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::remove_lost_points()
-  {
-    for (auto &body : bodies)
-      {
-        const auto strain_energy = [&]() {
-          return body->stress->summarize(body->points.view()).strain_energy;
-        };
-        const double before = strain_energy();
-        for (const LostPoint<dim> &point : body->points.remove_lost())
-          {
-            ++ledger.lost_points;
-            ledger.lost_mass += point.mass;
-            ledger.lost_momentum += point.momentum;
-            ledger.lost_energy +=
-              0.5 * point.momentum.norm_square() / point.mass;
-            for (int d = 0; d < dim; ++d)
-              ledger.lost_energy -=
-                point.mass * problem.loads.gravity[d] * point.position[d];
-            lost.emplace_back(body->description.name, point);
-          }
-        ledger.lost_energy += before - strain_energy();
-      }
-  }
-
-
-
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::exchange_points()
-  {
-    for (auto &body : bodies)
-      {
-        if (body->cell_sums)
-          {
-            body->cell_sums->clear(nodes.owned_occupied_cells());
-            body->cell_sums->clear(nodes.ghost_occupied_cells());
-          }
-        body->points.synchronise();
-      }
-    travelled = 0;
-    sort_points(/*agree=*/true);
-    gather_cells();
-  }
-
-
-
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::sort_points(const bool agree)
-  {
-    std::vector<std::uint32_t> cells;
-    n_batches_sorted = 0;
-    for (auto &body : bodies)
-      {
-        body->points.sort_by_cell();
-        const std::size_t before = cells.size();
-        body->points.collect_cells(cells);
-        n_batches_sorted += cells.size() - before;
-      }
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    nodes.set_occupied(std::move(cells), agree);
-    excess_batches = 0;
-  }
-
-
-
   template <int dim>
   double
   ExplicitIntegrator<dim>::longest_step() const
@@ -728,20 +542,6 @@ namespace limber
     largest_mass = former.largest_mass;
     loads.restore(former.face_areas);
     reinit();
-  }
-
-
-
-  template <int dim>
-  double
-  ExplicitIntegrator<dim>::imbalance() const
-  {
-    double own = 0;
-    for (const auto &body : bodies)
-      own += body->points.size();
-    const auto all =
-      dealii::Utilities::MPI::min_max_avg(own, grid.communicator);
-    return all.avg > 0 ? all.max / all.avg : 1;
   }
 
 

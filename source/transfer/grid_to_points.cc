@@ -2,6 +2,7 @@
 #include <limber/interpolation/cell_means.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/grid_to_points.h>
+#include <limber/transfer/sum_momentum.h>
 
 namespace limber
 {
@@ -15,32 +16,10 @@ namespace limber
                    const CellGeometry<dim> &cell,
                    double *const            nodes)
     {
-      using Kernel = Linear<dim>;
-      using Nodes  = typename Kernel::Nodes;
-
+      using Nodes = typename Linear<dim>::Nodes;
+      Nodes                  mass{};
       std::array<Nodes, dim> momentum{};
-      for (std::size_t p = batch.begin; p < batch.end; ++p)
-        {
-          std::array<Nodes, dim> w;
-          for (int d = 0; d < dim; ++d)
-            w[d] = Kernel::weights(d,
-                                   (points.position[d][p] - cell.origin[d]) *
-                                     cell.inverse_edge[d]);
-          Nodes mass_weight = w[0] * w[1];
-          if constexpr (dim == 3)
-            mass_weight *= w[2];
-          mass_weight *= points.mass[p];
-          for (int d = 0; d < dim; ++d)
-            {
-              Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
-              if constexpr (affine)
-                for (int e = 0; e < dim; ++e)
-                  velocity += points.affine[d * dim + e][p] /
-                              cell.inverse_edge[e] *
-                              (Kernel::sign(e) * Kernel::across(w[e], e));
-              momentum[d] += mass_weight * velocity;
-            }
-        }
+      sum_momentum<dim, affine>(points, batch, cell, mass, momentum.data());
       add_to_nodes<dim, NodeLayout<dim>::remapped>(cell, momentum, nodes);
     }
 

@@ -2,6 +2,7 @@
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/points_to_grid.h>
+#include <limber/transfer/sum_momentum.h>
 
 namespace limber
 {
@@ -10,46 +11,6 @@ namespace limber
     template <int dim>
     using ToNodes =
       std::array<typename Linear<dim>::Nodes, 1 + 2 * dim>; // m, f, p
-
-
-
-    /** Mass and momentum, nodes as lanes: products keep small masses exact. */
-    template <int dim, bool affine>
-    __attribute__((always_inline)) inline void
-    add_momentum(const PointView<dim>    &points,
-                 const CellBatch         &batch,
-                 const CellGeometry<dim> &cell,
-                 ToNodes<dim>            &to_nodes)
-    {
-      using Kernel = Linear<dim>;
-      using Nodes  = typename Kernel::Nodes;
-      using Layout = NodeLayout<dim>;
-
-      for (std::size_t p = batch.begin; p < batch.end; ++p)
-        {
-          std::array<Nodes, dim> w;
-          for (int d = 0; d < dim; ++d)
-            w[d] = Kernel::weights(d,
-                                   (points.position[d][p] - cell.origin[d]) *
-                                     cell.inverse_edge[d]);
-          Nodes mass_weight = w[0] * w[1];
-          if constexpr (dim == 3)
-            mass_weight *= w[2];
-          mass_weight *= points.mass[p];
-          to_nodes[Layout::mass] += mass_weight;
-          for (int d = 0; d < dim; ++d)
-            {
-              Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
-              if constexpr (affine)
-                // x_i - x: one weight of the other end, signed
-                for (int e = 0; e < dim; ++e)
-                  velocity += points.affine[d * dim + e][p] /
-                              cell.inverse_edge[e] *
-                              (Kernel::sign(e) * Kernel::across(w[e], e));
-              to_nodes[Layout::momentum + d] += mass_weight * velocity;
-            }
-        }
-    }
 
 
 
@@ -92,7 +53,11 @@ namespace limber
           const CellGeometry<dim> &cell = grid.cells[batch.cell];
           ToNodes<dim>             to_nodes{};
           if constexpr (momentum)
-            add_momentum<dim, affine>(points, batch, cell, to_nodes);
+            sum_momentum<dim, affine>(points,
+                                      batch,
+                                      cell,
+                                      to_nodes[NodeLayout<dim>::mass],
+                                      &to_nodes[NodeLayout<dim>::momentum]);
           if constexpr (force)
             add_force<dim, kind, deviator>(
               points, batch, cell, what, sums, to_nodes);

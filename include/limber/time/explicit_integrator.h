@@ -6,6 +6,7 @@
 #include <limber/grid/boundary_conditions.h>
 #include <limber/state/material_body.h>
 #include <limber/time/loads.h>
+#include <limber/transfer/hourglass.h>
 
 #include <array>
 #include <map>
@@ -191,6 +192,9 @@ namespace limber
     std::vector<std::pair<std::string, LostPoint<dim>>> lost;
 
     // Over all ranks
+    // Refilled in each step, which then allocates nothing
+    std::vector<HourglassResistance<dim>> resisting;
+
     double      any_lost            = 0;
     double      any_entered_shared  = 0;
     double      most_points         = 0; // on one rank
