@@ -131,8 +131,9 @@ namespace limber
 
   template <int dim>
   void
-  BoundaryConditions<dim>::apply_remapped(NodalFields<dim> &nodes,
-                                          const double      time) const
+  BoundaryConditions<dim>::apply_trial(NodalFields<dim>  &nodes,
+                                       const unsigned int first,
+                                       const double       time) const
   {
     using Layout = NodeLayout<dim>;
     for (const std::uint32_t node : nodes.active_boundary_nodes())
@@ -141,12 +142,12 @@ namespace limber
         if (!(record[Layout::mass] > 0))
           continue;
         const auto new_velocity = read<dim>(record + Layout::velocity);
-        auto       velocity     = read<dim>(record + Layout::remapped);
+        auto       velocity     = read<dim>(record + first);
         for (unsigned int side = 0; side < 2 * dim; ++side)
           if (nodes.grid.sides_of_node[node] >> side & 1)
             act(side, nodes.grid, node, time, velocity, &new_velocity);
         for (int d = 0; d < dim; ++d)
-          record[Layout::remapped + d] = velocity[d];
+          record[first + d] = velocity[d];
       }
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limber
 {
@@ -192,12 +193,27 @@ namespace limber
   template <int dim>
   Balance<dim>::Balance(const State<dim> &state)
   {
-    RowSums<dim>          sums = sum_all(state);
-    const BodyTotals<dim> all  = totals_from(sums, state).all;
-    start.kinetic_energy       = all.kinetic_energy;
-    start.strain_energy        = all.strain_energy;
-    start.gravitational_energy = all.gravitational_energy;
-    start.momentum             = all.momentum;
+    RowSums<dim>           sums   = sum_all(state);
+    const Totals<dim>      totals = totals_from(sums, state);
+    const BodyTotals<dim> &all    = totals.all;
+    start.kinetic_energy          = all.kinetic_energy;
+    start.strain_energy           = all.strain_energy;
+    start.gravitational_energy    = all.gravitational_energy;
+    start.momentum                = all.momentum;
+
+    // What stresses and velocities of the size of round-off hold: a body at
+    // rest that nothing has moved yet does not drift.
+    const double eps = std::numeric_limits<double>::epsilon();
+    for (unsigned int b = 0; b < state.bodies.size(); ++b)
+      {
+        const MaterialBody<dim> &body = *state.bodies[b];
+        const double             wave_speed_squared =
+          dealii::Utilities::MPI::max(body.stress->wave_speed_squared(
+                                        body.points.view()),
+                                      state.grid.communicator);
+        start.energy_scale +=
+          totals.bodies[b].mass * wave_speed_squared * std::pow(64 * eps, 2);
+      }
   }
 
 

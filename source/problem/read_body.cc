@@ -64,6 +64,14 @@ namespace limber
         "cell that averaged strain does not see (m its mass, c the wave "
         "speed); 'auto' is 0.1 where averages leave such motions without "
         "resistance, else 0.");
+      parameters.declare(
+        "Chequerboard control",
+        "auto",
+        admissible::non_negative_number("0.5").or_word("auto"),
+        "Dimensionless: rate, times h / c, at which a pressure per cell that "
+        "alternates from cell to cell, and so moves nothing, is evened out "
+        "without a change of volume; 'auto' is 0.5 for liquids with averages, "
+        "else 0.");
       declare_word(parameters,
                    "History",
                    "keep",
@@ -231,14 +239,24 @@ namespace limber
 
 
 
+    /** Whether there is one pressure per cell. */
+    bool
+    has_cell_pressure(const Projection treatment)
+    {
+      return treatment == Projection::cell ||
+             treatment == Projection::cell_shear ||
+             treatment == Projection::cell_full;
+    }
+
+
+
     template <int dim>
     void
     read_treatment(const Section &section,
                    Body<dim>     &body,
                    Problem<dim>  &problem)
     {
-      const bool fluid =
-        read_word(section, "Material", law_words()).takes_pressure;
+      const bool fluid = body.is_liquid;
       body.treatment = read_word(section, "Locking treatment", locking_words());
       if (body.treatment == Projection::automatic)
         body.treatment = automatic_treatment(body, fluid, problem);
@@ -257,6 +275,19 @@ namespace limber
           " has nothing to control with the locking treatment 'none', which "
           "averages nothing. Set 'Hourglass control = 0', or another 'Locking "
           "treatment'.");
+      body.chequerboard_control =
+        section.text("Chequerboard control") != "auto" ?
+          section.number("Chequerboard control") :
+        fluid && has_cell_pressure(body.treatment) ? 0.5 :
+                                                     0;
+      if (body.chequerboard_control > 0 && !has_cell_pressure(body.treatment))
+        throw InputError(
+          "The chequerboard control " + section.text("Chequerboard control") +
+          " in " + section.where("Chequerboard control") +
+          " has nothing to control with the locking treatment " +
+          in_quotes(section.text("Locking treatment")) +
+          ", which has no single pressure per cell. Set 'Chequerboard control "
+          "= 0', or 'Locking treatment = cell'.");
       body.relaxation_time = section.number("Relaxation time");
 
       const bool relaxes = body.history == HistoryTreatment::relax;
@@ -303,6 +334,8 @@ namespace limber
                                            body.shape->bounding_box());
       read_material(section, body, problem);
       read_initial_pressure(section, constants, problem, body);
+      body.is_liquid =
+        read_word(section, "Material", law_words()).takes_pressure;
       read_treatment(section, body, problem);
       return body;
     }

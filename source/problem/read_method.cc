@@ -17,7 +17,7 @@ namespace limber
                  "How a step in time is taken.");
     declare_word(parameters,
                  "Stress update",
-                 "last, remapped",
+                 "auto",
                  stress_update_words(),
                  "When in a step the stress follows the motion.");
     declare_word(parameters,

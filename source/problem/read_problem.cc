@@ -7,6 +7,40 @@ namespace limber
 {
   namespace
   {
+    /**
+     * Points of a solid that cross cells gain or lose energy with the first
+     * order of the step if the strain has one velocity only
+     * (doc/theory/energy_balance.md); for a liquid it makes no difference.
+     */
+    template <int dim>
+    void
+    choose_stress_update(Problem<dim> &problem)
+    {
+      if (problem.method.order != StressUpdateOrder::automatic)
+        return;
+      const auto solid =
+        std::find_if(problem.bodies.begin(),
+                     problem.bodies.end(),
+                     [](const auto &body) { return !body.is_liquid; });
+      const bool any_solid = solid != problem.bodies.end();
+      problem.method.order = any_solid ? StressUpdateOrder::both_ends :
+                                         StressUpdateOrder::last_remapped;
+      problem.notes.push_back(
+        any_solid ?
+          "Stress update 'auto' is 'both ends', which keeps the energy of "
+          "solids like body " +
+            in_quotes(solid->name) +
+            "; 'last, remapped' takes two thirds of "
+            "the time." :
+          "Stress update 'auto' is 'last, remapped', as liquids gain nothing "
+          "from 'both ends'.");
+    }
+  } // namespace
+
+
+
+  namespace
+  {
     // When a run is resumed it may end at another time and write other files,
     // but not become another run.
     std::vector<std::string>
@@ -43,7 +77,8 @@ namespace limber
     read_volume_loads(loads, problem);
     read_bodies(root, problem);
     read_face_loads(loads, problem);
-    problem.method     = read_method(root.subsection("Method"));
+    problem.method = read_method(root.subsection("Method"));
+    choose_stress_update(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
     read_observables(root, problem);

@@ -67,11 +67,17 @@ namespace limber
   stress_update_words()
   {
     static const Words<StressUpdateOrder> words = {
+      {"auto",
+       StressUpdateOrder::automatic,
+       "'both ends' with solids, or else 'last, remapped'; the log says which"},
       {"first", StressUpdateOrder::first, "USF, before the forces"},
       {"last", StressUpdateOrder::last, "USL, with the moved nodes"},
       {"last, remapped",
        StressUpdateOrder::last_remapped,
-       "MUSL, velocity gradient from the updated points"}};
+       "MUSL, velocity gradient from the updated points"},
+      {"both ends",
+       StressUpdateOrder::both_ends,
+       "USAVG, half of it first, half last; second order, keeps energy"}};
     return words;
   }
 

@@ -143,8 +143,12 @@ namespace limber
     if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
       balance(grid, bodies);
     for (auto &body : bodies)
-      if (body->description.treatment != Projection::none)
-        body->cell_sums.emplace(grid);
+      {
+        if (body->description.treatment != Projection::none)
+          body->cell_sums.emplace(grid);
+        if (body->description.chequerboard_control > 0)
+          body->cell_shift.reinit(grid.n_cells());
+      }
     return bodies;
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/time/explicit_integrator.h>
+#include <limber/transfer/chequerboard.h>
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/hourglass.h>
 #include <limber/transfer/points_to_grid.h>
@@ -91,8 +92,12 @@ namespace limber
   {
     nodes.reinit();
     for (auto &body : bodies)
-      if (body->cell_sums)
-        body->cell_sums->reinit();
+      {
+        if (body->cell_sums)
+          body->cell_sums->reinit();
+        if (body->cell_shift.size() > 0)
+          body->cell_shift.reinit(grid.n_cells());
+      }
     loads.reinit();
     travelled = 0;
     sort_points(/*agree=*/true);
@@ -101,76 +106,114 @@ namespace limber
 
 
 
+  // The order of the strain: the whole of it before the forces (USF), the
+  // whole after the motion (USL, MUSL), or half of it at either end.
   template <int dim>
   void
   ExplicitIntegrator<dim>::advance(const double now, const double length)
   {
-    time = now;
-    step = length;
+    using Order = StressUpdateOrder;
+    time        = now;
+    step        = length;
     stopwatch.start();
 
-    if (problem.method.order == StressUpdateOrder::first)
-      stress_first_step();
-    else
-      stress_last_step();
+    clear();
+    control_chequerboards();
+    switch (problem.method.order)
+      {
+        case Order::first:
+          strain_as_points_bring_it(step);
+          accelerate_nodes();
+          grid_to_points(/*remap=*/false, /*move=*/true);
+          break;
 
+        case Order::last:
+          points_to_nodes();
+          accelerate_nodes();
+          grid_to_points(/*remap=*/false, /*move=*/false);
+          update_stress(step, /*remapped=*/false, /*move=*/true);
+          break;
+
+        case Order::last_remapped:
+          points_to_nodes();
+          accelerate_nodes();
+          strain_as_points_leave_it(step);
+          break;
+
+        case Order::automatic: // has been chosen long before
+        case Order::both_ends:
+          strain_as_points_bring_it(0.5 * step);
+          accelerate_nodes();
+          strain_as_points_leave_it(0.5 * step);
+          break;
+      }
     relocate();
   }
 
 
 
-  // USF: strain from the velocity that the points bring to the grid.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::stress_first_step()
+  ExplicitIntegrator<dim>::points_to_nodes()
   {
-    using Layout = NodeLayout<dim>;
-
-    clear();
-    points_to_grid(/*momentum=*/true, /*force=*/false);
-    sum_shared_nodes(0, Layout::remapped);
-    divide_remapped(Layout::momentum);
-    interpolate_hanging();
-    update_stress(/*remapped=*/true, /*move=*/false);
-
-    points_to_grid(/*momentum=*/false, /*force=*/true);
-    sum_shared_nodes(Layout::force, Layout::force + dim);
-    resist_hourglass();
-    add_loads();
-    advance_nodes();
-    apply_boundaries();
-    interpolate_hanging();
-    check_nodes();
-    grid_to_points(/*remap=*/false, /*move=*/true);
+    points_to_grid(/*momentum=*/true, /*force=*/true);
+    sum_shared_nodes(0, NodeLayout<dim>::remapped);
   }
 
 
 
-  // USL, and MUSL with the strain from the re-mapped velocity.
+  // Strain over @p length with the velocity that the points bring to the grid,
+  // and only then the forces.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::stress_last_step()
+  ExplicitIntegrator<dim>::strain_as_points_bring_it(const double length)
   {
-    using Layout     = NodeLayout<dim>;
-    const bool remap = problem.method.order == StressUpdateOrder::last_remapped;
+    using Layout = NodeLayout<dim>;
 
-    clear();
-    points_to_grid(/*momentum=*/true, /*force=*/true);
+    points_to_grid(/*momentum=*/true, /*force=*/false);
     sum_shared_nodes(0, Layout::remapped);
+    divide_remapped(Layout::momentum, time);
+    interpolate_hanging();
+    update_stress(length, /*remapped=*/true, /*move=*/false);
+    for (const std::uint32_t node : nodes.active_nodes())
+      std::fill_n(nodes.record(node) + Layout::remapped, dim, 0.);
+    lap(Verb::advance_nodes);
+
+    points_to_grid(/*momentum=*/false, /*force=*/true);
+    sum_shared_nodes(Layout::force, Layout::force + dim);
+  }
+
+
+
+  // Velocities and places at the end of the step; strain over @p length with
+  // the velocity that the points would bring back to the nodes.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::strain_as_points_leave_it(const double length)
+  {
+    using Layout = NodeLayout<dim>;
+
+    grid_to_points(/*remap=*/true, /*move=*/false);
+    sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+    divide_remapped(Layout::remapped, time + step);
+    if (problem.method.order == StressUpdateOrder::both_ends)
+      centre_velocity();
+    interpolate_hanging();
+    update_stress(length, /*remapped=*/true, /*move=*/true);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::accelerate_nodes()
+  {
     resist_hourglass();
     add_loads();
     advance_nodes();
     apply_boundaries();
     interpolate_hanging();
     check_nodes();
-    grid_to_points(remap, /*move=*/false);
-    if (remap)
-      {
-        sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
-        divide_remapped(Layout::remapped);
-        interpolate_hanging();
-      }
-    update_stress(remap, /*move=*/true);
   }
 
 
@@ -208,6 +251,40 @@ namespace limber
                                                  sums ? &*sums : nullptr);
       }
     lap(Verb::points_to_grid);
+  }
+
+
+
+  // Before points give anything to the nodes, whose records serve here.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::control_chequerboards()
+  {
+    for (auto &body : bodies)
+      {
+        const double strength = body->description.chequerboard_control;
+        if (!(strength > 0))
+          continue;
+        const double share =
+          std::min(strength * wave_speed * step / grid.smallest_edge,
+                   1. / (1 << dim));
+        gather_chequerboards<dim>(nodes.owned_occupied_cells(),
+                                  nodes.view(),
+                                  body->cell_sums->view());
+        // A node in the middle of an edge has not all cells around it.
+        for (const HangingNode &hanging : grid.hanging_nodes)
+          std::fill_n(nodes.record(hanging.node), NodeLayout<dim>::stride, 0.);
+        sum_shared_nodes(0, n_chequerboard_slots<dim>);
+        for (const auto *const cells :
+             {&nodes.owned_occupied_cells(), &nodes.ghost_occupied_cells()})
+          find_chequerboard_shifts<dim>(*cells,
+                                        nodes.view(),
+                                        body->cell_sums->view(),
+                                        share,
+                                        body->cell_shift.data());
+        nodes.clear();
+        lap(Verb::update_stress);
+      }
   }
 
 
@@ -411,7 +488,8 @@ namespace limber
   // A velocity in the re-mapped slot, with the boundary conditions on it.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::divide_remapped(const unsigned int momentum)
+  ExplicitIntegrator<dim>::divide_remapped(const unsigned int momentum,
+                                           const double       when)
   {
     using Layout = NodeLayout<dim>;
     for (const std::uint32_t node : nodes.active_nodes())
@@ -425,8 +503,35 @@ namespace limber
           record[Layout::remapped + d] = record[momentum + d] * inverse;
       }
     lap(Verb::advance_nodes);
-    boundaries.apply_remapped(nodes, time + step);
+    boundaries.apply_trial(nodes, Layout::remapped, when);
     lap(Verb::apply_boundaries);
+  }
+
+
+
+  // From the new velocity to that of the middle of the step, with which points
+  // move to second order in time.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::centre_velocity()
+  {
+    using Layout = NodeLayout<dim>;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        for (int d = 0; d < dim; ++d)
+          record[Layout::increment + d] =
+            record[Layout::velocity + d] - 0.5 * record[Layout::increment + d];
+      }
+    lap(Verb::advance_nodes);
+    boundaries.apply_trial(nodes, Layout::increment, time + 0.5 * step);
+    lap(Verb::apply_boundaries);
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        std::copy_n(record + Layout::increment, dim, record + Layout::velocity);
+      }
+    lap(Verb::advance_nodes);
   }
 
 
@@ -472,12 +577,14 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::update_stress(const bool remapped, const bool move)
+  ExplicitIntegrator<dim>::update_stress(const double length,
+                                         const bool   remapped,
+                                         const bool   move)
   {
     StressSweep what;
-    what.step     = step;
+    what.step     = length;
     what.remapped = remapped;
-    what.move     = move;
+    what.move     = move ? step : 0;
     for (auto &body : bodies)
       {
         const Body<dim> &description = body->description;
@@ -485,10 +592,14 @@ namespace limber
           description.history == HistoryTreatment::replace ?
             1 :
           description.history == HistoryTreatment::relax ?
-            -std::expm1(-step / description.relaxation_time) :
+            -std::expm1(-length / description.relaxation_time) :
           description.history == HistoryTreatment::crossing ?
-            -std::expm1(-step * point_speed / grid.smallest_edge) :
+            -std::expm1(-length * point_speed / grid.smallest_edge) :
             0;
+        what.shift       = description.chequerboard_control > 0 ?
+                             body->cell_shift.data() :
+                             nullptr;
+        what.shift_share = length / step;
         const auto sums  = sums_of(*body);
         const auto found = body->stress->update(body->points.view(),
                                                 nodes.view(),

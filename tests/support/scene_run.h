@@ -163,7 +163,7 @@ namespace limber
 
 
   inline const std::vector<std::string> stress_update_orders =
-    {"first", "last", "last, remapped"};
+    {"first", "last", "last, remapped", "both ends"};
 } // namespace limber
 
 #endif

@@ -38,12 +38,13 @@ namespace limber
     apply(NodalFields<dim> &nodes, double time, const Account &account) const;
 
     /**
-     * Change the re-mapped velocity likewise; impulses of this trial velocity
-     * do not reach the points. A node that sticks to a side with friction,
-     * given its new velocity, sticks here too.
+     * Change the velocity that begins at slot @p first of the records
+     * likewise; impulses of such a trial velocity do not reach the points. A
+     * node that sticks to a side with friction, given its new velocity, sticks
+     * here too.
      */
     void
-    apply_remapped(NodalFields<dim> &nodes, double time) const;
+    apply_trial(NodalFields<dim> &nodes, unsigned int first, double time) const;
 
   private:
     bool

@@ -40,9 +40,11 @@ namespace limber
 
   enum class StressUpdateOrder
   {
-    first,        // USF
-    last,         // USL
-    last_remapped // MUSL
+    automatic,     // by the materials
+    first,         // USF
+    last,          // USL
+    last_remapped, // MUSL
+    both_ends      // USAVG
   };
 
   enum class Transfer
@@ -86,11 +88,14 @@ namespace limber
     std::string         law;      // by name, as in the list of laws
     std::vector<double> material; // its entries, in its order
 
-    Projection        treatment         = Projection::none;
-    HourglassResponse hourglass         = HourglassResponse::bending;
-    double            hourglass_control = 0; // chi, without dimension
-    HistoryTreatment  history           = HistoryTreatment::keep;
-    double            relaxation_time   = 0; // s, for HistoryTreatment::relax
+    bool is_liquid = false; // bears pressure, but no shape of its own
+
+    Projection        treatment            = Projection::none;
+    HourglassResponse hourglass            = HourglassResponse::bending;
+    double            hourglass_control    = 0; // chi, without dimension
+    double            chequerboard_control = 0; // without dimension
+    HistoryTreatment  history              = HistoryTreatment::keep;
+    double            relaxation_time = 0; // s, for HistoryTreatment::relax
 
     /** Mass per volume in the reference state, kg/m^3. */
     double
@@ -127,7 +132,7 @@ namespace limber
 
   struct Method
   {
-    StressUpdateOrder order    = StressUpdateOrder::last_remapped;
+    StressUpdateOrder order    = StressUpdateOrder::automatic;
     Transfer          transfer = Transfer::flip;
     double damping_time        = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
     double courant_number      = 0.4; // C

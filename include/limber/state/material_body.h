@@ -21,6 +21,9 @@ namespace limber
     MaterialPoints<dim>                      points;
     // Hu-Washizu sums in DGQ0, only where the treatment needs them
     std::optional<CellFields<dim>> cell_sums;
+    // Per cell, what the volumetric variable gets in this step against
+    // chequerboards; empty where they are not controlled
+    LazyArray<double> cell_shift = {};
   };
 
 

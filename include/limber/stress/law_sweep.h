@@ -26,8 +26,8 @@ namespace limber
            const CellSums<dim>  *sums,
            const StressSweep    &what) const override
     {
-      return what.move ? sweep<true>(points, grid, sums, what) :
-                         sweep<false>(points, grid, sums, what);
+      return what.move > 0 ? sweep<true>(points, grid, sums, what) :
+                             sweep<false>(points, grid, sums, what);
     }
 
     StateSummary
@@ -180,7 +180,9 @@ namespace limber
 
       const unsigned int strained      = what.remapped ? dim : 0;
       const bool         measure_waves = !law.has_constant_wave_speed();
-      Number             waves{}, viscous{}, removed{}, displacement{};
+      [[maybe_unused]] const bool changes_history =
+        what.relaxation > 0 || what.shift != nullptr;
+      Number waves{}, viscous{}, removed{}, displacement{};
 
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
@@ -191,7 +193,9 @@ namespace limber
         const auto velocity = [&](const int d) {
           return nodal.component(strained + d);
         };
-        const CellMeans<dim> means(sums, batch.cell);
+        const CellMeans<dim>          means(sums, batch.cell);
+        [[maybe_unused]] const double shift =
+          what.shift ? what.shift_share * what.shift[batch.cell] : 0;
         const StrainOperator<dim, kind, decltype(velocity)> strain(
           velocity, cell, means, strain_projection, what.step);
 
@@ -211,11 +215,12 @@ namespace limber
               lanes.only_active(lanes.load(points.mass));
 
             if constexpr (projected)
-              if (what.relaxation > 0)
+              if (changes_history)
                 {
                   Number      &variable = volumetric_variable(state);
                   const Number before   = law.volumetric_energy(variable);
-                  variable += what.relaxation * (means.volumetric() - variable);
+                  variable +=
+                    what.relaxation * (means.volumetric() - variable) + shift;
                   removed += mass * inverse_density *
                              (before - law.volumetric_energy(variable));
                 }
@@ -239,7 +244,7 @@ namespace limber
                 std::array<Number, dim> shift;
                 for (int d = 0; d < dim; ++d)
                   shift[d] =
-                    what.step *
+                    what.move *
                     Kernel::template value<Number>(nodal.component(d), xi);
                 const auto moved =
                   move_points<dim>(points, grid, batch.cell, lanes, shift);

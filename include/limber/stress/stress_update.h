@@ -14,12 +14,16 @@ namespace limber
   /** How a sweep over a body updates its strain and stress. */
   struct StressSweep
   {
-    double step     = 0;     // s
+    double step     = 0;     // over which they are strained, s
     bool   remapped = false; // grad v of the re-mapped velocity, not the new
-    bool   move     = false; // then move the points with the new velocity
+    // Over which they then move with the new velocity, s; 0: they stay.
+    double move = 0;
     // Share of the way that the volumetric variable goes to the mean of the
     // cell in this step: 0 keeps the history, 1 replaces it.
     double relaxation = 0;
+    // Per cell, what that variable gets besides; null: nothing.
+    const double *shift       = nullptr;
+    double        shift_share = 1; // of it
   };
 
 

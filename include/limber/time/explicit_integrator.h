@@ -116,14 +116,20 @@ namespace limber
 
   private:
     void
-    stress_first_step();
+    points_to_nodes();
     void
-    stress_last_step();
+    strain_as_points_bring_it(double length);
+    void
+    strain_as_points_leave_it(double length);
+    void
+    accelerate_nodes();
 
     void
     clear();
     void
     points_to_grid(bool momentum, bool force);
+    void
+    control_chequerboards();
     void
     resist_hourglass();
     void
@@ -139,13 +145,15 @@ namespace limber
     void
     account_loads();
     void
-    divide_remapped(unsigned int momentum);
+    divide_remapped(unsigned int momentum, double when);
+    void
+    centre_velocity();
     void
     interpolate_hanging();
     void
     grid_to_points(bool remap, bool move);
     void
-    update_stress(bool remapped, bool move);
+    update_stress(double length, bool remapped, bool move);
     void
     relocate();
     void

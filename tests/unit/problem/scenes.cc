@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -236,6 +237,38 @@ TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
   EXPECT_EQ(problem.observables[1].second_axis, 2u);
   EXPECT_EQ(problem.observables[1].body, "pin");
   EXPECT_TRUE(problem.output.fields.empty());
+}
+
+
+
+TEST(Scenes, AutomaticChoicesFollowTheMaterial)
+{
+  const std::string automatic = "Method/Stress update=auto";
+  const auto        read      = [&](const std::string              &name,
+                        const std::vector<std::string> &overrides) {
+    return read_problem<2>(SceneFile(prm_folder() + name, overrides));
+  };
+  const auto solid =
+    read("cantilever.prm", {automatic, "Body beam/Locking treatment=auto"});
+  const auto liquid =
+    read("dam_break.prm", {automatic, "Body water/Locking treatment=auto"});
+
+  EXPECT_EQ(solid.method.order, StressUpdateOrder::both_ends);
+  EXPECT_EQ(solid.bodies[0].treatment, Projection::assumed_strain);
+  EXPECT_EQ(solid.bodies[0].hourglass_control, 0);
+  EXPECT_EQ(solid.bodies[0].chequerboard_control, 0);
+  EXPECT_EQ(liquid.method.order, StressUpdateOrder::last_remapped);
+  EXPECT_EQ(liquid.bodies[0].treatment, Projection::cell);
+  EXPECT_EQ(liquid.bodies[0].hourglass_control, 0.1);
+  EXPECT_EQ(liquid.bodies[0].chequerboard_control, 0.5);
+  for (const auto *const problem : {&solid, &liquid})
+    EXPECT_EQ(std::count_if(problem->notes.begin(),
+                            problem->notes.end(),
+                            [](const std::string &note) {
+                              return note.find("'auto' is") !=
+                                     std::string::npos;
+                            }),
+              2);
 }
 
 

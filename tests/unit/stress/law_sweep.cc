@@ -395,7 +395,7 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
         sweep = std::make_unique<Plain>(law, StrainProjection());
 
       sweep->update(still.view(), this->grid.view(), &sums, what);
-      what.move = true;
+      what.move = 0.07;
       const auto summary =
         sweep->update(moved.view(), this->grid.view(), &sums, what);
       this->expect_states(moved.view(), still.view(), law, 1e-15);
@@ -408,7 +408,7 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
               double shift = 0;
               for (int i = 0; i < 1 << dim; ++i)
                 shift +=
-                  what.step *
+                  what.move *
                   this->grid.nodes[this->grid.cells[still.cell[p]].node[i] +
                                    NodeLayout<dim>::velocity + d] *
                   this->grid.shape(still.cell[p], i, still.position(p));

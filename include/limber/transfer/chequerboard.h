@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_transfer_chequerboard_h
+#define limber_transfer_chequerboard_h
+
+#include <limber/grid/grid_view.h>
+
+#include <vector>
+
+/**
+ * @file The dual of the hourglass control. One pressure per cell (Q1-P0) can
+ * alternate from cell to cell without a force on any node, so nothing takes
+ * such a pattern away once points that changed cells have left it there. Around
+ * a node with all its 2^dim cells these patterns are the products s_k of two
+ * or more of the signs of the directions; their amplitudes in the mean
+ * theta_c of the volumetric variable are
+ *
+ *   a_k = sum over cells s_k(c) theta_c / 2^dim,
+ *
+ * and a step takes away a share beta of them,
+ *
+ *   theta_c -= beta W / m_c sum_k s_k(c) a_k,  1 / W = sum over cells 1 / m_c,
+ *
+ * which changes no sum of m theta (the volume stays), leaves linear fields
+ * alone and never adds energy for beta <= 2^-dim
+ * (doc/theory/treatments.md).
+ */
+namespace limber
+{
+  /** Slots of the nodal records in which cells meet: number, 1/m, a_k. */
+  template <int dim>
+  inline constexpr unsigned int n_chequerboard_slots = 2 + (1 << dim) - 1 - dim;
+
+  /**
+   * Let these cells, where the body has mass, add to the first slots of the
+   * records of their nodes.
+   */
+  template <int dim>
+  void
+  gather_chequerboards(const std::vector<std::uint32_t> &cells,
+                       const GridView<dim>              &grid,
+                       const CellSums<dim>              &sums);
+
+  /**
+   * From the complete sums on the nodes: write to shift[cell] what the
+   * volumetric variable of the points in each of these cells gets for
+   * @p share = beta.
+   */
+  template <int dim>
+  void
+  find_chequerboard_shifts(const std::vector<std::uint32_t> &cells,
+                           const GridView<dim>              &grid,
+                           const CellSums<dim>              &sums,
+                           double                            share,
+                           double                           *shift);
+} // namespace limber
+
+#endif
