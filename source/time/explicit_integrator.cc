@@ -334,12 +334,14 @@ namespace limber
 
 
 
+  // Loads act at the time of the stress.
   template <int dim>
   void
   ExplicitIntegrator<dim>::add_loads()
   {
+    const bool at_middle = problem.method.order == StressUpdateOrder::both_ends;
     if (loads.any())
-      loads.add(nodes, time);
+      loads.add(nodes, at_middle ? time + 0.5 * step : time);
     lap(Verb::add_loads);
   }
 

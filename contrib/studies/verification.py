@@ -1,0 +1,206 @@
+#!/usr/bin/env python3
+"""Draws the scenes of prm/verification beside their exact solutions and prints
+the numbers of doc/gallery/verification.
+
+    verification.py [path of limber] [folder for the pictures]
+
+Takes half a minute on one core.
+"""
+
+import json
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "contrib/plot"))
+import run_folder  # noqa: E402
+
+SCENES = TOP / "prm/verification"
+
+
+class Runner:
+    def __init__(self, limber, pictures):
+        self.limber, self.pictures = limber, Path(pictures)
+        self.pictures.mkdir(parents=True, exist_ok=True)
+        self.scratch = tempfile.TemporaryDirectory()
+        self.count = 0
+
+    def run(self, scene, *settings):
+        """Returns the folder of the run."""
+        self.count += 1
+        folder = Path(self.scratch.name) / str(self.count)
+        command = [self.limber, str(SCENES / f"{scene}.prm"),
+                   "--output-directory", str(folder)]
+        for setting in settings:
+            command += ["--set", setting]
+        done = subprocess.run(command, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True)
+        if done.returncode not in (0, 4):
+            sys.exit(f"{scene}: {done.stderr.strip()}")
+        return folder
+
+    def save(self, figure, name):
+        figure.tight_layout()
+        figure.savefig(self.pictures / f"{name}.png", dpi=100)
+        plt.close(figure)
+
+
+def last_points(folder):
+    return run_folder.points(run_folder.series(folder)[1][-1])
+
+
+def checks(folder):
+    summary = json.loads((folder / "summary.json").read_text())
+    return {check["name"]: check["value"] for check in summary["checks"]}
+
+
+def tank(runner):
+    """Pressure over depth after 4 s, and how the motion grows."""
+    variants = {"none": ["Body water/Locking treatment=none"],
+                "cell without control": ["Body water/Hourglass control=0",
+                                         "Body water/Chequerboard control=0"],
+                "cell": [],
+                "cell, Damping time = 0.16 s": ["Method/Damping time=0.16"]}
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+    print("| hydrostatic tank, 4 s | largest kinetic energy over rho g H^2 W/2"
+          " | error of the pressure (%) |\n| --- | --: | --: |")
+    for name, settings in variants.items():
+        folder = runner.run("hydrostatic_tank", "Output/Time interval=4",
+                            "Output/Fields=pressure", *settings)
+        values, _ = run_folder.statistics(folder)
+        energy = values["kinetic energy"] / 4905
+        right.semilogy(values["time"], np.maximum(energy, 1e-33), label=name)
+        data = last_points(folder)
+        exact = 9810 * (1 - data["position"][:, 1])
+        error = np.sqrt(((data["pressure"] - exact)**2).sum() /
+                        (exact**2).sum())
+        print(f"| {name} | {energy.max():.1e} | {100 * error:.1f} |")
+        if name in ("cell without control", "cell"):
+            left.plot(data["pressure"] / 1e3, data["position"][:, 1], ".",
+                      ms=3, label=name)
+    left.plot([9.81, 0], [0, 1], "k-", label="exact")
+    left.set(xlabel="pressure [kPa]", ylabel="y [m]")
+    right.set(xlabel="time [s]", ylabel="kinetic energy / (rho g H² W/2)")
+    left.legend()
+    right.legend()
+    runner.save(figure, "hydrostatic_tank")
+
+
+def column(runner):
+    folder = runner.run("column", "Output/Time interval=5",
+                        "Output/Fields=displacement, stress")
+    data = last_points(folder)
+    place = data["position"][:, 1] - data["displacement"][:, 1]
+    stress = data["stress"].reshape(len(place), -1)
+    yy = stress[:, 4 if stress.shape[1] == 9 else 1]
+    exact = -80 * 10 * (50 - place)
+    figure, axes = plt.subplots(figsize=(5, 4))
+    axes.plot(exact / 1e3, place, "k-", label="exact")
+    axes.plot(yy / 1e3, place, ".", ms=4, label="points")
+    axes.set(xlabel="vertical stress [kPa]", ylabel="Y [m]")
+    axes.legend()
+    runner.save(figure, "column")
+    error = np.abs(yy - exact).mean() / (80 * 10 * 50)
+    print(f"\ncolumn: mean error of the stress over rho g L: {error:.2e}")
+
+
+def bar(runner):
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+    time = np.linspace(0, 32.5, 500)
+    omega = 0.2 * np.pi
+    left.plot(time, np.sin(omega * time), "k-", lw=1, label="exact")
+    for order in ("last, remapped", "both ends"):
+        folder = runner.run("bar", f"Method/Stress update={order}",
+                            "Output/Statistics interval=1")
+        values, _ = run_folder.statistics(folder)
+        left.plot(values["time"], values["end"] / (1e-4 / omega), "--",
+                  label=order)
+        energy = values["total energy"] if "total energy" in values else (
+            values["kinetic energy"] + values["strain energy"])
+        right.plot(values["time"], 100 * (energy / energy[0] - 1), label=order)
+        print(f"bar, {order}: largest swing of the energy "
+              f"{np.abs(energy / energy[0] - 1).max():.1e}, " +
+              ", ".join(f"{n} {v:.6g}" for n, v in checks(folder).items()))
+    left.set(xlabel="time [s]", ylabel="displacement of the end / amplitude")
+    right.set(xlabel="time [s]", ylabel="E / E0 - 1 [%]")
+    left.legend()
+    right.legend()
+    runner.save(figure, "bar")
+
+
+def manufactured_solution(runner):
+    """Largest error of the displacement at t = 0.5 s against the edge."""
+    figure, axes = plt.subplots(figsize=(5, 4))
+    cells = np.array([8, 16, 32, 64])
+    for name, settings in {
+            "cell": [], "assumed strain": ["treatment=assumed strain"],
+            "none": ["treatment=none"]}.items():
+        errors = []
+        for n in cells:
+            folder = runner.run(
+                "manufactured_solution", f"Grid/Cells={n}, {n}",
+                "Output/Time interval=0.5", "Output/Fields=displacement",
+                "Method/Stress update=both ends",
+                *["Body square/Locking " + s for s in settings])
+            data = last_points(folder)
+            place = data["position"][:, :2] - data["displacement"][:, :2]
+            x, y = np.pi * place.T
+            exact = 1e-6 * np.array([np.sin(x) * np.cos(y),
+                                     0.5 * np.cos(x) * np.sin(y)]).T
+            errors.append(np.sqrt(((data["displacement"][:, :2] - exact)**2)
+                                  .sum(axis=1).mean()) / 1e-6)
+        axes.loglog(1 / cells, errors, "o-", label=name)
+        ratios = [a / b for a, b in zip(errors, errors[1:])]
+        print(f"manufactured solution, {name}: errors "
+              + ", ".join(f"{e:.2e}" for e in errors) + "; ratios "
+              + ", ".join(f"{r:.2f}" for r in ratios))
+    axes.loglog(1 / cells, 0.5 * errors[0] * (cells[0] / cells)**2, "k:",
+                label="second order")
+    axes.set(xlabel="edge of a cell [m]",
+             ylabel="rms error of the displacement / A")
+    axes.legend()
+    runner.save(figure, "manufactured_solution")
+
+
+def cantilever_3d(runner):
+    figure, axes = plt.subplots(figsize=(8, 4))
+    settings = ["Body beam/Neo hookean/Poisson's ratio=0.49",
+                "Check first mode/Reference=0.07891"]
+    amplitude = None
+    for name in ("assumed strain", "cell", "none"):
+        folder = runner.run("cantilever_3d", *settings,
+                            f"Body beam/Locking treatment={name}")
+        values, _ = run_folder.statistics(folder)
+        axes.plot(values["time"], 1e3 * values["tip"], label=name)
+        frequency = checks(folder)["first mode"]
+        amplitude = amplitude or np.abs(values["tip"]).max()
+        print(f"cantilever in 3d, nu = 0.49, {name}: {frequency:.4f} Hz "
+              f"({100 * (frequency / 0.07891 - 1):+.1f} %)")
+    time = np.linspace(0, 20, 400)
+    axes.plot(time, 1e3 * amplitude * np.sin(2 * np.pi * 0.07891 * time),
+              "k:", label="Timoshenko")
+    axes.set(xlabel="time [s]", ylabel="deflection of the tip [mm]")
+    axes.legend()
+    runner.save(figure, "cantilever_3d")
+
+
+def main():
+    limber = sys.argv[1] if len(sys.argv) > 1 else str(
+        TOP / "build/release/limber")
+    pictures = sys.argv[2] if len(sys.argv) > 2 else str(
+        TOP / "doc/gallery/verification")
+    runner = Runner(limber, pictures)
+    for scene in (tank, column, bar, manufactured_solution, cantilever_3d):
+        scene(runner)
+
+
+if __name__ == "__main__":
+    main()
