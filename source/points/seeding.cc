@@ -123,9 +123,59 @@ namespace limber
               for (int d = 0; d < dim; ++d)
                 place[d] += site.place[d] * edge[d];
               if (body.shape->contains(place))
-                work(cell, place, site.weight * volume);
+                work(grid.cell_number(cell), place, site.weight * volume);
             }
         }
+    }
+
+
+
+    /** The same for the parts of a lattice in natural coordinates. */
+    template <int dim, class Work>
+    void
+    for_each_part(const Body<dim>           &body,
+                  const BackgroundGrid<dim> &grid,
+                  const Work                &work)
+    {
+      const auto   &block = dynamic_cast<const BlockShape<dim> &>(*body.shape);
+      unsigned long n     = 1;
+      for (const unsigned int parts : body.lattice)
+        n *= parts;
+      for (unsigned long i = 0; i < n; ++i)
+        {
+          Corners<dim>       part;
+          dealii::Point<dim> centre;
+          unsigned long      rest = i;
+          for (int d = 0; d < dim; ++d)
+            {
+              const unsigned int parts = body.lattice[d];
+              part.first[d]            = double(rest % parts) / parts;
+              part.second[d]           = double(rest % parts + 1) / parts;
+              centre[d]                = (rest % parts + 0.5) / parts;
+              rest /= parts;
+            }
+          const dealii::Point<dim> place = block.place(centre);
+          std::array<double, dim>  x;
+          for (int d = 0; d < dim; ++d)
+            x[d] = place[d];
+          const std::uint32_t cell = grid.bins.cell_at(x);
+          if (cell < grid.n_owned_cells())
+            work(cell, place, block.volume(part));
+        }
+    }
+
+
+
+    template <int dim, class Work>
+    void
+    for_each_point(const Body<dim>           &body,
+                   const BackgroundGrid<dim> &grid,
+                   const Work                &work)
+    {
+      if (body.placement == Placement::fitted)
+        for_each_part(body, grid, work);
+      else
+        for_each_site(body, grid, work);
     }
   } // namespace
 
@@ -140,15 +190,15 @@ namespace limber
   {
     // Counted first, so that the arrays never take more than they need.
     std::size_t n = 0;
-    for_each_site(body, grid, [&n](const auto &...) { ++n; });
+    for_each_point(body, grid, [&n](const auto &...) { ++n; });
     points.reserve(n);
-    for_each_site(body,
-                  grid,
-                  [&](const auto               &cell,
-                      const dealii::Point<dim> &place,
-                      const double              volume) {
-                    points.add(cell, place, density(place) * volume);
-                  });
+    for_each_point(body,
+                   grid,
+                   [&](const std::uint32_t       cell,
+                       const dealii::Point<dim> &place,
+                       const double              volume) {
+                     points.add(cell, place, density(place) * volume);
+                   });
     points.finish_adding();
   }
 

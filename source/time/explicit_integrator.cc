@@ -209,6 +209,7 @@ namespace limber
   ExplicitIntegrator<dim>::accelerate_nodes()
   {
     resist_hourglass();
+    damp();
     add_loads();
     advance_nodes();
     apply_boundaries();
@@ -334,6 +335,33 @@ namespace limber
 
 
 
+  // The velocity at the beginning of the step shrinks by exp(-alpha dt), as it
+  // does exactly without other forces, for any alpha dt.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::damp()
+  {
+    using Layout = NodeLayout<dim>;
+
+    const double lost_share = -std::expm1(-problem.method.damping_rate * step);
+    if (lost_share == 0)
+      return;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        for (int d = 0; d < dim; ++d)
+          {
+            const double lost = lost_share * record[Layout::momentum + d];
+            record[Layout::force + d] -= lost / step;
+            if (nodes.owns(node))
+              ledger.load_impulse[d] -= lost;
+          }
+      }
+    lap(Verb::advance_nodes);
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::add_loads()
@@ -450,17 +478,29 @@ namespace limber
   ExplicitIntegrator<dim>::account_loads()
   {
     using Layout = NodeLayout<dim>;
+
+    const double lost_share = -std::expm1(-problem.method.damping_rate * step);
+    const bool   loaded     = loads.any();
+    if (!loaded && lost_share == 0)
+      return;
     for (const std::uint32_t node : nodes.active_nodes())
       {
         const double *const record = nodes.record(node);
         if (!nodes.owns(node) || !(record[Layout::mass] > 0))
           continue;
-        const auto force = loads.on_node(node);
+        dealii::Tensor<1, dim> force;
+        if (loaded)
+          force = loads.on_node(node);
         ledger.load_impulse += step * force;
         for (int d = 0; d < dim; ++d)
-          ledger.load_work += step * force[d] *
-                              (record[Layout::velocity + d] -
-                               0.5 * record[Layout::increment + d]);
+          {
+            const double after  = record[Layout::velocity + d],
+                         change = record[Layout::increment + d],
+                         mean   = after - 0.5 * change;
+            ledger.load_work += step * force[d] * mean;
+            ledger.viscous +=
+              lost_share * record[Layout::mass] * (after - change) * mean;
+          }
       }
   }
 
@@ -478,8 +518,7 @@ namespace limber
                        ledger.side_impulse[side] += impulse;
                        ledger.boundary_work += work;
                      });
-    if (loads.any())
-      account_loads();
+    account_loads();
     lap(Verb::apply_boundaries);
   }
 
@@ -581,6 +620,7 @@ namespace limber
                                          const bool   remapped,
                                          const bool   move)
   {
+    loads.deform(nodes, remapped, length);
     StressSweep what;
     what.step     = length;
     what.remapped = remapped;
@@ -635,23 +675,24 @@ namespace limber
 
 
   template <int dim>
-  IntegratorState
+  IntegratorState<dim>
   ExplicitIntegrator<dim>::state() const
   {
-    return {wave_speed, point_speed, displacement, largest_mass, loads.areas()};
+    return {
+      wave_speed, point_speed, displacement, largest_mass, loads.pieces()};
   }
 
 
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::restore(const IntegratorState &former)
+  ExplicitIntegrator<dim>::restore(const IntegratorState<dim> &former)
   {
     wave_speed   = former.wave_speed;
     point_speed  = former.point_speed;
     displacement = former.displacement;
     largest_mass = former.largest_mass;
-    loads.restore(former.face_areas);
+    loads.restore(former.face_pieces);
     reinit();
   }
 
