@@ -76,6 +76,49 @@ namespace limber
 
 
     /**
+     * What of a box is inside a shape, its weight being the share of the
+     * volume and its place the centroid.
+     */
+    template <int dim>
+    Site<dim>
+    inside_of(const Shape<dim> &shape, const Corners<dim> &box)
+    {
+      using Geometry      = dealii::GeometryInfo<dim>;
+      const auto place_at = [&](const dealii::Point<dim> &xi) {
+        dealii::Point<dim> place = box.first;
+        for (int d = 0; d < dim; ++d)
+          place[d] += xi[d] * (box.second[d] - box.first[d]);
+        return place;
+      };
+
+      unsigned int             n_inside = 0;
+      const dealii::Point<dim> centre =
+        box.first + 0.5 * (box.second - box.first);
+      for (unsigned int i = 0; i < Geometry::vertices_per_cell; ++i)
+        n_inside += shape.contains(place_at(Geometry::unit_cell_vertex(i)));
+      if (n_inside ==
+          (shape.contains(centre) ? Geometry::vertices_per_cell : 0))
+        return {centre, n_inside > 0 ? 1. : 0.};
+
+      static const dealii::QIterated<dim> samples(dealii::QMidpoint<1>(),
+                                                  dim == 2 ? 16 : 8);
+      Site<dim>                           result{{}, 0.};
+      for (unsigned int q = 0; q < samples.size(); ++q)
+        {
+          const dealii::Point<dim> place = place_at(samples.point(q));
+          if (!shape.contains(place))
+            continue;
+          result.weight += samples.weight(q);
+          result.place += samples.weight(q) * place;
+        }
+      if (result.weight > 0)
+        result.place /= result.weight;
+      return result;
+    }
+
+
+
+    /**
      * Call @p work with the cell, the place and the volume in m^3 of every
      * point of the body, in the order of cells.
      */
@@ -122,7 +165,23 @@ namespace limber
               dealii::Point<dim> place = lower;
               for (int d = 0; d < dim; ++d)
                 place[d] += site.place[d] * edge[d];
-              if (body.shape->contains(place))
+              if (body.placement == Placement::cut)
+                {
+                  Corners<dim> part(place, place);
+                  for (int d = 0; d < dim; ++d)
+                    {
+                      const double half =
+                        0.5 * edge[d] / body.points_per_cell_edge[d];
+                      part.first[d] -= half;
+                      part.second[d] += half;
+                    }
+                  const Site<dim> inside = inside_of(*body.shape, part);
+                  if (inside.weight > 0)
+                    work(grid.cell_number(cell),
+                         inside.place,
+                         inside.weight * site.weight * volume);
+                }
+              else if (body.shape->contains(place))
                 work(grid.cell_number(cell), place, site.weight * volume);
             }
         }

@@ -105,6 +105,10 @@ namespace limber
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
       {"jittered", Placement::jittered, "regular, moved at random"},
+      {"cut",
+       Placement::cut,
+       "regular, but parts that the surface cuts count with the volume and at "
+       "the centroid of what is inside"},
       {"fitted",
        Placement::fitted,
        "on a lattice of the body's own, which fills it exactly; only box and "

@@ -124,12 +124,14 @@ namespace limber
         case Order::first:
           strain_as_points_bring_it(step);
           accelerate_nodes();
+          account_loads(NodeLayout<dim>::velocity);
           grid_to_points(/*remap=*/false, /*move=*/true);
           break;
 
         case Order::last:
           points_to_nodes();
           accelerate_nodes();
+          account_loads(NodeLayout<dim>::velocity);
           grid_to_points(/*remap=*/false, /*move=*/false);
           update_stress(step, /*remapped=*/false, /*move=*/true);
           break;
@@ -196,6 +198,7 @@ namespace limber
     grid_to_points(/*remap=*/true, /*move=*/false);
     sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
     divide_remapped(Layout::remapped, time + step);
+    account_loads(Layout::remapped);
     if (problem.method.order == StressUpdateOrder::both_ends)
       centre_velocity();
     interpolate_hanging();
@@ -472,10 +475,13 @@ namespace limber
 
 
 
-  // Forces do work with the mean of the velocities at the ends of the step.
+  // Forces do work with the mean of the velocities at the ends of the step. For
+  // points that take dv_p = sum N_ip f_i dt / m_i, this is exact when the later
+  // one is re-mapped: sum_p m_p dv_p . (v_p + v_p') / 2 is the sum over nodes
+  // of dt f_i . (v_i + v_i') / 2 with m_i v_i' = sum_p m_p N_ip v_p'.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::account_loads()
+  ExplicitIntegrator<dim>::account_loads(const unsigned int velocity_after)
   {
     using Layout = NodeLayout<dim>;
 
@@ -494,14 +500,14 @@ namespace limber
         ledger.load_impulse += step * force;
         for (int d = 0; d < dim; ++d)
           {
-            const double after  = record[Layout::velocity + d],
-                         change = record[Layout::increment + d],
-                         mean   = after - 0.5 * change;
+            const double before =
+              record[Layout::velocity + d] - record[Layout::increment + d];
+            const double mean = 0.5 * (before + record[velocity_after + d]);
             ledger.load_work += step * force[d] * mean;
-            ledger.viscous +=
-              lost_share * record[Layout::mass] * (after - change) * mean;
+            ledger.viscous += lost_share * record[Layout::mass] * before * mean;
           }
       }
+    lap(Verb::add_loads);
   }
 
 
@@ -518,7 +524,6 @@ namespace limber
                        ledger.side_impulse[side] += impulse;
                        ledger.boundary_work += work;
                      });
-    account_loads();
     lap(Verb::apply_boundaries);
   }
 

@@ -14,7 +14,9 @@ namespace limber
    * cell. @p density gives the mass per volume (kg/m^3) at its place.
    *
    * Placements cell by cell give a point its share of the volume of the cell,
-   * and a point belongs to the body when its place lies inside the shape. The
+   * and a point belongs to the body when its place lies inside the shape; with
+   * 'cut' a part whose corners and centre do not agree on this has the volume
+   * and the centroid of those of its 16^2 or 8^3 sample places that do. The
    * placement 'fitted' divides the shape itself, into parts of exact volume.
    *
    * Placement is reproducible: jitter depends on the place of a cell, not on

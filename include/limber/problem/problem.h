@@ -27,6 +27,7 @@ namespace limber
     regular,  // cell edges divided evenly, points at the centres of the parts
     gauss,    // Gauss-Legendre places, weights into the masses
     jittered, // regular, moved at random by up to a quarter of the spacing
+    cut,      // regular, but the surface cuts parts, see seed()
     fitted    // a lattice in the natural coordinates of a box or block
   };
 

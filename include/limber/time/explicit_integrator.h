@@ -145,7 +145,7 @@ namespace limber
     void
     apply_boundaries();
     void
-    account_loads();
+    account_loads(unsigned int velocity_after);
     void
     divide_remapped(unsigned int momentum, double when);
     void
