@@ -219,7 +219,7 @@ namespace limber
                          " needs the corners of a box or block, but 'Shape' "
                          "is " +
                          in_quotes(section.text("Shape")) +
-                         ". Set 'Placement = regular', or give the body "
+                         ". Set 'Placement = cut', or give the body "
                          "another shape.");
       const std::string entry = "Points along edges";
       if (!fitted && !section.is_empty(entry))

@@ -99,6 +99,12 @@ namespace limber
 
 
 
+    // A splinter of a cut body cannot bear the load of a whole piece: carriers
+    // have at least this share of the mass of the heaviest point near by.
+    constexpr double least_share = 0.25;
+
+
+
     /**
      * A point that may carry a piece: distance, place, id. Distances are
      * rounded to a billionth of a cell, so that of points at equal distance
@@ -174,30 +180,41 @@ namespace limber
     Candidate<dim> nobody;
     nobody.fill(std::numeric_limits<double>::infinity());
 
+    const auto           near               = pieces_near_cells(all, grid);
+    const PointView<dim> points             = body.points.view();
+    const auto           for_each_neighbour = [&](const auto &work) {
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto found = near.find(points.cell[p]);
+          if (found != near.end())
+            for (const unsigned int i : found->second)
+              work(p, i);
+        }
+    };
+
+    std::vector<double> heaviest(all.size(), 0.);
+    for_each_neighbour([&](const std::size_t p, const unsigned int i) {
+      heaviest[i] = std::max(heaviest[i], points.mass[p]);
+    });
+    dealii::Utilities::MPI::max(heaviest, grid.communicator, heaviest);
+
     std::vector<Candidate<dim>> best(all.size(), nobody);
-    const auto                  near   = pieces_near_cells(all, grid);
-    const PointView<dim>        points = body.points.view();
-    for (std::size_t p = 0; p < points.size; ++p)
-      {
-        const auto found = near.find(points.cell[p]);
-        if (found == near.end())
-          continue;
-        for (const unsigned int i : found->second)
-          {
-            Candidate<dim> candidate{};
-            double         square = 0;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const double x   = points.position[d][p];
-                candidate[1 + d] = x;
-                square += (x - all[i].reference[d]) * (x - all[i].reference[d]);
-              }
-            candidate[0] =
-              std::round(std::sqrt(square) / (1e-9 * grid.smallest_edge));
-            candidate[1 + dim] = body.points.id(p);
-            best[i]            = std::min(best[i], candidate);
-          }
-      }
+    for_each_neighbour([&](const std::size_t p, const unsigned int i) {
+      if (points.mass[p] < least_share * heaviest[i])
+        return;
+      Candidate<dim> candidate{};
+      double         square = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double x   = points.position[d][p];
+          candidate[1 + d] = x;
+          square += (x - all[i].reference[d]) * (x - all[i].reference[d]);
+        }
+      candidate[0] =
+        std::round(std::sqrt(square) / (1e-9 * grid.smallest_edge));
+      candidate[1 + dim] = body.points.id(p);
+      best[i]            = std::min(best[i], candidate);
+    });
 
     std::vector<std::pair<unsigned int, Candidate<dim>>> own;
     for (unsigned int i = 0; i < all.size(); ++i)
