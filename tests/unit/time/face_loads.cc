@@ -168,13 +168,13 @@ namespace
 
 
 
-  template <typename T>
-  class FaceLoads : public testing::Test
-  {};
-
   using Dimensions = testing::Types<std::integral_constant<int, 2>,
                                     std::integral_constant<int, 3>>;
 } // namespace
+
+template <typename T>
+class FaceLoads : public testing::Test
+{};
 
 TYPED_TEST_SUITE(FaceLoads, Dimensions);
 
