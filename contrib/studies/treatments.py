@@ -4,7 +4,7 @@ doc/theory/treatments.md.
 
     treatments.py [path of limber] [--quick]
 
-Runs the free soft beam, the cantilever, the dam break, the tank and the
+Runs the free soft beam, Cook's membrane, the dam break, the tank and the
 sliding block with every treatment; --quick leaves out the slow beams. Takes
 some 15 minutes on one core.
 """
@@ -130,6 +130,23 @@ def tank(runner, treatment, settings=()):
     return [f"{values['kinetic energy'][-1] / 4905:.1e}", f"{100*error:.1f}"]
 
 
+def cook(runner, treatment):
+    """Rise of the tip of Cook's membrane with cells of 2 m and 1 m, and the
+    rms of the pressure of the points with the latter."""
+    row = []
+    for cells in ("26, 33", "52, 66"):
+        result = runner.run("benchmarks/cook.prm", "panel", treatment,
+                            [f"Grid/Cells={cells}", "Output/Time interval=150",
+                             "Output/Fields=pressure"])
+        if result is None:
+            return ["failed"] * 3
+        folder, summary = result
+        row.append(f"{summary['checks'][0]['value']:.4f}")
+    _, files = run_folder.series(folder)
+    pressure = run_folder.points(files[-1])["pressure"]
+    return row + [f"{np.sqrt(np.mean(pressure**2)):.3f}"]
+
+
 def block(runner, treatment, scene):
     """Cost relative to no treatment: best of five, taking turns."""
     costs = {treatment: [], "none": []}
@@ -160,6 +177,13 @@ def main():
         row += [block(runner, treatment, scene)
                 for scene in ("block_2d", "block_3d")]
         print("| " + " | ".join([treatment, *row]) + " |", flush=True)
+
+    print("\n| Cook's membrane | tip, h = 2 m (m) | tip, h = 1 m (m) | "
+          "rms of the pressure (Pa) |")
+    print("| --- " + "| --: " * 3 + "|")
+    for treatment in TREATMENTS:
+        print("| " + " | ".join([treatment, *cook(runner, treatment)]) + " |",
+              flush=True)
 
     print("\n| liquid | chi | Z(3) | H(3) | roughness at T = 1 / 2 / 3 (%) | "
           "tank, kinetic energy | tank, pressure error (%) |")

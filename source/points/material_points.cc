@@ -52,10 +52,9 @@ namespace limber
 
   template <int dim>
   void
-  MaterialPoints<dim>::add(
-    const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
-    const dealii::Point<dim>                                        &place,
-    const double                                                     mass)
+  MaterialPoints<dim>::add(const std::uint32_t       cell,
+                           const dealii::Point<dim> &place,
+                           const double              mass)
   {
     const std::size_t p = size();
     for (auto &field : fields)
@@ -67,7 +66,7 @@ namespace limber
           fields[fields.size() - dim + d][p] = place[d];
       }
     fields[2 * dim][p] = mass;
-    this->cell.push_back(grid.cell_number(cell));
+    this->cell.push_back(cell);
     ids.push_back(p);
   }
 

@@ -76,6 +76,49 @@ namespace limber
 
 
     /**
+     * What of a box is inside a shape, its weight being the share of the
+     * volume and its place the centroid.
+     */
+    template <int dim>
+    Site<dim>
+    inside_of(const Shape<dim> &shape, const Corners<dim> &box)
+    {
+      using Geometry      = dealii::GeometryInfo<dim>;
+      const auto place_at = [&](const dealii::Point<dim> &xi) {
+        dealii::Point<dim> place = box.first;
+        for (int d = 0; d < dim; ++d)
+          place[d] += xi[d] * (box.second[d] - box.first[d]);
+        return place;
+      };
+
+      unsigned int             n_inside = 0;
+      const dealii::Point<dim> centre =
+        box.first + 0.5 * (box.second - box.first);
+      for (unsigned int i = 0; i < Geometry::vertices_per_cell; ++i)
+        n_inside += shape.contains(place_at(Geometry::unit_cell_vertex(i)));
+      if (n_inside ==
+          (shape.contains(centre) ? Geometry::vertices_per_cell : 0))
+        return {centre, n_inside > 0 ? 1. : 0.};
+
+      static const dealii::QIterated<dim> samples(dealii::QMidpoint<1>(),
+                                                  dim == 2 ? 16 : 8);
+      Site<dim>                           result{{}, 0.};
+      for (unsigned int q = 0; q < samples.size(); ++q)
+        {
+          const dealii::Point<dim> place = place_at(samples.point(q));
+          if (!shape.contains(place))
+            continue;
+          result.weight += samples.weight(q);
+          result.place += samples.weight(q) * place;
+        }
+      if (result.weight > 0)
+        result.place /= result.weight;
+      return result;
+    }
+
+
+
+    /**
      * Call @p work with the cell, the place and the volume in m^3 of every
      * point of the body, in the order of cells.
      */
@@ -122,10 +165,76 @@ namespace limber
               dealii::Point<dim> place = lower;
               for (int d = 0; d < dim; ++d)
                 place[d] += site.place[d] * edge[d];
-              if (body.shape->contains(place))
-                work(cell, place, site.weight * volume);
+              if (body.placement == Placement::cut)
+                {
+                  Corners<dim> part(place, place);
+                  for (int d = 0; d < dim; ++d)
+                    {
+                      const double half =
+                        0.5 * edge[d] / body.points_per_cell_edge[d];
+                      part.first[d] -= half;
+                      part.second[d] += half;
+                    }
+                  const Site<dim> inside = inside_of(*body.shape, part);
+                  if (inside.weight > 0)
+                    work(grid.cell_number(cell),
+                         inside.place,
+                         inside.weight * site.weight * volume);
+                }
+              else if (body.shape->contains(place))
+                work(grid.cell_number(cell), place, site.weight * volume);
             }
         }
+    }
+
+
+
+    /** The same for the parts of a lattice in natural coordinates. */
+    template <int dim, class Work>
+    void
+    for_each_part(const Body<dim>           &body,
+                  const BackgroundGrid<dim> &grid,
+                  const Work                &work)
+    {
+      const auto   &block = dynamic_cast<const BlockShape<dim> &>(*body.shape);
+      unsigned long n     = 1;
+      for (const unsigned int parts : body.lattice)
+        n *= parts;
+      for (unsigned long i = 0; i < n; ++i)
+        {
+          Corners<dim>       part;
+          dealii::Point<dim> centre;
+          unsigned long      rest = i;
+          for (int d = 0; d < dim; ++d)
+            {
+              const unsigned int parts = body.lattice[d];
+              part.first[d]            = double(rest % parts) / parts;
+              part.second[d]           = double(rest % parts + 1) / parts;
+              centre[d]                = (rest % parts + 0.5) / parts;
+              rest /= parts;
+            }
+          const dealii::Point<dim> place = block.place(centre);
+          std::array<double, dim>  x;
+          for (int d = 0; d < dim; ++d)
+            x[d] = place[d];
+          const std::uint32_t cell = grid.bins.cell_at(x);
+          if (cell < grid.n_owned_cells())
+            work(cell, place, block.volume(part));
+        }
+    }
+
+
+
+    template <int dim, class Work>
+    void
+    for_each_point(const Body<dim>           &body,
+                   const BackgroundGrid<dim> &grid,
+                   const Work                &work)
+    {
+      if (body.placement == Placement::fitted)
+        for_each_part(body, grid, work);
+      else
+        for_each_site(body, grid, work);
     }
   } // namespace
 
@@ -140,15 +249,15 @@ namespace limber
   {
     // Counted first, so that the arrays never take more than they need.
     std::size_t n = 0;
-    for_each_site(body, grid, [&n](const auto &...) { ++n; });
+    for_each_point(body, grid, [&n](const auto &...) { ++n; });
     points.reserve(n);
-    for_each_site(body,
-                  grid,
-                  [&](const auto               &cell,
-                      const dealii::Point<dim> &place,
-                      const double              volume) {
-                    points.add(cell, place, density(place) * volume);
-                  });
+    for_each_point(body,
+                   grid,
+                   [&](const std::uint32_t       cell,
+                       const dealii::Point<dim> &place,
+                       const double              volume) {
+                     points.add(cell, place, density(place) * volume);
+                   });
     points.finish_adding();
   }
 

@@ -4,6 +4,9 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace limber
 {
   namespace
@@ -20,7 +23,16 @@ namespace limber
                    "Placement",
                    "regular",
                    placement_words(),
-                   "How the points are placed within a cell at the start.");
+                   "How the points are placed at the start.");
+      parameters.declare("Points along edges",
+                         "",
+                         admissible::positive_integers(
+                           dim, false, dim == 2 ? "40, 10" : "40, 10, 10")
+                           .or_empty(),
+                         "With the placement 'fitted': number of points along "
+                         "the edges of the box or block in each of its "
+                         "directions; empty: as many as the longest edge "
+                         "needs for 'Points per cell edge'.");
       declare_constants(parameters);
       parameters.declare("Initial velocity",
                          for_each_direction(dim, "0", "; "),
@@ -159,6 +171,69 @@ namespace limber
         body.points_per_cell_edge[d] =
           static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
       body.placement = read_word(section, "Placement", placement_words());
+    }
+
+
+
+    /** Spacings of points that the longest edge of a direction has room for. */
+    template <int dim>
+    unsigned int
+    parts_of_edges(const BlockShape<dim>      &block,
+                   const unsigned int          direction,
+                   const Body<dim>            &body,
+                   const GridDescription<dim> &grid)
+    {
+      double longest = 0;
+      for (unsigned int i = 0; i < block.vertices.size(); ++i)
+        {
+          const auto edge =
+            block.vertices[i | 1 << direction] - block.vertices[i];
+          double square = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double spacing = (grid.upper[d] - grid.lower[d]) /
+                                     grid.cells[d] /
+                                     body.points_per_cell_edge[d];
+              square += edge[d] / spacing * edge[d] / spacing;
+            }
+          longest = std::max(longest, std::sqrt(square));
+        }
+      // Decimal fractions need not meet exactly.
+      return std::max(1L, std::lround(std::ceil(longest - 1e-6)));
+    }
+
+
+
+    template <int dim>
+    void
+    read_lattice(const Section              &section,
+                 const GridDescription<dim> &grid,
+                 Body<dim>                  &body)
+    {
+      const auto *block =
+        dynamic_cast<const BlockShape<dim> *>(body.shape.get());
+      const bool fitted = body.placement == Placement::fitted;
+      if (fitted && block == nullptr)
+        throw InputError("The placement 'fitted' in " +
+                         section.where("Placement") +
+                         " needs the corners of a box or block, but 'Shape' "
+                         "is " +
+                         in_quotes(section.text("Shape")) +
+                         ". Set 'Placement = cut', or give the body "
+                         "another shape.");
+      const std::string entry = "Points along edges";
+      if (!fitted && !section.is_empty(entry))
+        throw InputError("The numbers " + in_quotes(section.text(entry)) +
+                         " in " + section.where(entry) +
+                         " have no effect with the placement " +
+                         in_quotes(section.text("Placement")) +
+                         ". Usually that was not changed along with them. Set "
+                         "'Placement = fitted'.");
+      if (block != nullptr)
+        for (unsigned int d = 0; d < dim; ++d)
+          body.lattice[d] = section.is_empty(entry) ?
+                              parts_of_edges(*block, d, body, grid) :
+                              section.numbers(entry)[d];
     }
 
 
@@ -327,6 +402,7 @@ namespace limber
       body.shape = read_shape(section, constants, corners(problem.grid));
       check_inside_grid(section, body, problem.grid);
       read_points(section, body);
+      read_lattice(section, problem.grid, body);
       body.initial_velocity = read_formula(section,
                                            "Initial velocity",
                                            dim,

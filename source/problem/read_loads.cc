@@ -18,27 +18,29 @@ namespace limber
       parameters.declare("Body",
                          "",
                          admissible::text("name of a body", "beam"),
-                         "The body, which must be a box.");
+                         "The body, which must be a box or a block.");
       parameters.declare("Face",
                          "",
                          admissible::one_of(side_names(dim)).or_empty(),
-                         "The face of the box, at the start. The load moves "
-                         "with the material.");
+                         "The face of the box or block, at the start. The load "
+                         "moves with the material.");
       parameters.declare("Pressure",
                          "",
                          admissible::text("formula of " + variable_names(dim) +
                                             ", or empty",
                                           "1000"),
                          "Pressure p, Pa, positive when it presses: force -p "
-                         "times the initial normal and area.");
+                         "per present area along the present normal, at the "
+                         "present place.");
       parameters.declare("Traction",
                          "",
                          admissible::text("formula of " + variable_names(dim) +
                                             " with " + std::to_string(dim) +
                                             " components, or empty",
                                           for_each_direction(dim, "0", "; ")),
-                         "Force per initial area, Pa, in a fixed direction. "
-                         "Exactly one of 'Pressure' and 'Traction' is given.");
+                         "Force per initial area, Pa, at the initial place, "
+                         "whatever the deformation. Exactly one of 'Pressure' "
+                         "and 'Traction' is given.");
       declare_constants(parameters);
       parameters.leave_subsection();
     }
@@ -98,7 +100,7 @@ namespace limber
   {
     template <int dim>
     const Body<dim> &
-    loaded_box(const Section &section, const Problem<dim> &problem)
+    loaded_body(const Section &section, const Problem<dim> &problem)
     {
       const std::string        name = section.required_text("Body");
       std::vector<std::string> known;
@@ -110,12 +112,12 @@ namespace limber
         *std::find_if(problem.bodies.begin(),
                       problem.bodies.end(),
                       [&](const Body<dim> &b) { return b.name == name; });
-      if (dynamic_cast<const BoxShape<dim> *>(body.shape.get()) == nullptr)
+      if (dynamic_cast<const BlockShape<dim> *>(body.shape.get()) == nullptr)
         throw InputError("The face load on body " + in_quotes(name) + " in " +
                          section.where("Body") +
-                         " is refused, because only a box has plane faces. "
-                         "Give the body 'Shape = box' or use 'Body force' "
-                         "instead.");
+                         " is refused, because only a box or a block has "
+                         "faces. Give the body 'Shape = block' or use 'Body "
+                         "force' instead.");
       return body;
     }
 
@@ -127,7 +129,7 @@ namespace limber
                    const std::string  &name,
                    const Problem<dim> &problem)
     {
-      const Body<dim> &body         = loaded_box(section, problem);
+      const Body<dim> &body         = loaded_body(section, problem);
       const bool       has_pressure = !section.is_empty("Pressure");
       if (has_pressure != section.is_empty("Traction"))
         throw InputError(

@@ -30,6 +30,12 @@ namespace limber
                        admissible::non_negative_number("0.1"),
                        "Time constant T, s, in which PIC takes away what FLIP "
                        "keeps: share of FLIP 1 - dt/T; 0: pure FLIP.");
+    parameters.declare("Damping rate",
+                       "0",
+                       admissible::non_negative_number("0.3"),
+                       "alpha, 1/s, of the acceleration -alpha v of all "
+                       "material, in proportion to its mass; brings a run "
+                       "under slow loads to rest.");
     declare_word(parameters,
                  "Kernel",
                  "linear",
@@ -69,6 +75,7 @@ namespace limber
     method.order = read_word(section, "Stress update", stress_update_words());
     method.transfer          = read_word(section, "Transfer", transfer_words());
     method.damping_time      = section.number("Damping time");
+    method.damping_rate      = section.number("Damping rate");
     method.courant_number    = section.number("Courant number");
     method.time_step         = section.number("Time step");
     method.lost_points_limit = section.number("Lost points limit");

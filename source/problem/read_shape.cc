@@ -4,6 +4,8 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
+#include <algorithm>
+
 namespace limber
 {
   namespace
@@ -112,6 +114,45 @@ namespace limber
 
 
 
+    /** "0, 0; 1, 0; 1, 1; 0, 1" */
+    void
+    declare_block(Parameters &parameters, const unsigned int dim)
+    {
+      const std::string square[] = {"0, 0", "1, 0", "1, 1", "0, 1"};
+      const Admissible  corner   = point_entry(dim, "0");
+      const std::size_t n        = 1 << dim;
+
+      std::vector<std::string> unit;
+      for (unsigned int i = 0; i < n; ++i)
+        unit.push_back(square[i % 4] + (dim == 2 ? "" : i < 4 ? ", 0" : ", 1"));
+      parameters.enter_subsection("Block");
+      parameters.declare(
+        "Corners",
+        join(unit, "; "),
+        Admissible(
+          [=](const std::string &value) {
+            const auto parts = split(value, ';');
+            return parts.size() == n &&
+                   std::all_of(parts.begin(),
+                               parts.end(),
+                               [&](const std::string &part) {
+                                 return corner.match(part);
+                               });
+          },
+          std::to_string(n) + " points of " + std::to_string(dim) +
+            " numbers, separated by ';'",
+          join(unit, "; ")),
+        dim == 2 ?
+          "Corners, m, counterclockwise. Face 'bottom' joins the first two, "
+          "'right' the next, then 'top' and 'left'." :
+          "Corners, m: those of face 'back', counterclockwise as seen from "
+          "'front', then those of 'front' that are opposite to them. 'bottom' "
+          "joins the first two, 'right' the next, then 'top' and 'left'.");
+      parameters.leave_subsection();
+    }
+
+
+
     void
     declare_simple_shapes(Parameters &parameters, const unsigned int dim)
     {
@@ -119,6 +160,7 @@ namespace limber
       declare_ball(parameters, dim);
       declare_cylinder(parameters, dim);
       declare_formula(parameters, dim);
+      declare_block(parameters, dim);
     }
   } // namespace
 
@@ -219,6 +261,32 @@ namespace limber
 
     template <int dim>
     std::shared_ptr<const Shape<dim>>
+    read_block(const Section &details)
+    {
+      const auto texts = split(details.text("Corners"), ';');
+      typename BlockShape<dim>::Vertices vertices;
+      for (unsigned int i = 0; i < vertices.size(); ++i)
+        // deal.II counts vertices along the axes, not around.
+        for (unsigned int d = 0; d < dim; ++d)
+          vertices[i % 4 < 2 ? i : i ^ 1][d] =
+            to_number(split(texts[i], ',')[d]).value();
+
+      const auto shape = std::make_shared<BlockShape<dim>>(vertices);
+      for (unsigned int i = 0; i < vertices.size(); ++i)
+        if (dealii::determinant(shape->jacobian(
+              dealii::GeometryInfo<dim>::unit_cell_vertex(i))) <= 0)
+          throw InputError("The block in " + details.where("Corners") +
+                           " folds over at its corner " + to_text(vertices[i]) +
+                           ". Usually the corners are in another order. Give "
+                           "them counterclockwise, and none that points "
+                           "inward.");
+      return shape;
+    }
+
+
+
+    template <int dim>
+    std::shared_ptr<const Shape<dim>>
     read_union(const Section      &details,
                const Constants    &constants,
                const Corners<dim> &grid)
@@ -263,6 +331,8 @@ namespace limber
             return std::make_shared<FormulaShape<dim>>(
               read_formula(details, "Inside", 1, constants, box), box);
           }
+        case ShapeKind::block:
+          return read_block<dim>(section.subsection("Block"));
         case ShapeKind::union_of_shapes:
           return read_union(section.subsection("Union"), constants, grid);
       }

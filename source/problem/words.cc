@@ -19,6 +19,9 @@ namespace limber
       {"ball", ShapeKind::ball, "disc or ball, by centre and radius"},
       {"cylinder", ShapeKind::cylinder, "along x, y or z; only in 3D"},
       {"formula", ShapeKind::formula, "where a formula is positive"},
+      {"block",
+       ShapeKind::block,
+       "quadrilateral or hexahedron, by its corners"},
       {"union", ShapeKind::union_of_shapes, "all that is in one of several"}};
     return words;
   }
@@ -101,7 +104,15 @@ namespace limber
     static const Words<Placement> words = {
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
-      {"jittered", Placement::jittered, "regular, moved at random"}};
+      {"jittered", Placement::jittered, "regular, moved at random"},
+      {"cut",
+       Placement::cut,
+       "regular, but parts that the surface cuts count with the volume and at "
+       "the centroid of what is inside"},
+      {"fitted",
+       Placement::fitted,
+       "on a lattice of the body's own, which fills it exactly; only box and "
+       "block"}};
     return words;
   }
 

@@ -85,12 +85,12 @@ namespace limber
 
 
 
-  template <class Archive>
+  template <class Archive, int dim>
   void
-  serialize(Archive &archive, IntegratorState &state, const unsigned int)
+  serialize(Archive &archive, IntegratorState<dim> &state, const unsigned int)
   {
     archive &state.wave_speed &state.point_speed &state.displacement &state
-      .largest_mass &state.face_areas;
+      .largest_mass &state.face_pieces;
   }
 
 
@@ -118,7 +118,7 @@ namespace limber
   namespace
   {
     // To be raised when the content of the files changes.
-    constexpr std::uint64_t checkpoint_format = 1;
+    constexpr std::uint64_t checkpoint_format = 2;
 
     constexpr const char *slots[] = {"slot_0.h5", "slot_1.h5"};
     constexpr const char *note    = "good_slot.txt";

@@ -124,12 +124,14 @@ namespace limber
         case Order::first:
           strain_as_points_bring_it(step);
           accelerate_nodes();
+          account_loads(NodeLayout<dim>::velocity);
           grid_to_points(/*remap=*/false, /*move=*/true);
           break;
 
         case Order::last:
           points_to_nodes();
           accelerate_nodes();
+          account_loads(NodeLayout<dim>::velocity);
           grid_to_points(/*remap=*/false, /*move=*/false);
           update_stress(step, /*remapped=*/false, /*move=*/true);
           break;
@@ -196,6 +198,7 @@ namespace limber
     grid_to_points(/*remap=*/true, /*move=*/false);
     sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
     divide_remapped(Layout::remapped, time + step);
+    account_loads(Layout::remapped);
     if (problem.method.order == StressUpdateOrder::both_ends)
       centre_velocity();
     interpolate_hanging();
@@ -209,6 +212,7 @@ namespace limber
   ExplicitIntegrator<dim>::accelerate_nodes()
   {
     resist_hourglass();
+    damp();
     add_loads();
     advance_nodes();
     apply_boundaries();
@@ -334,6 +338,33 @@ namespace limber
 
 
 
+  // The velocity at the beginning of the step shrinks by exp(-alpha dt), as it
+  // does exactly without other forces, for any alpha dt.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::damp()
+  {
+    using Layout = NodeLayout<dim>;
+
+    const double lost_share = -std::expm1(-problem.method.damping_rate * step);
+    if (lost_share == 0)
+      return;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        for (int d = 0; d < dim; ++d)
+          {
+            const double lost = lost_share * record[Layout::momentum + d];
+            record[Layout::force + d] -= lost / step;
+            if (nodes.owns(node))
+              ledger.load_impulse[d] -= lost;
+          }
+      }
+    lap(Verb::advance_nodes);
+  }
+
+
+
   // Loads act at the time of the stress.
   template <int dim>
   void
@@ -446,24 +477,39 @@ namespace limber
 
 
 
-  // Forces do work with the mean of the velocities at the ends of the step.
+  // Forces do work with the mean of the velocities at the ends of the step. For
+  // points that take dv_p = sum N_ip f_i dt / m_i, this is exact when the later
+  // one is re-mapped: sum_p m_p dv_p . (v_p + v_p') / 2 is the sum over nodes
+  // of dt f_i . (v_i + v_i') / 2 with m_i v_i' = sum_p m_p N_ip v_p'.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::account_loads()
+  ExplicitIntegrator<dim>::account_loads(const unsigned int velocity_after)
   {
     using Layout = NodeLayout<dim>;
+
+    const double lost_share = -std::expm1(-problem.method.damping_rate * step);
+    const bool   loaded     = loads.any();
+    if (!loaded && lost_share == 0)
+      return;
     for (const std::uint32_t node : nodes.active_nodes())
       {
         const double *const record = nodes.record(node);
         if (!nodes.owns(node) || !(record[Layout::mass] > 0))
           continue;
-        const auto force = loads.on_node(node);
+        dealii::Tensor<1, dim> force;
+        if (loaded)
+          force = loads.on_node(node);
         ledger.load_impulse += step * force;
         for (int d = 0; d < dim; ++d)
-          ledger.load_work += step * force[d] *
-                              (record[Layout::velocity + d] -
-                               0.5 * record[Layout::increment + d]);
+          {
+            const double before =
+              record[Layout::velocity + d] - record[Layout::increment + d];
+            const double mean = 0.5 * (before + record[velocity_after + d]);
+            ledger.load_work += step * force[d] * mean;
+            ledger.viscous += lost_share * record[Layout::mass] * before * mean;
+          }
       }
+    lap(Verb::add_loads);
   }
 
 
@@ -480,8 +526,6 @@ namespace limber
                        ledger.side_impulse[side] += impulse;
                        ledger.boundary_work += work;
                      });
-    if (loads.any())
-      account_loads();
     lap(Verb::apply_boundaries);
   }
 
@@ -583,6 +627,7 @@ namespace limber
                                          const bool   remapped,
                                          const bool   move)
   {
+    loads.deform(nodes, remapped, length);
     StressSweep what;
     what.step     = length;
     what.remapped = remapped;
@@ -637,23 +682,24 @@ namespace limber
 
 
   template <int dim>
-  IntegratorState
+  IntegratorState<dim>
   ExplicitIntegrator<dim>::state() const
   {
-    return {wave_speed, point_speed, displacement, largest_mass, loads.areas()};
+    return {
+      wave_speed, point_speed, displacement, largest_mass, loads.pieces()};
   }
 
 
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::restore(const IntegratorState &former)
+  ExplicitIntegrator<dim>::restore(const IntegratorState<dim> &former)
   {
     wave_speed   = former.wave_speed;
     point_speed  = former.point_speed;
     displacement = former.displacement;
     largest_mass = former.largest_mass;
-    loads.restore(former.face_areas);
+    loads.restore(former.face_pieces);
     reinit();
   }
 

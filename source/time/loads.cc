@@ -1,10 +1,55 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/base/exceptions.h>
+#include <deal.II/base/geometry_info.h>
+
 #include <limber/interpolation/linear.h>
 #include <limber/time/loads.h>
 
 namespace limber
 {
+  using dealii::GeometryInfo;
+
+  namespace
+  {
+    template <int dim>
+    dealii::Point<dim>
+    position(const PointView<dim> &points, const std::size_t p)
+    {
+      dealii::Point<dim> result;
+      for (int d = 0; d < dim; ++d)
+        result[d] = points.position[d][p];
+      return result;
+    }
+
+
+
+    template <int dim>
+    dealii::Point<dim>
+    natural(const CellGeometry<dim> &cell, const dealii::Point<dim> &place)
+    {
+      dealii::Point<dim> xi;
+      for (int d = 0; d < dim; ++d)
+        xi[d] = (place[d] - cell.origin[d]) * cell.inverse_edge[d];
+      return xi;
+    }
+
+
+
+    /** grad N_i, 1/m. */
+    template <int dim>
+    dealii::Tensor<1, dim>
+    gradient(const CellGeometry<dim>  &cell,
+             const dealii::Point<dim> &xi,
+             const unsigned int        i)
+    {
+      auto result = GeometryInfo<dim>::d_linear_shape_function_gradient(xi, i);
+      for (int d = 0; d < dim; ++d)
+        result[d] *= cell.inverse_edge[d];
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   ExternalLoads<dim>::ExternalLoads(
     const Problem<dim>                              &problem,
@@ -17,7 +62,7 @@ namespace limber
     for (const FaceLoad<dim> &load : problem.loads.faces)
       for (auto &body : bodies)
         if (body->description.name == load.body)
-          layers.push_back(find_layer(load, *body));
+          faces.emplace_back(load, *body, grid);
     reinit();
   }
 
@@ -27,7 +72,7 @@ namespace limber
   bool
   ExternalLoads<dim>::any() const
   {
-    return problem.loads.body_force || !layers.empty();
+    return problem.loads.body_force || !faces.empty();
   }
 
 
@@ -38,17 +83,28 @@ namespace limber
   {
     if (any())
       forces.reinit(grid.n_nodes() * dim);
+    exchange_pieces();
   }
 
 
 
   template <int dim>
-  typename ExternalLoads<dim>::Areas
-  ExternalLoads<dim>::areas() const
+  void
+  ExternalLoads<dim>::exchange_pieces()
   {
-    Areas result;
-    for (const FaceLayer &layer : layers)
-      result.emplace_back(layer.area.begin(), layer.area.end());
+    for (LoadedFace<dim> &face : faces)
+      face.exchange();
+  }
+
+
+
+  template <int dim>
+  typename ExternalLoads<dim>::Pieces
+  ExternalLoads<dim>::pieces() const
+  {
+    Pieces result;
+    for (const LoadedFace<dim> &face : faces)
+      result.push_back(face.all_pieces());
     return result;
   }
 
@@ -56,73 +112,11 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::restore(const Areas &areas)
+  ExternalLoads<dim>::restore(const Pieces &pieces)
   {
-    AssertDimension(areas.size(), layers.size());
-    for (std::size_t i = 0; i < layers.size(); ++i)
-      layers[i].area = {areas[i].begin(), areas[i].end()};
-  }
-
-
-
-  template <int dim>
-  typename ExternalLoads<dim>::FaceLayer
-  ExternalLoads<dim>::find_layer(const FaceLoad<dim> &load,
-                                 MaterialBody<dim>   &body) const
-  {
-    FaceLayer          layer{&load, &body, {}, {}, 0};
-    const unsigned int normal = load.face / 2;
-    const auto         box    = body.description.shape->bounding_box();
-    const double       face =
-      load.face % 2 == 0 ? box.first[normal] : box.second[normal];
-
-    // Areas are those of a regular lattice.
-    const std::string where = "Face load " + load.name;
-    if (body.description.placement != Placement::regular)
-      throw InputError("'" + where + "' acts on body '" + load.body +
-                       "', whose points are not placed regularly, so that "
-                       "their shares of the face are unknown. Set 'Placement "
-                       "= regular' in section 'Body " +
-                       load.body + "'.");
-    std::vector<std::pair<std::uint64_t, double>> own;
-    const PointView<dim>                          points = body.points.view();
-    for (std::size_t p = 0; p < points.size; ++p)
-      {
-        const auto &cell = grid.geometry[points.cell[p]];
-        double      area = 1, spacing = 0;
-        for (unsigned int d = 0; d < dim; ++d)
-          {
-            const double part = 1 / (cell.inverse_edge[d] *
-                                     body.description.points_per_cell_edge[d]);
-            if (d == normal)
-              spacing = part;
-            else
-              area *= part;
-          }
-        if (std::abs(points.position[normal][p] - face) < spacing)
-          own.emplace_back(body.points.id(p), area);
-      }
-    for (const auto &part :
-         dealii::Utilities::MPI::all_gather(grid.communicator, own))
-      layer.area.insert(part.begin(), part.end());
-
-    if (layer.area.empty())
-      throw InputError("'" + where + "' finds no point of body '" + load.body +
-                       "' within one spacing of its face. Usually the box is "
-                       "thinner than a spacing; enlarge it, or set more "
-                       "'Points per cell edge', for instance 4.");
-
-    // The layer stands for the whole face also where the box does not end on
-    // the edges of cells.
-    double total = 0, exact = 1;
-    for (const auto &[id, area] : layer.area)
-      total += area;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (d != normal)
-        exact *= box.second[d] - box.first[d];
-    for (auto &[id, area] : layer.area)
-      area *= exact / total;
-    return layer;
+    AssertDimension(pieces.size(), faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      faces[i].restore(pieces[i]);
   }
 
 
@@ -155,13 +149,38 @@ namespace limber
   {
     const PointView<dim> points = body.points.view();
     for (std::size_t p = 0; p < points.size; ++p)
+      give(points,
+           p,
+           points.mass[p] *
+             problem.loads.body_force->vector(position(points, p), time));
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::add_face_load(LoadedFace<dim> &face, const double time)
+  {
+    const FaceLoad<dim> &load   = face.load;
+    const PointView<dim> points = face.body.points.view();
+    for (const auto &[p, piece] : face.here())
       {
-        dealii::Point<dim> place;
-        for (int d = 0; d < dim; ++d)
-          place[d] = points.position[d][p];
-        give(points,
-             p,
-             points.mass[p] * problem.loads.body_force->vector(place, time));
+        const dealii::Tensor<1, dim> force =
+          load.is_pressure ?
+            -load.formula.value(position(points, p) + piece->arm, time) *
+              piece->area_vector() :
+            piece->area * load.formula.vector(piece->reference, time);
+        const CellGeometry<dim> &cell = grid.geometry[points.cell[p]];
+        const dealii::Point<dim> xi   = natural(cell, position(points, p));
+        for (unsigned int i = 0; i < cell.node.size(); ++i)
+          {
+            const double weight =
+              GeometryInfo<dim>::d_linear_shape_function(xi, i) +
+              gradient(cell, xi, i) * piece->arm;
+            for (int d = 0; d < dim; ++d)
+              forces[cell.node[i] / NodeLayout<dim>::stride * dim + d] +=
+                weight * force[d];
+          }
       }
   }
 
@@ -169,35 +188,32 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::add_face_load(FaceLayer &layer, const double time)
+  ExternalLoads<dim>::deform(NodalFields<dim> &nodes,
+                             const bool        remapped,
+                             const double      step)
   {
-    const MaterialPoints<dim> &carrier = layer.body->points;
-    if (layer.order != carrier.order())
+    const unsigned int slot =
+      remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
+    const double *const records = nodes.view().nodes;
+    for (LoadedFace<dim> &face : faces)
       {
-        layer.here.clear();
-        for (std::size_t p = 0; p < carrier.size(); ++p)
+        const PointView<dim> points = face.body.points.view();
+        for (const auto &[p, piece] : face.here())
           {
-            const auto found = layer.area.find(carrier.id(p));
-            if (found != layer.area.end())
-              layer.here.emplace_back(p, found->second);
+            const CellGeometry<dim> &cell = grid.geometry[points.cell[p]];
+            const dealii::Point<dim> xi   = natural(cell, position(points, p));
+            dealii::Tensor<2, dim>   velocity_gradient;
+            for (unsigned int i = 0; i < cell.node.size(); ++i)
+              {
+                const auto slope = gradient(cell, xi, i);
+                for (int d = 0; d < dim; ++d)
+                  velocity_gradient[d] +=
+                    records[cell.node[i] + slot + d] * slope;
+              }
+            piece->arm += step * velocity_gradient * piece->arm;
+            for (auto &edge : piece->edges)
+              edge += step * velocity_gradient * edge;
           }
-        layer.order = carrier.order();
-      }
-
-    const FaceLoad<dim> &load   = *layer.load;
-    const PointView<dim> points = carrier.view();
-    for (const auto &[p, area] : layer.here)
-      {
-        dealii::Point<dim> place;
-        for (int d = 0; d < dim; ++d)
-          place[d] = points.position[d][p];
-        dealii::Tensor<1, dim> traction;
-        if (load.is_pressure)
-          traction[load.face / 2] =
-            load.formula.value(place, time) * (load.face % 2 == 0 ? 1 : -1);
-        else
-          traction = load.formula.vector(place, time);
-        give(points, p, area * traction);
       }
   }
 
@@ -213,8 +229,8 @@ namespace limber
     if (problem.loads.body_force)
       for (const auto &body : bodies)
         add_body_force(*body, time);
-    for (FaceLayer &layer : layers)
-      add_face_load(layer, time);
+    for (LoadedFace<dim> &face : faces)
+      add_face_load(face, time);
 
     // As for the nodes themselves: hanging nodes give to their masters.
     for (const HangingNode &hanging : grid.hanging_nodes)

@@ -172,6 +172,7 @@ namespace limber
           }
         body->points.synchronise();
       }
+    loads.exchange_pieces();
     travelled = 0;
     sort_points(/*agree=*/true);
     gather_cells();

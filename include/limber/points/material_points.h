@@ -55,11 +55,9 @@ namespace limber
     void
     reserve(std::size_t n);
 
-    /** A new point in a locally owned cell; mass in kg. */
+    /** A new point in an owned cell, by local number; mass in kg. */
     void
-    add(const typename dealii::Triangulation<dim>::active_cell_iterator &cell,
-        const dealii::Point<dim>                                        &place,
-        double                                                           mass);
+    add(std::uint32_t cell, const dealii::Point<dim> &place, double mass);
 
     /** After all add(): number the points over all ranks. Collective. */
     void

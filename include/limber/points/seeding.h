@@ -10,12 +10,17 @@
 namespace limber
 {
   /**
-   * Fill the shape of a body with points, cell by cell, on the rank that owns
-   * the cell. Each point stands for its share of the volume of the cell;
-   * @p density gives the mass per volume (kg/m^3) at its place.
+   * Fill the shape of a body with points, each on the rank that owns its
+   * cell. @p density gives the mass per volume (kg/m^3) at its place.
+   *
+   * Placements cell by cell give a point its share of the volume of the cell,
+   * and a point belongs to the body when its place lies inside the shape; with
+   * 'cut' a part whose corners and centre do not agree on this has the volume
+   * and the centroid of those of its 16^2 or 8^3 sample places that do. The
+   * placement 'fitted' divides the shape itself, into parts of exact volume.
    *
    * Placement is reproducible: jitter depends on the place of a cell, not on
-   * ranks. A point belongs to the body when its place lies inside the shape.
+   * ranks.
    */
   template <int dim>
   void

@@ -24,9 +24,11 @@ namespace limber
 {
   enum class Placement
   {
-    regular, // cell edges divided evenly, points at the centres of the parts
-    gauss,   // Gauss-Legendre places, weights into the masses
-    jittered // regular, moved at random by up to a quarter of the spacing
+    regular,  // cell edges divided evenly, points at the centres of the parts
+    gauss,    // Gauss-Legendre places, weights into the masses
+    jittered, // regular, moved at random by up to a quarter of the spacing
+    cut,      // regular, but the surface cuts parts, see seed()
+    fitted    // a lattice in the natural coordinates of a box or block
   };
 
   /** What happens to the scatter of the volume ratios within a cell. */
@@ -63,7 +65,11 @@ namespace limber
     velocity
   };
 
-  /** A pressure or a traction on one initial face of a box body. */
+  /**
+   * A load on one face of a box or block. A pressure acts along the present
+   * normal on the present area, a function of the present place; a traction
+   * is a force per initial area, a function of the initial place.
+   */
   template <int dim>
   struct FaceLoad
   {
@@ -81,9 +87,12 @@ namespace limber
     std::shared_ptr<const Shape<dim>> shape;
     std::array<unsigned int, dim>     points_per_cell_edge{};
     Placement                         placement = Placement::regular;
-    Formula<dim>                      initial_velocity; // dim components, m/s
-    bool                              hydrostatic = false;
-    std::optional<Formula<dim>>       initial_pressure; // 1 component, Pa
+    // Of a box or block: parts of its edges in each natural direction, for the
+    // placement 'fitted' and for the pieces of loaded faces
+    std::array<unsigned int, dim> lattice{};
+    Formula<dim>                  initial_velocity; // dim components, m/s
+    bool                          hydrostatic = false;
+    std::optional<Formula<dim>>   initial_pressure; // 1 component, Pa
 
     std::string         law;      // by name, as in the list of laws
     std::vector<double> material; // its entries, in its order
@@ -135,6 +144,7 @@ namespace limber
     StressUpdateOrder order    = StressUpdateOrder::automatic;
     Transfer          transfer = Transfer::flip;
     double damping_time        = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
+    double damping_rate        = 0;   // alpha of the acceleration -alpha v, 1/s
     double courant_number      = 0.4; // C
     double time_step           = 0;   // s; 0: from the Courant number
     double lost_points_limit   = 0;   // share of all points that may be lost

@@ -2,10 +2,13 @@
 #ifndef limber_problem_shapes_h
 #define limber_problem_shapes_h
 
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
 
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -35,18 +38,53 @@ namespace limber
 
 
 
-  /** Between two corners; the only shape whose faces may bear loads. */
+  /**
+   * A quadrilateral or hexahedron: the image of the unit cell under the map
+   * that is linear along each of its edges. Corners and faces are counted in
+   * deal.II's order, in natural coordinates xi in [0, 1]. Only such shapes
+   * have faces that may bear loads.
+   */
   template <int dim>
-  class BoxShape : public Shape<dim>
+  class BlockShape : public Shape<dim>
   {
   public:
-    BoxShape(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper);
+    using Vertices = std::array<dealii::Point<dim>,
+                                dealii::GeometryInfo<dim>::vertices_per_cell>;
+
+    explicit BlockShape(const Vertices &vertices);
+
+    /** The place of natural coordinates. */
+    dealii::Point<dim>
+    place(const dealii::Point<dim> &xi) const;
+
+    /** d x_i / d xi_j, m. */
+    dealii::Tensor<2, dim>
+    jacobian(const dealii::Point<dim> &xi) const;
+
+    /** Volume of a box in natural coordinates, exact, m^dim. */
+    double
+    volume(const Corners<dim> &part) const;
 
     bool
     contains(const dealii::Point<dim> &point) const override;
 
     Corners<dim>
     bounding_box() const override;
+
+    const Vertices vertices;
+  };
+
+
+
+  /** A block between two corners, along the axes. */
+  template <int dim>
+  class BoxShape : public BlockShape<dim>
+  {
+  public:
+    BoxShape(const dealii::Point<dim> &lower, const dealii::Point<dim> &upper);
+
+    bool
+    contains(const dealii::Point<dim> &point) const override;
 
     const dealii::Point<dim> lower, upper;
   };

@@ -36,6 +36,7 @@ namespace limber
     ball,
     cylinder,
     formula,
+    block,
     union_of_shapes
   };
 

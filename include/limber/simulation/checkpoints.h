@@ -20,7 +20,7 @@ namespace limber
     double                              time      = 0; // s
     double                              step_size = 0; // of the last step, s
     Ledger<dim>                         ledger;        // over all ranks
-    IntegratorState                     integrator;
+    IntegratorState<dim>                integrator;
     BalanceState<dim>                   balance;
     ObservablesState<dim>               observables;
     std::vector<CheckedValue>           checks;

@@ -21,10 +21,11 @@ namespace limber
     double transfer      = 0;
     double boundary_work = 0; // done on the material by the sides of the box
     double load_work     = 0; // by body force formulas and face loads
-    double viscous       = 0; // turned into heat by viscosity
+    double viscous       = 0; // turned into heat by viscosity and damping
     double history       = 0; // removed with volumetric history or tension
 
-    dealii::Tensor<1, dim> load_impulse; // body force formulas and face loads
+    // Body force formulas, face loads and damping
+    dealii::Tensor<1, dim> load_impulse;
     dealii::Tensor<1, dim> gravity_impulse;
     // From each side of the box on the material, in deal.II's order.
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;

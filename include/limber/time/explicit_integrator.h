@@ -9,7 +9,6 @@
 #include <limber/transfer/hourglass.h>
 
 #include <array>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -36,15 +35,15 @@ namespace limber
 
 
   /** What the integrator takes from step to step; plain, for checkpoints. */
+  template <int dim>
   struct IntegratorState
   {
     // Of the last step, over all ranks: m/s, m/s, cells, kg
-    double wave_speed   = 0;
-    double point_speed  = 0;
-    double displacement = 0;
-    double largest_mass = 0;
-    // Area by id of point for each face load, m^(dim-1)
-    std::vector<std::map<std::uint64_t, double>> face_areas;
+    double                              wave_speed   = 0;
+    double                              point_speed  = 0;
+    double                              displacement = 0;
+    double                              largest_mass = 0;
+    typename ExternalLoads<dim>::Pieces face_pieces;
   };
 
 
@@ -86,12 +85,13 @@ namespace limber
     void
     reinit();
 
-    IntegratorState
+    /** Collective. */
+    IntegratorState<dim>
     state() const;
 
     /** Adopt points that have been replaced by those of a checkpoint. */
     void
-    restore(const IntegratorState &former);
+    restore(const IntegratorState<dim> &former);
 
     /** Share of all points on the fullest rank times the number of ranks. */
     double
@@ -133,6 +133,8 @@ namespace limber
     void
     resist_hourglass();
     void
+    damp();
+    void
     add_loads();
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
@@ -143,7 +145,7 @@ namespace limber
     void
     apply_boundaries();
     void
-    account_loads();
+    account_loads(unsigned int velocity_after);
     void
     divide_remapped(unsigned int momentum, double when);
     void

@@ -2,22 +2,20 @@
 #ifndef limber_time_loads_h
 #define limber_time_loads_h
 
-#include <limber/state/material_body.h>
-
-#include <map>
-#include <unordered_map>
-#include <vector>
+#include <limber/time/loaded_face.h>
 
 namespace limber
 {
   /**
-   * Body force formulas and loads on the initial faces of box bodies. Their
+   * Body force formulas and loads on the faces of boxes and blocks. Their
    * forces are kept apart from the internal ones so that their work is known;
    * a scene without such loads has none of this.
    *
-   * A face load lives on the layer of points next to the face: each bears the
-   * traction at its place on its share of the initial area, along the initial
-   * normal, whatever the deformation (a dead load).
+   * A piece of a face at the place x_p + r, where p is its carrier and r its
+   * arm, moves with the velocity sum_i (N_i + r . grad N_i) v_i, the functions
+   * taken at x_p; a force t on it gives (N_i + r . grad N_i) t to the nodes.
+   * So the forces of the nodes have the sum and the moment of those on the
+   * pieces, do the same work, and reach only nodes that have mass.
    */
   template <int dim>
   class ExternalLoads
@@ -38,34 +36,33 @@ namespace limber
     void
     add(NodalFields<dim> &nodes, double time);
 
-    /** Area by id of point for each face load, m^(dim-1), for checkpoints. */
-    using Areas = std::vector<std::map<std::uint64_t, double>>;
-    Areas
-    areas() const;
+    /**
+     * Deform the pieces of faces over a step with the nodal velocity, or the
+     * re-mapped one, while points still are where they were.
+     */
     void
-    restore(const Areas &areas);
+    deform(NodalFields<dim> &nodes, bool remapped, double step);
+
+    /** After points have changed ranks; collective. */
+    void
+    exchange_pieces();
+
+    /** The pieces of each face load, for checkpoints. */
+    using Pieces = std::vector<std::vector<FacePiece<dim>>>;
+    Pieces
+    pieces() const;
+    void
+    restore(const Pieces &pieces);
 
     /** The sum of the forces on a node since the last add(), N. */
     dealii::Tensor<1, dim>
     on_node(std::uint32_t node) const;
 
   private:
-    struct FaceLayer
-    {
-      const FaceLoad<dim> *load;
-      MaterialBody<dim>   *body;
-      // Area by id of point, m^(dim-1); the same on all ranks.
-      std::unordered_map<std::uint64_t, double>   area;
-      std::vector<std::pair<std::size_t, double>> here; // point, area
-      unsigned long order = 0; // of the points, when `here` was made
-    };
-
-    FaceLayer
-    find_layer(const FaceLoad<dim> &load, MaterialBody<dim> &body) const;
     void
     add_body_force(const MaterialBody<dim> &body, double time);
     void
-    add_face_load(FaceLayer &layer, double time);
+    add_face_load(LoadedFace<dim> &face, double time);
     void
     give(const PointView<dim>         &points,
          std::size_t                   p,
@@ -74,7 +71,7 @@ namespace limber
     const Problem<dim>                              &problem;
     const BackgroundGrid<dim>                       &grid;
     std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
-    std::vector<FaceLayer>                           layers;
+    std::vector<LoadedFace<dim>>                     faces;
     LazyArray<double>                                forces; // dim per node, N
     RecordExchange                                   exchange{dim};
   };

@@ -90,7 +90,7 @@ namespace limber::test
               dealii::Point<dim> place = cell->vertex(0);
               for (unsigned int d = 0; d < dim; ++d)
                 place[d] += ((i >> d & 1) + 0.5) * spacing;
-              points().add(cell, place, point_mass);
+              points().add(grid.cell_number(cell), place, point_mass);
             }
       points().finish_adding();
     }

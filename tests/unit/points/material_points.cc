@@ -25,7 +25,7 @@ namespace
               dealii::Point<dim> place = cell->vertex(0);
               for (unsigned int d = 0; d < dim; ++d)
                 place[d] += 0.0625 + (i >> d & 1) * 0.125;
-              points.add(cell, place, 1.);
+              points.add(grid.cell_number(cell), place, 1.);
             }
       points.finish_adding();
       const PointView<dim> view = points.view();

@@ -17,6 +17,63 @@ TEST(Shapes, BoxHoldsItsCorners)
 
 
 
+TEST(Shapes, BlockIsAQuadrilateral)
+{
+  // Cook's panel, in deal.II's order of vertices
+  const BlockShape<2>::Vertices vertices = {
+    {Point<2>(0, 0), Point<2>(48, 44), Point<2>(0, 44), Point<2>(48, 60)}};
+  const BlockShape<2> panel(vertices);
+  EXPECT_EQ(panel.bounding_box().second, Point<2>(48, 60));
+  EXPECT_LT(panel.place(Point<2>(0.5, 0.5)).distance(Point<2>(24, 37)), 1e-12);
+  for (const auto &[x, y] :
+       {std::pair(0., 0.), {48., 60.}, {24., 22.01}, {24., 51.99}, {47.9, 44.}})
+    EXPECT_TRUE(panel.contains(Point<2>(x, y))) << x << ", " << y;
+  for (const auto &[x, y] : {std::pair(24., 21.99),
+                             {24., 52.01},
+                             {-0.01, 20.},
+                             {48.01, 50.},
+                             {48., 60.1},
+                             {1e3, -1e3},
+                             {-200., 300.}})
+    EXPECT_FALSE(panel.contains(Point<2>(x, y))) << x << ", " << y;
+
+  EXPECT_NEAR(panel.volume({Point<2>(0, 0), Point<2>(1, 1)}), 1440, 1e-10);
+  EXPECT_NEAR(panel.volume({Point<2>(0, 0), Point<2>(0.5, 1)}), 888, 1e-10);
+}
+
+
+
+TEST(Shapes, BlockIsAHexahedronWithBentFaces)
+{
+  // A cube with one corner pulled out: its volume follows from the average of
+  // the trilinear map's determinant, here by another rule.
+  BlockShape<3>::Vertices vertices;
+  for (unsigned int i = 0; i < 8; ++i)
+    vertices[i] = Point<3>(i & 1, i >> 1 & 1, i >> 2 & 1);
+  vertices[7] = Point<3>(1.5, 1.4, 1.3);
+  const BlockShape<3> block(vertices);
+  const unsigned int  n   = 40;
+  double              sum = 0;
+  for (unsigned int i = 0; i < n * n * n; ++i)
+    sum += determinant(block.jacobian(Point<3>((i % n + 0.5) / n,
+                                               (i / n % n + 0.5) / n,
+                                               (i / n / n + 0.5) / n))) /
+           (n * n * n);
+  const Point<3> one(1, 1, 1);
+  EXPECT_NEAR(block.volume({Point<3>(), one}), sum, 1e-4);
+  EXPECT_NEAR(block.volume({Point<3>(), Point<3>(0.3, 1, 1)}) +
+                block.volume({Point<3>(0.3, 0, 0), one}),
+              block.volume({Point<3>(), one}),
+              1e-14);
+
+  EXPECT_TRUE(block.contains(block.place(Point<3>(0.99, 0.99, 0.99))));
+  EXPECT_TRUE(block.contains(block.place(Point<3>(1, 0.5, 0.5))));
+  EXPECT_FALSE(block.contains(block.place(Point<3>(1.01, 0.5, 0.5))));
+  EXPECT_FALSE(block.contains(Point<3>(1.2, 0.1, 0.1)));
+}
+
+
+
 TEST(Shapes, BallIsRound)
 {
   const BallShape<2> ball(Point<2>(1, 1), 0.5);

@@ -272,3 +272,56 @@ TEST(Balances, ConstantBodyForceIsGravity)
       EXPECT_LT(without.momentum_error, 1e-12);
     }
 }
+
+
+
+// A free body loses its velocity as exp(-alpha t), for any alpha dt.
+TEST(Balances, DampingIsExactInFreeFlight)
+{
+  for (const std::string &order : stress_update_orders)
+    for (const double rate : {0.5, 4e4})
+      {
+        SCOPED_TRACE(order + ", " + digits(rate));
+        SceneRun<2>  run(block_on_floor,
+                        {"Body block/Initial velocity=0.3; 0.2",
+                          "Body block/Box/Lower corner=1, 1",
+                          "Body block/Box/Upper corner=3, 2",
+                          "Method/Damping rate=" + digits(rate),
+                          "Method/Stress update=" + order});
+        const double energy = run.totals().all.kinetic_energy;
+        run.advance(1e-3, 200);
+        const double left   = std::exp(-rate * run.time);
+        const auto   totals = run.totals();
+        EXPECT_NEAR(totals.all.momentum[0] / mass, 0.3 * left, 1e-12);
+        EXPECT_NEAR(totals.all.momentum[1] / mass, 0.2 * left, 1e-12);
+        EXPECT_NEAR(totals.dissipated,
+                    energy * (1 - left * left),
+                    1e-11 * energy);
+        EXPECT_LT(std::abs(totals.energy_drift), 1e-11);
+        EXPECT_LT(totals.momentum_error, 1e-11);
+      }
+}
+
+
+
+// A bar under a sudden load comes to rest; half of the work of the load is
+// left as strain energy.
+TEST(Balances, DampingTakesTheEnergyOfASuddenLoad)
+{
+  for (const std::string &order : stress_update_orders)
+    {
+      SCOPED_TRACE(order);
+      SceneRun<2> run(loaded_bar + "\nset Traction = p; 0\nend\nend\n",
+                      {"Method/Damping rate=30",
+                       "Method/Stress update=" + order});
+      run.advance_to(2);
+      const auto totals = run.totals();
+      // F^2 L / (2 E A) under F = 100 N
+      EXPECT_NEAR(totals.all.strain_energy, 0.02, 2e-4);
+      EXPECT_NEAR(totals.load_work, 0.04, 4e-4);
+      EXPECT_NEAR(totals.dissipated, 0.02, 8e-4);
+      EXPECT_LT(totals.all.kinetic_energy, 1e-6);
+      EXPECT_LT(std::abs(totals.energy_drift), order == "last" ? 2e-2 : 5e-3);
+      EXPECT_LT(totals.momentum_error, 1e-12);
+    }
+}

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/time/loaded_face.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+namespace limber
+{
+  using dealii::Point;
+  using dealii::Tensor;
+
+  namespace
+  {
+    /** Pieces by the id of their carriers. */
+    template <int dim>
+    std::unordered_multimap<std::uint64_t, std::size_t>
+    by_carrier(const std::vector<FacePiece<dim>> &pieces)
+    {
+      std::unordered_multimap<std::uint64_t, std::size_t> result;
+      for (std::size_t i = 0; i < pieces.size(); ++i)
+        result.emplace(pieces[i].carrier, i);
+      return result;
+    }
+
+
+
+    /** Call @p work with the place in the arrays of each carrier and its piece.
+     */
+    template <int dim, class Work>
+    void
+    for_each_carrier(const MaterialPoints<dim>         &points,
+                     const std::vector<FacePiece<dim>> &pieces,
+                     const Work                        &work)
+    {
+      const auto wanted = by_carrier(pieces);
+      if (wanted.empty())
+        return;
+      for (std::size_t p = 0; p < points.size(); ++p)
+        {
+          const auto [begin, end] = wanted.equal_range(points.id(p));
+          for (auto found = begin; found != end; ++found)
+            work(p, found->second);
+        }
+    }
+
+
+
+    /** The pieces of a face, without carriers; the arm is from the origin. */
+    template <int dim>
+    std::vector<FacePiece<dim>>
+    cut(const Body<dim> &body, const unsigned int face)
+    {
+      const auto &block   = dynamic_cast<const BlockShape<dim> &>(*body.shape);
+      const auto &lattice = body.lattice;
+      const unsigned int normal = face / 2;
+      const bool         upper  = face % 2 == 1;
+
+      std::size_t n = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        if (d != normal)
+          n *= lattice[d];
+      std::vector<FacePiece<dim>> pieces(n);
+      for (std::size_t i = 0; i < n; ++i)
+        {
+          Point<dim>  xi;
+          std::size_t rest = i;
+          xi[normal]       = upper ? 1 : 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            if (d != normal)
+              {
+                xi[d] = (rest % lattice[d] + 0.5) / lattice[d];
+                rest /= lattice[d];
+              }
+
+          FacePiece<dim> &piece = pieces[i];
+          piece.reference       = block.place(xi);
+          piece.arm             = piece.reference;
+          const auto   slopes   = block.jacobian(xi);
+          unsigned int e        = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            if (d != normal)
+              {
+                for (unsigned int c = 0; c < dim; ++c)
+                  piece.edges[e][c] = slopes[c][d] / lattice[d];
+                ++e;
+              }
+          Tensor<1, dim> outward;
+          for (unsigned int c = 0; c < dim; ++c)
+            outward[c] = upper ? slopes[c][normal] : -slopes[c][normal];
+          if (piece.area_vector() * outward < 0)
+            piece.edges[0] *= -1;
+          piece.area = piece.area_vector().norm();
+        }
+      return pieces;
+    }
+
+
+
+    // A splinter of a cut body cannot bear the load of a whole piece: carriers
+    // have at least this share of the mass of the heaviest point near by.
+    constexpr double least_share = 0.25;
+
+
+
+    /**
+     * A point that may carry a piece: distance, place, id. Distances are
+     * rounded to a billionth of a cell, so that of points at equal distance
+     * the first by coordinates wins on any number of ranks.
+     */
+    template <int dim>
+    using Candidate = std::array<double, 2 + dim>;
+
+
+
+    /** By local number of a cell, the pieces in it and in its neighbours. */
+    template <int dim>
+    std::unordered_map<std::uint32_t, std::vector<unsigned int>>
+    pieces_near_cells(const std::vector<FacePiece<dim>> &pieces,
+                      const BackgroundGrid<dim>         &grid)
+    {
+      std::unordered_map<std::uint32_t, std::vector<unsigned int>> result;
+      const unsigned int n_neighbours = dim == 2 ? 9 : 27;
+      for (unsigned int i = 0; i < pieces.size(); ++i)
+        for (unsigned int k = 0; k < n_neighbours; ++k)
+          {
+            std::array<double, dim> x;
+            unsigned int            rest = k;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const auto &box = grid.description;
+                x[d]            = pieces[i].reference[d] +
+                       (int(rest % 3) - 1) * (box.upper[d] - box.lower[d]) /
+                         box.cells[d];
+                rest /= 3;
+              }
+            const std::uint32_t cell = grid.bins.cell_at(x);
+            if (cell < grid.n_owned_cells())
+              result[cell].push_back(i);
+          }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  Tensor<1, dim>
+  FacePiece<dim>::area_vector() const
+  {
+    if constexpr (dim == 2)
+      return dealii::cross_product_2d(edges[0]);
+    else
+      return dealii::cross_product_3d(edges[0], edges[1]);
+  }
+
+
+
+  template <int dim>
+  LoadedFace<dim>::LoadedFace(const FaceLoad<dim>       &load,
+                              const MaterialBody<dim>   &body,
+                              const BackgroundGrid<dim> &grid)
+    : load(load)
+    , body(body)
+    , grid(grid)
+  {
+    auto all = cut(body.description, load.face);
+    find_carriers(all);
+    adopt(all);
+  }
+
+
+
+  template <int dim>
+  void
+  LoadedFace<dim>::find_carriers(std::vector<FacePiece<dim>> &all) const
+  {
+    Candidate<dim> nobody;
+    nobody.fill(std::numeric_limits<double>::infinity());
+
+    const auto           near               = pieces_near_cells(all, grid);
+    const PointView<dim> points             = body.points.view();
+    const auto           for_each_neighbour = [&](const auto &work) {
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto found = near.find(points.cell[p]);
+          if (found != near.end())
+            for (const unsigned int i : found->second)
+              work(p, i);
+        }
+    };
+
+    std::vector<double> heaviest(all.size(), 0.);
+    for_each_neighbour([&](const std::size_t p, const unsigned int i) {
+      heaviest[i] = std::max(heaviest[i], points.mass[p]);
+    });
+    dealii::Utilities::MPI::max(heaviest, grid.communicator, heaviest);
+
+    std::vector<Candidate<dim>> best(all.size(), nobody);
+    for_each_neighbour([&](const std::size_t p, const unsigned int i) {
+      if (points.mass[p] < least_share * heaviest[i])
+        return;
+      Candidate<dim> candidate{};
+      double         square = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double x   = points.position[d][p];
+          candidate[1 + d] = x;
+          square += (x - all[i].reference[d]) * (x - all[i].reference[d]);
+        }
+      candidate[0] =
+        std::round(std::sqrt(square) / (1e-9 * grid.smallest_edge));
+      candidate[1 + dim] = body.points.id(p);
+      best[i]            = std::min(best[i], candidate);
+    });
+
+    std::vector<std::pair<unsigned int, Candidate<dim>>> own;
+    for (unsigned int i = 0; i < all.size(); ++i)
+      if (best[i] < nobody)
+        own.emplace_back(i, best[i]);
+    for (const auto &of_rank :
+         dealii::Utilities::MPI::all_gather(grid.communicator, own))
+      for (const auto &[i, candidate] : of_rank)
+        best[i] = std::min(best[i], candidate);
+
+    for (unsigned int i = 0; i < all.size(); ++i)
+      {
+        if (best[i] == nobody)
+          throw InputError("'Face load " + load.name +
+                           "' finds no point of body '" + load.body +
+                           "' within one cell of its face. Usually the body "
+                           "is thinner than a spacing; enlarge it, or set more "
+                           "'Points per cell edge', for instance 4.");
+        all[i].carrier = static_cast<std::uint64_t>(best[i][1 + dim]);
+        for (unsigned int d = 0; d < dim; ++d)
+          all[i].arm[d] -= best[i][1 + d];
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  LoadedFace<dim>::adopt(const std::vector<FacePiece<dim>> &candidates)
+  {
+    for_each_carrier(body.points,
+                     candidates,
+                     [&](const std::size_t, const std::size_t i) {
+                       pieces.push_back(candidates[i]);
+                     });
+    order = 0;
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename LoadedFace<dim>::Here> &
+  LoadedFace<dim>::here()
+  {
+    if (order != body.points.order())
+      {
+        present.clear();
+        for_each_carrier(body.points,
+                         pieces,
+                         [&](const std::size_t p, const std::size_t i) {
+                           present.push_back({p, &pieces[i]});
+                         });
+        order = body.points.order();
+      }
+    return present;
+  }
+
+
+
+  template <int dim>
+  void
+  LoadedFace<dim>::exchange()
+  {
+    std::vector<bool> is_here(pieces.size(), false);
+    for_each_carrier(body.points,
+                     pieces,
+                     [&](const std::size_t, const std::size_t i) {
+                       is_here[i] = true;
+                     });
+    std::vector<FacePiece<dim>> staying, leaving;
+    for (std::size_t i = 0; i < pieces.size(); ++i)
+      (is_here[i] ? staying : leaving).push_back(pieces[i]);
+    pieces.swap(staying);
+    for (const auto &of_rank :
+         dealii::Utilities::MPI::all_gather(grid.communicator, leaving))
+      adopt(of_rank);
+    order = 0;
+  }
+
+
+
+  template <int dim>
+  std::vector<FacePiece<dim>>
+  LoadedFace<dim>::all_pieces() const
+  {
+    std::vector<FacePiece<dim>> result;
+    for (const auto &of_rank :
+         dealii::Utilities::MPI::all_gather(grid.communicator, pieces))
+      result.insert(result.end(), of_rank.begin(), of_rank.end());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  LoadedFace<dim>::restore(const std::vector<FacePiece<dim>> &all)
+  {
+    pieces.clear();
+    adopt(all);
+  }
+
+
+
+  template struct FacePiece<2>;
+  template struct FacePiece<3>;
+  template class LoadedFace<2>;
+  template class LoadedFace<3>;
+} // namespace limber

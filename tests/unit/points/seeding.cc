@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/points/seeding.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+/** @file How bodies are filled: volumes and centroids. */
+
+using namespace limber;
+using dealii::Point;
+
+namespace
+{
+  constexpr double density = 3;
+
+  struct Filled
+  {
+    double                volume = 0;
+    dealii::Tensor<1, 2>  centroid;
+    std::vector<Point<2>> places;
+    std::vector<double>   volumes;
+
+    Filled(const std::shared_ptr<const Shape<2>> &shape,
+           const Placement                        placement,
+           const unsigned int                     n_cells = 12)
+    {
+      GridDescription<2> description;
+      description.upper = Point<2>(6, 6);
+      description.cells = {{n_cells, n_cells}};
+      const BackgroundGrid<2> grid(description, MPI_COMM_SELF);
+      Body<2>                 body;
+      body.shape                = shape;
+      body.placement            = placement;
+      body.points_per_cell_edge = {{2, 2}};
+      body.lattice              = {{13, 7}};
+      MaterialPoints<2> points(grid, PointLayout());
+      seed<2>(
+        body, grid, [](const Point<2> &) { return density; }, points);
+
+      const PointView<2> view = points.view();
+      for (std::size_t p = 0; p < view.size; ++p)
+        {
+          places.emplace_back(view.position[0][p], view.position[1][p]);
+          volumes.push_back(view.mass[p] / density);
+          volume += volumes.back();
+          centroid += volumes.back() * places.back();
+          std::array<double, 2> x{{places.back()[0], places.back()[1]}};
+          EXPECT_EQ(view.cell[p], grid.bins.cell_at(x));
+        }
+      centroid /= volume;
+    }
+  };
+
+
+
+  const BlockShape<2>::Vertices slanted = {{Point<2>(0.3, 0.4),
+                                            Point<2>(5.1, 1.3),
+                                            Point<2>(0.7, 4.9),
+                                            Point<2>(4.2, 5.6)}};
+
+
+
+  /** Area and centroid of the block between these vertices. */
+  std::pair<double, dealii::Tensor<1, 2>>
+  area_and_centroid(const BlockShape<2>::Vertices &v)
+  {
+    double               area = 0;
+    dealii::Tensor<1, 2> centroid;
+    const unsigned int   around[] = {0, 1, 3, 2, 0};
+    for (unsigned int i = 0; i < 4; ++i)
+      {
+        const Point<2> a = v[around[i]], b = v[around[i + 1]];
+        const double   cross = a[0] * b[1] - a[1] * b[0];
+        area += cross / 2;
+        centroid += cross / 6 * (a + b);
+      }
+    return {area, centroid / area};
+  }
+} // namespace
+
+
+
+TEST(Seeding, FittedPointsFillABlockExactly)
+{
+  const auto   shape = std::make_shared<BlockShape<2>>(slanted);
+  const Filled filled(shape, Placement::fitted);
+  const auto [area, centroid] = area_and_centroid(slanted);
+  EXPECT_EQ(filled.places.size(), 13u * 7u);
+  EXPECT_NEAR(filled.volume, area, 1e-12);
+  // each place is not quite the centroid of its part
+  EXPECT_LT((filled.centroid - centroid).norm(), 5e-3);
+}
+
+
+
+TEST(Seeding, CutPartsHaveTheVolumeOfWhatIsInside)
+{
+  const auto block            = std::make_shared<BlockShape<2>>(slanted);
+  const auto [area, centroid] = area_and_centroid(slanted);
+  const auto   ball = std::make_shared<BallShape<2>>(Point<2>(2.9, 3.1), 2.3);
+  const double disc = 3.14159265358979 * 2.3 * 2.3;
+
+  const Filled cut(block, Placement::cut);
+  EXPECT_NEAR(cut.volume, area, 1e-3 * area);
+  EXPECT_LT((cut.centroid - centroid).norm(), 1e-3);
+  for (const Point<2> &place : cut.places)
+    EXPECT_TRUE(block->contains(place));
+
+  for (const unsigned int n : {6, 12, 24})
+    {
+      const Filled round(ball, Placement::cut, n);
+      EXPECT_NEAR(round.volume, disc, 2e-3 * disc);
+      EXPECT_LT((round.centroid - Point<2>(2.9, 3.1)).norm(), 2e-3);
+    }
+}
+
+
+
+// Where no part is cut, 'cut' is 'regular'.
+TEST(Seeding, CutLeavesWholePartsAlone)
+{
+  const auto box =
+    std::make_shared<BoxShape<2>>(Point<2>(1, 0.5), Point<2>(3.25, 2.75));
+  const Filled cut(box, Placement::cut), regular(box, Placement::regular);
+  ASSERT_EQ(cut.places.size(), regular.places.size());
+  for (std::size_t p = 0; p < cut.places.size(); ++p)
+    {
+      EXPECT_LT(cut.places[p].distance(regular.places[p]), 1e-14);
+      EXPECT_NEAR(cut.volumes[p], regular.volumes[p], 1e-15);
+    }
+}
