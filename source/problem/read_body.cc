@@ -214,6 +214,7 @@ namespace limber
           case Projection::cell_full:
             return true;
           case Projection::cell_shear:
+          case Projection::hybrid:
             return fluid || dim == 3;
           default:
             return fluid;
@@ -310,6 +311,15 @@ namespace limber
                          " needs the mean of a cell, which the locking "
                          "treatment 'none' does not form. Set 'Locking "
                          "treatment = cell' or 'History = keep'.");
+      if (body.history != HistoryTreatment::keep &&
+          averages_around_nodes(body.treatment))
+        throw InputError("The history " + in_quotes(section.text("History")) +
+                         " in " + section.where("History") +
+                         " does not go with the locking treatment " +
+                         in_quotes(section.text("Locking treatment")) +
+                         ": means around nodes spread to the next cell each "
+                         "time that they replace what they are formed of. Set "
+                         "'History = keep' or 'Locking treatment = cell'.");
     }
 
 

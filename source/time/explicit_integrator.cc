@@ -5,6 +5,7 @@
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/hourglass.h>
 #include <limber/transfer/points_to_grid.h>
+#include <limber/transfer/project_on_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,16 @@ namespace limber
       if (!body.cell_sums)
         return std::nullopt;
       return body.cell_sums->view();
+    }
+
+
+
+    /** The records of a body with means around nodes; null for others. */
+    template <int dim>
+    double *
+    nodal_means_of(MaterialBody<dim> &body)
+    {
+      return body.nodal_means ? body.nodal_means->data() : nullptr;
     }
   } // namespace
 
@@ -97,6 +108,8 @@ namespace limber
           body->cell_sums->reinit();
         if (body->cell_shift.size() > 0)
           body->cell_shift.reinit(grid.n_cells());
+        if (body->nodal_means)
+          body->nodal_means->reinit();
       }
     loads.reinit();
     travelled = 0;
@@ -240,10 +253,15 @@ namespace limber
     what.force    = force;
     what.affine   = momentum && problem.method.transfer == Transfer::apic;
     n_batches     = 0;
+    if (force)
+      project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+        sum_pressure<dim>(body.points.view(), nodes.view(), records);
+      });
     for (auto &body : bodies)
       {
         what.inverse_density = 1 / body->stress->density();
         what.projection      = body->stress->projection();
+        what.nodal_pressure  = nodal_means_of(*body);
         const auto sums      = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),
                                                  nodes.view(),
@@ -353,6 +371,27 @@ namespace limber
     nodes.start_sum(first, last);
     nodes.finish_sum();
     lap(Verb::sum_shared_nodes);
+  }
+
+
+
+  // Means around nodes for the bodies that are averaged so; sum(body, records)
+  // adds what the points give.
+  template <int dim>
+  template <class Sum>
+  void
+  ExplicitIntegrator<dim>::project_on_nodes(const Sum &sum)
+  {
+    for (auto &body : bodies)
+      if (body->nodal_means)
+        {
+          body->nodal_means->clear(nodes.active_nodes());
+          sum(*body, body->nodal_means->data());
+          body->nodal_means->start_completion(nodes.node_plan());
+        }
+    for (auto &body : bodies)
+      if (body->nodal_means)
+        body->nodal_means->finish_completion(nodes.active_nodes());
   }
 
 
@@ -585,9 +624,13 @@ namespace limber
     what.step     = length;
     what.remapped = remapped;
     what.move     = move ? step : 0;
+    project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+      sum_divergence<dim>(body.points.view(), nodes.view(), remapped, records);
+    });
     for (auto &body : bodies)
       {
         const Body<dim> &description = body->description;
+        what.nodal_divergence        = nodal_means_of(*body);
         what.relaxation =
           description.history == HistoryTreatment::replace ?
             1 :

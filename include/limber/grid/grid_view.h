@@ -114,6 +114,20 @@ namespace limber
     const double *now  = nullptr; // of the present places, complete
     double       *next = nullptr; // of the places after the step
   };
+
+
+
+  /**
+   * The record of a node in the projection on nodes of a quantity q of one
+   * body: sums of m N_i and m N_i q over its points. When they are complete,
+   * the mean takes the place of the second.
+   */
+  struct NodalMeanLayout
+  {
+    static constexpr unsigned int mass   = 0;
+    static constexpr unsigned int value  = 1;
+    static constexpr unsigned int stride = 2;
+  };
 } // namespace limber
 
 #endif

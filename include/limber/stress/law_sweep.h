@@ -196,8 +196,9 @@ namespace limber
         const CellMeans<dim>          means(sums, batch.cell);
         [[maybe_unused]] const double shift =
           what.shift ? what.shift_share * what.shift[batch.cell] : 0;
+        const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
         const StrainOperator<dim, kind, decltype(velocity)> strain(
-          velocity, cell, means, strain_projection, what.step);
+          velocity, cell, means, divergence, strain_projection, what.step);
 
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {
@@ -249,7 +250,8 @@ namespace limber
                 const auto moved =
                   move_points<dim>(points, grid, batch.cell, lanes, shift);
                 displacement = larger(displacement, moved.displacement);
-                if constexpr (projected)
+                // without means over cells the sums may still be wanted
+                if (needs_cell_means(kind) || (projected && sums))
                   {
                     const CellGatherer<dim> gatherer(*sums);
                     if (moved.inside)

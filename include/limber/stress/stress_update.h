@@ -24,6 +24,8 @@ namespace limber
     // Per cell, what that variable gets besides; null: nothing.
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
+    // The divergence projected on nodes (nodal_means.h), where that is asked
+    const double *nodal_divergence = nullptr;
   };
 
 

@@ -136,6 +136,9 @@ namespace limber
     add_loads();
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
+    template <class Sum>
+    void
+    project_on_nodes(const Sum &sum);
     void
     advance_nodes();
     void

@@ -37,6 +37,7 @@ namespace limber::test
                                 problem.bodies[0].treatment,
                                 HourglassResponse::bending),
         MaterialPoints<dim>(grid, layout),
+        std::nullopt,
         std::nullopt});
       if (projected)
         bodies[0]->cell_sums.emplace(grid);
