@@ -317,9 +317,8 @@ namespace limber
                          " in " + section.where("History") +
                          " does not go with the locking treatment " +
                          in_quotes(section.text("Locking treatment")) +
-                         ": means around nodes spread to the next cell each "
-                         "time that they replace what they are formed of. Set "
-                         "'History = keep' or 'Locking treatment = cell'.");
+                         ": means around nodes that replace histories spread "
+                         "over the body. Set 'History = keep'.");
     }
 
 

@@ -30,6 +30,12 @@ namespace limber
       return records.data();
     }
 
+    const double *
+    data() const
+    {
+      return records.data();
+    }
+
     double
     mean(const std::uint32_t node) const
     {
