@@ -108,6 +108,8 @@ namespace limber
           body->cell_sums->reinit();
         if (body->cell_shift.size() > 0)
           body->cell_shift.reinit(grid.n_cells());
+        if (body->deviator_sums)
+          body->deviator_sums->reinit();
         if (body->nodal_means)
           body->nodal_means->reinit();
       }
@@ -614,6 +616,54 @@ namespace limber
 
 
 
+  // The share of the way to the mean that a history goes in that time.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::relaxation(const Body<dim>       &body,
+                                      const HistoryTreatment history,
+                                      const double           length) const
+  {
+    switch (history)
+      {
+        case HistoryTreatment::keep:
+          return 0;
+        case HistoryTreatment::relax:
+          return -std::expm1(-length / body.relaxation_time);
+        case HistoryTreatment::crossing:
+          return -std::expm1(-length * point_speed / grid.smallest_edge);
+        case HistoryTreatment::replace:
+          return 1;
+      }
+    return 0;
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::relax_deviators(const double length)
+  {
+    for (auto &body : bodies)
+      if (body->deviator_sums)
+        body->stress->sum_deviators(body->points.view(),
+                                    body->deviator_sums->view().next);
+    complete_cells(&MaterialBody<dim>::deviator_sums);
+    for (auto &body : bodies)
+      if (body->deviator_sums)
+        {
+          const Body<dim> &description = body->description;
+          ledger.history += body->stress->relax_deviators(
+            body->points.view(),
+            body->deviator_sums->view().now,
+            relaxation(description, description.deviatoric_history, length));
+          // Points may leave these cells before the next sums.
+          body->deviator_sums->clear(nodes.owned_occupied_cells());
+          body->deviator_sums->clear(nodes.ghost_occupied_cells());
+        }
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::update_stress(const double length,
@@ -624,6 +674,7 @@ namespace limber
     what.step     = length;
     what.remapped = remapped;
     what.move     = move ? step : 0;
+    relax_deviators(length);
     project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
       sum_divergence<dim>(body.points.view(), nodes.view(), remapped, records);
     });
@@ -631,14 +682,7 @@ namespace limber
       {
         const Body<dim> &description = body->description;
         what.nodal_divergence        = nodal_means_of(*body);
-        what.relaxation =
-          description.history == HistoryTreatment::replace ?
-            1 :
-          description.history == HistoryTreatment::relax ?
-            -std::expm1(-length / description.relaxation_time) :
-          description.history == HistoryTreatment::crossing ?
-            -std::expm1(-length * point_speed / grid.smallest_edge) :
-            0;
+        what.relaxation  = relaxation(description, description.history, length);
         what.shift       = description.chequerboard_control > 0 ?
                              body->cell_shift.data() :
                              nullptr;

@@ -22,6 +22,8 @@ namespace limber
     MaterialPoints<dim>                      points;
     // Hu-Washizu sums in DGQ0, only where treatment or control need them
     std::optional<CellFields<dim>> cell_sums;
+    // Likewise of the deviatoric strain; only within a step, else zero
+    std::optional<CellFields<dim>> deviator_sums;
     // Means around nodes (Q1), likewise: of the divergence, of the pressure
     std::optional<NodalProjection<dim>> nodal_means;
     // Per cell, what the volumetric variable gets in this step against

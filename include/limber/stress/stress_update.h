@@ -67,6 +67,22 @@ namespace limber
            const CellSums<dim>  *sums,
            const StressSweep    &what) const = 0;
 
+    /**
+     * Add to the records of the cells (DeviatorSums) the mass of the points
+     * and their deviatoric strain times mass. For laws that keep one.
+     */
+    virtual void
+    sum_deviators(const PointView<dim> &points, double *sums) const = 0;
+
+    /**
+     * Let the components that the treatment averages go @p share of the way
+     * to the mean of the cell; returns the energy that this removes, J.
+     */
+    virtual double
+    relax_deviators(const PointView<dim> &points,
+                    const double         *sums,
+                    double                share) const = 0;
+
     /** How the strain, and with it the stress, is averaged over cells. */
     virtual const StrainProjection &
     projection() const = 0;

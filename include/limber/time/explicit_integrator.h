@@ -155,6 +155,12 @@ namespace limber
     interpolate_hanging();
     void
     grid_to_points(bool remap, bool move);
+    double
+    relaxation(const Body<dim> &body,
+               HistoryTreatment history,
+               double           length) const;
+    void
+    relax_deviators(double length);
     void
     update_stress(double length, bool remapped, bool move);
     void
@@ -168,7 +174,7 @@ namespace limber
     void
     exchange_points();
     void
-    complete_cells();
+    complete_cells(std::optional<CellFields<dim>> MaterialBody<dim>::*sums);
     void
     gather_cells();
 

@@ -42,6 +42,7 @@ namespace limber::test
                                 HourglassResponse::bending),
         MaterialPoints<dim>(grid, layout),
         std::nullopt,
+        std::nullopt,
         std::nullopt});
       if (needs_cell_means(treatment))
         bodies[0]->cell_sums.emplace(grid);
