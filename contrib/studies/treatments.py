@@ -36,6 +36,7 @@ TREATMENTS = {
                                      "Deviatoric history": "replace"},
 }
 LIQUIDS = ("none", "cell", "cell, replaced", "node")
+ORDER = "last, remapped"  # of the beam; or "both ends"
 FREE_BEAM = {"0.3": 3.3990, "0.499": 3.6963}  # Hz, fine Q2 finite elements
 
 
@@ -68,7 +69,8 @@ def free_beam(runner, treatment, poisson, speed, end_time):
         "verification/free_soft_beam.prm", "beam", treatment,
         [f"Body beam/Neo hookean/Poisson's ratio={poisson}",
          "Body beam/Constants=b = 0.7883401241, s = 0.98250221, "
-         f"v0 = {speed}", f"End time={end_time}"])
+         f"v0 = {speed}", f"End time={end_time}",
+         f"Method/Stress update={ORDER}"])
     if result is None:
         return ["failed", "failed"]
     values, _ = run_folder.statistics(result[0])
