@@ -292,6 +292,44 @@ namespace limber
 
 
 
+  template <int dim>
+  void
+  BackgroundGrid<dim>::give_to_masters(double *const      records,
+                                       const unsigned int stride,
+                                       const unsigned int first,
+                                       const unsigned int last) const
+  {
+    for (const HangingNode &hanging : hanging_nodes)
+      {
+        double *const from = records + std::size_t(hanging.node) * stride;
+        for (const auto &[master, weight] : hanging.masters)
+          for (unsigned int k = first; k < last; ++k)
+            records[std::size_t(master) * stride + k] += weight * from[k];
+        std::fill(from + first, from + last, 0.);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::take_from_masters(double *const      records,
+                                         const unsigned int stride,
+                                         const unsigned int first,
+                                         const unsigned int last) const
+  {
+    for (const HangingNode &hanging : hanging_nodes)
+      {
+        double *const to = records + std::size_t(hanging.node) * stride;
+        std::fill(to + first, to + last, 0.);
+        for (const auto &[master, weight] : hanging.masters)
+          for (unsigned int k = first; k < last; ++k)
+            to[k] += weight * records[std::size_t(master) * stride + k];
+      }
+  }
+
+
+
   template class BackgroundGrid<2>;
   template class BackgroundGrid<3>;
 } // namespace limber

@@ -269,6 +269,9 @@ namespace limber
     left = false;
     for (const std::uint32_t node : active)
       std::fill_n(record(node), Layout::stride, 0.);
+    // Their masters have given to them whether they are active or not.
+    for (const HangingNode &hanging : grid.hanging_nodes)
+      std::fill_n(record(hanging.node), Layout::stride, 0.);
   }
 
 
@@ -278,14 +281,7 @@ namespace limber
   NodalFields<dim>::start_sum(const unsigned int first, const unsigned int last)
   {
     // Linear, so every rank condenses its own contributions.
-    for (const HangingNode &hanging : grid.hanging_nodes)
-      {
-        double *const from = record(hanging.node);
-        for (const auto &[master, weight] : hanging.masters)
-          for (unsigned int k = first; k < last; ++k)
-            record(master)[k] += weight * from[k];
-        std::fill(from + first, from + last, 0.);
-      }
+    grid.give_to_masters(values.data(), Layout::stride, first, last);
     exchange.start(nodes_to_share, values.data(), first, last);
   }
 
@@ -304,14 +300,7 @@ namespace limber
   void
   NodalFields<dim>::interpolate_hanging()
   {
-    for (const HangingNode &hanging : grid.hanging_nodes)
-      {
-        double *const to = record(hanging.node);
-        std::fill_n(to, Layout::stride, 0.);
-        for (const auto &[master, weight] : hanging.masters)
-          for (unsigned int k = 1; k < Layout::stride; ++k)
-            to[k] += weight * record(master)[k];
-      }
+    grid.take_from_masters(values.data(), Layout::stride, 1, Layout::stride);
   }
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/output/pictures.h>
-#include <limber/output/point_pressure.h>
+#include <limber/output/point_stress.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +14,10 @@ namespace limber
     template <int dim>
     struct SeenBody
     {
-      const MaterialBody<dim>  &body;
-      const PointView<dim>      points;
-      const PointPressure<dim> &pressure;
-      const unsigned int        number;
+      const MaterialBody<dim> &body;
+      const PointView<dim>     points;
+      const PointStress<dim>  &stress;
+      const unsigned int       number;
     };
 
 
@@ -77,7 +77,7 @@ namespace limber
                   const std::size_t    p,
                   double *const        values)
     {
-      *values = seen.pressure.pressure(p);
+      *values = seen.stress.pressure(p);
     }
 
 
@@ -88,7 +88,19 @@ namespace limber
                         const std::size_t    p,
                         double *const        values)
     {
-      *values = seen.pressure.point_pressure(p);
+      *values = seen.stress.point_pressure(p);
+    }
+
+
+
+    void
+    fill_matrix(const dealii::SymmetricTensor<2, 3> &deviator,
+                const double                         pressure,
+                double *const                        values)
+    {
+      for (unsigned int i = 0; i < 3; ++i)
+        for (unsigned int j = 0; j < 3; ++j)
+          values[3 * i + j] = deviator[i][j] - (i == j ? pressure : 0);
     }
 
 
@@ -99,12 +111,20 @@ namespace limber
                 const std::size_t    p,
                 double *const        values)
     {
-      const dealii::SymmetricTensor<2, 3> stress =
-        deviator(seen.points, p) / seen.pressure.volume_ratio(p) -
-        seen.pressure.pressure(p) * dealii::unit_symmetric_tensor<3>();
-      for (unsigned int i = 0; i < 3; ++i)
-        for (unsigned int j = 0; j < 3; ++j)
-          values[3 * i + j] = stress[i][j];
+      fill_matrix(seen.stress.deviator(p), seen.stress.pressure(p), values);
+    }
+
+
+
+    template <int dim>
+    void
+    fill_point_stress(const SeenBody<dim> &seen,
+                      const std::size_t    p,
+                      double *const        values)
+    {
+      fill_matrix(seen.stress.point_deviator(p),
+                  seen.stress.point_pressure(p),
+                  values);
     }
 
 
@@ -116,8 +136,7 @@ namespace limber
                            const std::size_t    p,
                            double *const        values)
     {
-      *values = std::sqrt(1.5) * deviator(seen.points, p).norm() /
-                seen.pressure.volume_ratio(p);
+      *values = std::sqrt(1.5) * seen.stress.deviator(p).norm();
     }
 
 
@@ -128,7 +147,7 @@ namespace limber
                       const std::size_t    p,
                       double *const        values)
     {
-      *values = seen.pressure.volume_ratio(p);
+      *values = seen.stress.volume_ratio(p);
     }
 
 
@@ -169,6 +188,7 @@ namespace limber
         {"volume ratio", "", 1, fill_volume_ratio<dim>},
         {"mass", "kg", 1, fill_mass<dim>},
         {"point pressure", "Pa", 1, fill_point_pressure<dim>},
+        {"point stress", "Pa", 9, fill_point_stress<dim>},
         {"body", "", 1, fill_body<dim>}};
       return fields;
     }
@@ -248,12 +268,12 @@ namespace limber
       n += body->points.size();
     picture.patches.reserve(n);
 
-    PointPressure<dim> pressure(state.grid);
+    PointStress<dim> stress(state);
     for (unsigned int b = 0; b < state.bodies.size(); ++b)
       {
         const MaterialBody<dim> &body = *state.bodies[b];
-        pressure.compute(body);
-        add_body<dim>({body, body.points.view(), pressure, b}, fields, picture);
+        stress.compute(body);
+        add_body<dim>({body, body.points.view(), stress, b}, fields, picture);
       }
     return picture;
   }
@@ -281,6 +301,15 @@ namespace limber
               patch.vertices[i][d] =
                 cell.origin[d] + (i >> d & 1) / cell.inverse_edge[d];
         }
+    }
+
+
+
+    template <int dim>
+    bool
+    is_projected(const MaterialBody<dim> &body)
+    {
+      return body.stress->projection().kind != Projection::none;
     }
 
 
@@ -316,7 +345,7 @@ namespace limber
     picture.fields.add("velocity", "m/s", dim);
     unsigned int component = picture.fields.names.size();
     for (const auto &body : state.bodies)
-      if (body->cell_sums)
+      if (is_projected(*body))
         {
           picture.fields.add("pressure of " + body->description.name, "Pa", 1);
           picture.fields.add("volume ratio of " + body->description.name,
@@ -326,18 +355,22 @@ namespace limber
     add_cells(state.grid, picture);
     add_nodal_values(state, picture);
 
-    PointPressure<dim> pressure(state.grid);
+    PointStress<dim> stress(state);
     for (const auto &body : state.bodies)
-      if (body->cell_sums)
+      if (is_projected(*body))
         {
-          pressure.compute(*body);
+          stress.compute(*body);
           for (unsigned int c = 0; c < picture.patches.size(); ++c)
             {
-              const CellPressure mean = pressure.in_cell(c);
+              const CellPressure mean = stress.in_cell(c);
               for (unsigned int i = 0; i < 1 << dim; ++i)
                 {
-                  auto &data             = picture.patches[c].data;
-                  data(component, i)     = mean.mean_pressure();
+                  auto &data = picture.patches[c].data;
+                  data(component, i) =
+                    stress.is_nodal() ?
+                      stress.at_node(state.grid.geometry[c].node[i] /
+                                     NodeLayout<dim>::stride) :
+                      mean.mean_pressure();
                   data(component + 1, i) = mean.mean_volume_ratio();
                 }
             }

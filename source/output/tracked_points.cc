@@ -13,14 +13,12 @@ namespace limber
     template <int dim>
     struct Telegram
     {
-      static constexpr unsigned int found       = 0;
-      static constexpr unsigned int position    = 1;
-      static constexpr unsigned int velocity    = 1 + dim;
-      static constexpr unsigned int pressure    = 1 + 2 * dim; // J p, Pa
-      static constexpr unsigned int volume      = 2 + 2 * dim; // J
-      static constexpr unsigned int deviator    = 3 + 2 * dim; // of J sigma
-      static constexpr unsigned int cell_centre = 9 + 2 * dim;
-      static constexpr unsigned int stride      = 9 + 3 * dim;
+      static constexpr unsigned int found    = 0;
+      static constexpr unsigned int position = 1;
+      static constexpr unsigned int velocity = 1 + dim;
+      static constexpr unsigned int pressure = 1 + 2 * dim;
+      static constexpr unsigned int deviator = 2 + 2 * dim;
+      static constexpr unsigned int stride   = 8 + 2 * dim;
     };
 
 
@@ -149,7 +147,9 @@ namespace limber
 
   template <int dim>
   std::vector<double>
-  TrackedPoints<dim>::collect(const State<dim> &state) const
+  TrackedPoints<dim>::collect(const State<dim>        &state,
+                              const Stresses          &stresses,
+                              const std::vector<bool> &with_stress) const
   {
     using T = Telegram<dim>;
     std::vector<double> records(tracked.size() * T::stride);
@@ -157,26 +157,21 @@ namespace limber
       {
         if (index[t] == nowhere)
           continue;
-        const MaterialBody<dim> &body = *state.bodies[tracked[t].body];
-        const PointView<dim> point  = part_of(body.points.view(), index[t], 1);
-        double *const        record = records.data() + t * T::stride;
-        record[T::found]            = 1;
+        const MaterialBody<dim> &body   = *state.bodies[tracked[t].body];
+        const PointView<dim>     points = body.points.view();
+        double *const            record = records.data() + t * T::stride;
+        record[T::found]                = 1;
         for (int d = 0; d < dim; ++d)
           {
-            record[T::position + d] = *point.position[d];
-            record[T::velocity + d] = *point.velocity[d];
+            record[T::position + d] = points.position[d][index[t]];
+            record[T::velocity + d] = points.velocity[d][index[t]];
           }
-        record[T::pressure] = *point.pressure;
-        body.stress->volume_ratio(point, record + T::volume);
-        const dealii::SymmetricTensor<2, 3> s = deviator(point, 0);
+        if (!with_stress[t])
+          continue;
+        const PointStress<dim> &stress = stresses.at(tracked[t].body);
+        record[T::pressure]            = stress.pressure(index[t]);
+        const auto s                   = stress.deviator(index[t]);
         std::copy(s.begin_raw(), s.end_raw(), record + T::deviator);
-        if (*point.cell != invalid_cell)
-          {
-            const CellGeometry<dim> &cell = state.grid.geometry[*point.cell];
-            for (int d = 0; d < dim; ++d)
-              record[T::cell_centre + d] =
-                cell.origin[d] + 0.5 / cell.inverse_edge[d];
-          }
       }
     MPI_Allreduce(MPI_IN_PLACE,
                   records.data(),
@@ -201,7 +196,12 @@ namespace limber
 
     for (unsigned int t = 0; t < tracked.size(); ++t)
       revalidate(state, t);
-    std::vector<double> records = collect(state);
+    Stresses stresses;
+    for (unsigned int t = 0; t < tracked.size(); ++t)
+      if (with_stress[t] && stresses.count(tracked[t].body) == 0)
+        stresses.try_emplace(tracked[t].body, state)
+          .first->second.compute(*state.bodies[tracked[t].body]);
+    std::vector<double> records = collect(state, stresses, with_stress);
 
     // A point that nobody has told about has changed its rank, or is lost.
     bool looked_again = false;
@@ -212,7 +212,7 @@ namespace limber
           looked_again = true;
         }
     if (looked_again)
-      records = collect(state);
+      records = collect(state, stresses, with_stress);
 
     for (unsigned int t = 0; t < tracked.size(); ++t)
       {
@@ -224,71 +224,13 @@ namespace limber
             samples[t].position[d] = record[T::position + d];
             samples[t].velocity[d] = record[T::velocity + d];
           }
-      }
-    average_pressures(state, with_stress, records, samples);
-    return samples;
-  }
-
-
-
-  template <int dim>
-  void
-  TrackedPoints<dim>::average_pressures(
-    const State<dim>              &state,
-    const std::vector<bool>       &with_stress,
-    const std::vector<double>     &records,
-    std::vector<PointSample<dim>> &samples) const
-  {
-    using T = Telegram<dim>;
-
-    // sum of m J p and of m J over the points in the cell of each
-    std::vector<double> sums(2 * tracked.size());
-    bool                any = false;
-    for (unsigned int t = 0; t < tracked.size(); ++t)
-      {
-        const MaterialBody<dim> &body = *state.bodies[tracked[t].body];
-        if (!with_stress[t] || samples[t].lost || !body.cell_sums)
-          continue;
-        any = true;
-        std::array<double, dim> centre;
-        std::copy_n(records.begin() + t * T::stride + T::cell_centre,
-                    dim,
-                    centre.begin());
-        const std::uint32_t cell = state.grid.bins.cell_at(centre);
-        if (cell == invalid_cell)
-          continue;
-        const PointView<dim> points = body.points.view();
-        for (std::size_t p = 0; p < points.size; ++p)
-          if (points.cell[p] == cell)
-            {
-              double volume_ratio = 1;
-              body.stress->volume_ratio(part_of(points, p, 1), &volume_ratio);
-              sums[2 * t] += points.mass[p] * points.pressure[p];
-              sums[2 * t + 1] += points.mass[p] * volume_ratio;
-            }
-      }
-    if (any)
-      MPI_Allreduce(MPI_IN_PLACE,
-                    sums.data(),
-                    sums.size(),
-                    MPI_DOUBLE,
-                    MPI_SUM,
-                    state.grid.communicator);
-
-    for (unsigned int t = 0; t < tracked.size(); ++t)
-      {
-        if (!with_stress[t] || samples[t].lost)
-          continue;
-        const double *const           record = records.data() + t * T::stride;
+        samples[t].pressure = record[T::pressure];
         dealii::SymmetricTensor<2, 3> s;
         std::copy_n(record + T::deviator, 6, s.begin_raw());
-        samples[t].pressure = sums[2 * t + 1] != 0 ?
-                                sums[2 * t] / sums[2 * t + 1] :
-                                record[T::pressure] / record[T::volume];
         samples[t].stress =
-          s / record[T::volume] -
-          samples[t].pressure * dealii::unit_symmetric_tensor<3>();
+          s - samples[t].pressure * dealii::unit_symmetric_tensor<3>();
       }
+    return samples;
   }
 
 

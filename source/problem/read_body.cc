@@ -90,10 +90,16 @@ namespace limber
                    history_words(),
                    "With a treatment that averages the volumetric strain: what "
                    "happens to its scatter among the points of a cell.");
+      declare_word(parameters,
+                   "Deviatoric history",
+                   "keep",
+                   history_words(),
+                   "With a treatment that averages shear strain, or all of the "
+                   "deviatoric strain: the same for these components.");
       parameters.declare("Relaxation time",
                          "0",
                          admissible::non_negative_number("0.01"),
-                         "Time constant tau, s, for the history 'relax'.");
+                         "Time constant tau, s, for histories that 'relax'.");
     }
 
 
@@ -289,6 +295,7 @@ namespace limber
           case Projection::cell_full:
             return true;
           case Projection::cell_shear:
+          case Projection::hybrid:
             return fluid || dim == 3;
           default:
             return fluid;
@@ -314,13 +321,78 @@ namespace limber
 
 
 
-    /** Whether there is one pressure per cell. */
-    bool
-    has_cell_pressure(const Projection treatment)
+    /** A history that is not kept needs means to tend to. */
+    template <int dim>
+    void
+    check_histories(const Section   &section,
+                    const bool       fluid,
+                    const Body<dim> &body)
     {
-      return treatment == Projection::cell ||
-             treatment == Projection::cell_shear ||
-             treatment == Projection::cell_full;
+      const auto refuse = [&](const std::string &entry,
+                              const std::string &reason,
+                              const std::string &remedy) {
+        throw InputError("The history " + in_quotes(section.text(entry)) +
+                         " in " + section.where(entry) + " " + reason +
+                         ". Set " + remedy + ".");
+      };
+      const std::string treatment =
+        "the locking treatment " + in_quotes(section.text("Locking treatment"));
+
+      if (body.history != HistoryTreatment::keep)
+        {
+          if (body.treatment == Projection::none)
+            refuse("History",
+                   "needs the mean of a cell, which " + treatment +
+                     " does not form",
+                   "'Locking treatment = cell' or 'History = keep'");
+          if (averages_around_nodes(body.treatment))
+            refuse("History",
+                   "does not go with " + treatment +
+                     ": means around nodes that replace histories spread "
+                     "over the body",
+                   "'History = keep'");
+        }
+      if (body.deviatoric_history != HistoryTreatment::keep)
+        {
+          if (fluid)
+            refuse("Deviatoric history",
+                   "is for solids: a fluid keeps no deviatoric strain",
+                   "'Deviatoric history = keep'");
+          if (!averages_shear_in_cells(body.treatment))
+            refuse("Deviatoric history",
+                   "needs the mean shear of a cell, which " + treatment +
+                     " does not form",
+                   "'Locking treatment = cell shear' or 'Deviatoric history = "
+                   "keep'");
+        }
+    }
+
+
+
+    template <int dim>
+    void
+    read_histories(const Section &section, const bool fluid, Body<dim> &body)
+    {
+      body.history = read_word(section, "History", history_words());
+      body.deviatoric_history =
+        read_word(section, "Deviatoric history", history_words());
+      body.relaxation_time = section.number("Relaxation time");
+
+      const bool relaxes = body.history == HistoryTreatment::relax ||
+                           body.deviatoric_history == HistoryTreatment::relax;
+      if (relaxes && body.relaxation_time == 0)
+        throw InputError("The history 'relax' has the relaxation time 0 in " +
+                         section.where("Relaxation time") +
+                         ". Usually the entry was forgotten. Give a time, for "
+                         "instance 0.01, or use 'replace'.");
+      if (!relaxes && body.relaxation_time > 0)
+        throw InputError("The time " + section.text("Relaxation time") +
+                         " in " + section.where("Relaxation time") +
+                         " has no effect with the history " +
+                         in_quotes(section.text("History")) +
+                         ". Usually that was not changed along with it. Set "
+                         "'History = relax'.");
+      check_histories(section, fluid, body);
     }
 
 
@@ -337,7 +409,6 @@ namespace limber
         body.treatment = automatic_treatment(body, fluid, problem);
       body.hourglass =
         read_word(section, "Hourglass response", hourglass_words());
-      body.history = read_word(section, "History", history_words());
       body.hourglass_control =
         section.text("Hourglass control") != "auto" ?
           section.number("Hourglass control") :
@@ -353,9 +424,10 @@ namespace limber
       body.chequerboard_control =
         section.text("Chequerboard control") != "auto" ?
           section.number("Chequerboard control") :
-        fluid && has_cell_pressure(body.treatment) ? 0.5 :
-                                                     0;
-      if (body.chequerboard_control > 0 && !has_cell_pressure(body.treatment))
+        fluid && averages_volume_in_cells(body.treatment) ? 0.5 :
+                                                            0;
+      if (body.chequerboard_control > 0 &&
+          !averages_volume_in_cells(body.treatment))
         throw InputError(
           "The chequerboard control " + section.text("Chequerboard control") +
           " in " + section.where("Chequerboard control") +
@@ -363,28 +435,7 @@ namespace limber
           in_quotes(section.text("Locking treatment")) +
           ", which has no single pressure per cell. Set 'Chequerboard control "
           "= 0', or 'Locking treatment = cell'.");
-      body.relaxation_time = section.number("Relaxation time");
-
-      const bool relaxes = body.history == HistoryTreatment::relax;
-      if (relaxes && body.relaxation_time == 0)
-        throw InputError("The history 'relax' has the relaxation time 0 in " +
-                         section.where("Relaxation time") +
-                         ". Usually the entry was forgotten. Give a time, for "
-                         "instance 0.01, or use 'History = replace'.");
-      if (!relaxes && body.relaxation_time > 0)
-        throw InputError("The time " + section.text("Relaxation time") +
-                         " in " + section.where("Relaxation time") +
-                         " has no effect with the history " +
-                         in_quotes(section.text("History")) +
-                         ". Usually that was not changed along with it. Set "
-                         "'History = relax'.");
-      if (body.history != HistoryTreatment::keep &&
-          body.treatment == Projection::none)
-        throw InputError("The history " + in_quotes(section.text("History")) +
-                         " in " + section.where("History") +
-                         " needs the mean of a cell, which the locking "
-                         "treatment 'none' does not form. Set 'Locking "
-                         "treatment = cell' or 'History = keep'.");
+      read_histories(section, fluid, body);
     }
 
 

@@ -120,11 +120,13 @@ namespace limber
                                             "volume ratio",
                                             "mass",
                                             "point pressure",
+                                            "point stress",
                                             "body",
                                             "none"}),
                        "What is written with the points. Pressure is positive "
-                       "in compression, stress in tension (Cauchy); 'point "
-                       "pressure' is the one before the locking treatment.");
+                       "in compression, stress in tension (Cauchy). They are "
+                       "those that act after the locking treatment; 'point "
+                       "pressure' and 'point stress' are those before it.");
     parameters.declare("Statistics interval",
                        "1",
                        admissible::positive_integer("10"),

@@ -118,6 +118,8 @@ namespace limber
           new MaterialBody<dim>{body,
                                 std::move(stress),
                                 MaterialPoints<dim>(grid, layout),
+                                std::nullopt,
+                                std::nullopt,
                                 std::nullopt}));
         seed<dim>(
           body,
@@ -144,8 +146,13 @@ namespace limber
       balance(grid, bodies);
     for (auto &body : bodies)
       {
-        if (body->description.treatment != Projection::none)
+        const Projection kind = body->stress->projection().kind;
+        if (needs_cell_means(kind) || body->description.hourglass_control > 0)
           body->cell_sums.emplace(grid);
+        if (body->description.deviatoric_history != HistoryTreatment::keep)
+          body->deviator_sums.emplace(grid);
+        if (averages_around_nodes(kind))
+          body->nodal_means.emplace(grid);
         if (body->description.chequerboard_control > 0)
           body->cell_shift.reinit(grid.n_cells());
       }

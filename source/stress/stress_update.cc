@@ -65,12 +65,18 @@ namespace limber
           case Projection::cell:
             return std::make_unique<LawSweep<dim, Law, Projection::cell>>(
               law, projection);
+          case Projection::node:
+            return std::make_unique<LawSweep<dim, Law, Projection::node>>(
+              law, projection);
           default:
             break;
         }
       // Without shear stress there is no more to project than the pressure.
       if constexpr (!Law::has_deviator)
-        return make_sweep<dim>(law, Projection::cell, response);
+        return make_sweep<dim>(law,
+                               kind == Projection::hybrid ? Projection::node :
+                                                            Projection::cell,
+                               response);
       else
         switch (kind)
           {
@@ -80,6 +86,9 @@ namespace limber
             case Projection::cell_full:
               return std::make_unique<
                 LawSweep<dim, Law, Projection::cell_full>>(law, projection);
+            case Projection::hybrid:
+              return std::make_unique<LawSweep<dim, Law, Projection::hybrid>>(
+                law, projection);
             default:
               return std::make_unique<
                 LawSweep<dim, Law, Projection::assumed_strain>>(law,

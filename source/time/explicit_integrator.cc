@@ -5,6 +5,7 @@
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/hourglass.h>
 #include <limber/transfer/points_to_grid.h>
+#include <limber/transfer/project_on_nodes.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +26,16 @@ namespace limber
       if (!body.cell_sums)
         return std::nullopt;
       return body.cell_sums->view();
+    }
+
+
+
+    /** The records of a body with means around nodes; null for others. */
+    template <int dim>
+    double *
+    nodal_means_of(MaterialBody<dim> &body)
+    {
+      return body.nodal_means ? body.nodal_means->data() : nullptr;
     }
   } // namespace
 
@@ -97,6 +108,10 @@ namespace limber
           body->cell_sums->reinit();
         if (body->cell_shift.size() > 0)
           body->cell_shift.reinit(grid.n_cells());
+        if (body->deviator_sums)
+          body->deviator_sums->reinit();
+        if (body->nodal_means)
+          body->nodal_means->reinit();
       }
     loads.reinit();
     travelled = 0;
@@ -244,10 +259,15 @@ namespace limber
     what.force    = force;
     what.affine   = momentum && problem.method.transfer == Transfer::apic;
     n_batches     = 0;
+    if (force)
+      project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+        sum_pressure<dim>(body.points.view(), nodes.view(), records);
+      });
     for (auto &body : bodies)
       {
         what.inverse_density = 1 / body->stress->density();
         what.projection      = body->stress->projection();
+        what.nodal_pressure  = nodal_means_of(*body);
         const auto sums      = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),
                                                  nodes.view(),
@@ -386,6 +406,27 @@ namespace limber
     nodes.start_sum(first, last);
     nodes.finish_sum();
     lap(Verb::sum_shared_nodes);
+  }
+
+
+
+  // Means around nodes for the bodies that are averaged so; sum(body, records)
+  // adds what the points give.
+  template <int dim>
+  template <class Sum>
+  void
+  ExplicitIntegrator<dim>::project_on_nodes(const Sum &sum)
+  {
+    for (auto &body : bodies)
+      if (body->nodal_means)
+        {
+          body->nodal_means->clear(nodes.active_nodes());
+          sum(*body, body->nodal_means->data());
+          body->nodal_means->start_completion(nodes.node_plan());
+        }
+    for (auto &body : bodies)
+      if (body->nodal_means)
+        body->nodal_means->finish_completion(nodes.active_nodes());
   }
 
 
@@ -621,6 +662,54 @@ namespace limber
 
 
 
+  // The share of the way to the mean that a history goes in that time.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::relaxation(const Body<dim>       &body,
+                                      const HistoryTreatment history,
+                                      const double           length) const
+  {
+    switch (history)
+      {
+        case HistoryTreatment::keep:
+          return 0;
+        case HistoryTreatment::relax:
+          return -std::expm1(-length / body.relaxation_time);
+        case HistoryTreatment::crossing:
+          return -std::expm1(-length * point_speed / grid.smallest_edge);
+        case HistoryTreatment::replace:
+          return 1;
+      }
+    return 0;
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::relax_deviators(const double length)
+  {
+    for (auto &body : bodies)
+      if (body->deviator_sums)
+        body->stress->sum_deviators(body->points.view(),
+                                    body->deviator_sums->view().next);
+    complete_cells(&MaterialBody<dim>::deviator_sums);
+    for (auto &body : bodies)
+      if (body->deviator_sums)
+        {
+          const Body<dim> &description = body->description;
+          ledger.history += body->stress->relax_deviators(
+            body->points.view(),
+            body->deviator_sums->view().now,
+            relaxation(description, description.deviatoric_history, length));
+          // Points may leave these cells before the next sums.
+          body->deviator_sums->clear(nodes.owned_occupied_cells());
+          body->deviator_sums->clear(nodes.ghost_occupied_cells());
+        }
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::update_stress(const double length,
@@ -632,17 +721,15 @@ namespace limber
     what.step     = length;
     what.remapped = remapped;
     what.move     = move ? step : 0;
+    relax_deviators(length);
+    project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+      sum_divergence<dim>(body.points.view(), nodes.view(), remapped, records);
+    });
     for (auto &body : bodies)
       {
         const Body<dim> &description = body->description;
-        what.relaxation =
-          description.history == HistoryTreatment::replace ?
-            1 :
-          description.history == HistoryTreatment::relax ?
-            -std::expm1(-length / description.relaxation_time) :
-          description.history == HistoryTreatment::crossing ?
-            -std::expm1(-length * point_speed / grid.smallest_edge) :
-            0;
+        what.nodal_divergence        = nodal_means_of(*body);
+        what.relaxation  = relaxation(description, description.history, length);
         what.shift       = description.chequerboard_control > 0 ?
                              body->cell_shift.data() :
                              nullptr;

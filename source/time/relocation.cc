@@ -68,7 +68,7 @@ namespace limber
     nodes.add_entered();
     if (any_entered_shared > 0)
       nodes.agree_on_sums();
-    complete_cells();
+    complete_cells(&MaterialBody<dim>::cell_sums);
 
     travelled += displacement;
     lap(Verb::relocate);
@@ -76,20 +76,21 @@ namespace limber
 
 
 
-  // The sums that the sweep has gathered which moved the points.
+  // The sums that a sweep has gathered.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::complete_cells()
+  ExplicitIntegrator<dim>::complete_cells(
+    std::optional<CellFields<dim>> MaterialBody<dim>::*const sums)
   {
     for (auto &body : bodies)
-      if (body->cell_sums)
-        body->cell_sums->start_completion(nodes.cell_plan());
+      if ((*body).*sums)
+        ((*body).*sums)->start_completion(nodes.cell_plan());
     for (auto &body : bodies)
-      if (body->cell_sums)
+      if (auto &own = (*body).*sums)
         {
-          body->cell_sums->finish_completion();
-          body->cell_sums->clear_next(nodes.owned_occupied_cells());
-          body->cell_sums->clear_next(nodes.ghost_occupied_cells());
+          own->finish_completion();
+          own->clear_next(nodes.owned_occupied_cells());
+          own->clear_next(nodes.ghost_occupied_cells());
         }
   }
 
@@ -105,7 +106,7 @@ namespace limber
         gather_cell_sums<dim>(body->points.view(),
                               nodes.view(),
                               body->cell_sums->view());
-    complete_cells();
+    complete_cells(&MaterialBody<dim>::cell_sums);
   }
 
 
@@ -220,7 +221,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::relocate();
   template void
-  ExplicitIntegrator<2>::complete_cells();
+  ExplicitIntegrator<2>::complete_cells(
+    std::optional<CellFields<2>> MaterialBody<2>::*);
   template void
   ExplicitIntegrator<2>::gather_cells();
   template bool
@@ -238,7 +240,8 @@ namespace limber
   template void
   ExplicitIntegrator<3>::relocate();
   template void
-  ExplicitIntegrator<3>::complete_cells();
+  ExplicitIntegrator<3>::complete_cells(
+    std::optional<CellFields<3>> MaterialBody<3>::*);
   template void
   ExplicitIntegrator<3>::gather_cells();
   template bool

@@ -25,7 +25,11 @@ namespace limber
               ToNodes<dim>            &to_nodes)
     {
       const CellMeans<dim>                means(sums, batch.cell);
-      StressOperator<dim, kind, deviator> stress(cell, what.projection, means);
+      const NodalMean<dim, kind>          nodal(what.nodal_pressure, cell);
+      StressOperator<dim, kind, deviator> stress(cell,
+                                                 what.projection,
+                                                 means,
+                                                 nodal);
       constexpr std::size_t               width = 1 << dim;
       for (std::size_t p = batch.begin; p < batch.end; p += width)
         stress.add(points, p, batch.end - p, what.inverse_density);
@@ -125,6 +129,16 @@ namespace limber
           case Projection::assumed_strain:
             return choose_sums<dim, Projection::assumed_strain, deviator>(
               points, grid, what, sums);
+          case Projection::node:
+            return choose_sums<dim, Projection::node, deviator>(points,
+                                                                grid,
+                                                                what,
+                                                                sums);
+          case Projection::hybrid:
+            return choose_sums<dim, Projection::hybrid, deviator>(points,
+                                                                  grid,
+                                                                  what,
+                                                                  sums);
         }
       return 0;
     }

@@ -12,7 +12,9 @@ namespace limber
                                               Projection::cell,
                                               Projection::cell_shear,
                                               Projection::cell_full,
-                                              Projection::assumed_strain};
+                                              Projection::assumed_strain,
+                                              Projection::node,
+                                              Projection::hybrid};
 
 
 

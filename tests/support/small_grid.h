@@ -119,6 +119,7 @@ namespace limber
         bins.table = bin_table.data();
         nodes.resize(n_nodes * NodeLayout<dim>::stride);
         occupied.resize(n_cells);
+        means.resize(n_nodes * NodalMeanLayout::stride);
         sums.resize(n_cells * CellSums<dim>::stride);
         next_sums.resize(sums.size());
       }
@@ -143,6 +144,22 @@ namespace limber
         result.now  = sums.data();
         result.next = next_sums.data();
         return result;
+      }
+
+      /** The records of a projection on nodes; sum(records) adds to them. */
+      template <class Sum>
+      const double *
+      nodal_means(const Sum &sum)
+      {
+        std::fill(means.begin(), means.end(), 0.);
+        sum(means.data());
+        for (std::size_t n = 0; n < n_nodes; ++n)
+          {
+            double *const record = &means[n * NodalMeanLayout::stride];
+            if (record[NodalMeanLayout::mass] > 0)
+              record[NodalMeanLayout::value] /= record[NodalMeanLayout::mass];
+          }
+        return means.data();
       }
 
       /** Make the sums of the present places those of these points. */
@@ -207,7 +224,7 @@ namespace limber
       std::size_t                    n_cells, n_nodes;
       Vector<dim>                    lower, edge;
       std::vector<CellGeometry<dim>> cells;
-      std::vector<double>            nodes, sums, next_sums;
+      std::vector<double>            nodes, means, sums, next_sums;
       std::vector<std::uint32_t>     bin_table, entered;
       std::vector<std::uint8_t>      occupied;
       BinView<dim>                   bins;

@@ -96,6 +96,23 @@ namespace limber
       return ghost_cells[cell - n_owned_cells()];
     }
 
+    /**
+     * Slots [first, last) of records of nodes: hanging nodes hand what has
+     * been added to them on to their masters, and are left with zero.
+     */
+    void
+    give_to_masters(double      *records,
+                    unsigned int stride,
+                    unsigned int first,
+                    unsigned int last) const;
+
+    /** The same: hanging nodes get the values that follow from masters. */
+    void
+    take_from_masters(double      *records,
+                      unsigned int stride,
+                      unsigned int first,
+                      unsigned int last) const;
+
     const GridDescription<dim>                        description;
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;

@@ -114,6 +114,35 @@ namespace limber
     const double *now  = nullptr; // of the present places, complete
     double       *next = nullptr; // of the places after the step
   };
+
+
+
+  /**
+   * The record of a cell in sums for the mean of the deviatoric strain e of one
+   * body: the mass, and m e by components (n_deviator). They take no more than
+   * the room of CellSums, so that CellFields holds them as well.
+   */
+  template <int dim>
+  struct DeviatorSums
+  {
+    static constexpr unsigned int mass   = 0;
+    static constexpr unsigned int strain = 1;
+    static constexpr unsigned int stride = CellSums<dim>::stride;
+  };
+
+
+
+  /**
+   * The record of a node in the projection on nodes of a quantity q of one
+   * body: sums of m N_i and m N_i q over its points. When they are complete,
+   * the mean takes the place of the second.
+   */
+  struct NodalMeanLayout
+  {
+    static constexpr unsigned int mass   = 0;
+    static constexpr unsigned int value  = 1;
+    static constexpr unsigned int stride = 2;
+  };
 } // namespace limber
 
 #endif

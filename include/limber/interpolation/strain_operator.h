@@ -3,6 +3,7 @@
 #define limber_interpolation_strain_operator_h
 
 #include <limber/interpolation/cell_means.h>
+#include <limber/interpolation/nodal_means.h>
 #include <limber/materials/law.h>
 #include <limber/materials/projection.h>
 
@@ -27,6 +28,12 @@
  *                                          e2 c^e_de/h_e xi_d')
  *                          + trilinear terms in the same way (3d),
  *                 2 D_de = <2 D_de> + (c^d_ef/h_e + c^e_df/h_d) xi_f' (3d)
+ *   node            dev D = dev grad v,  tr D = S div v
+ *   hybrid          as node, but D_de = <D_de>
+ *
+ * with S the projection on nodes of nodal_means.h. It is its own transpose
+ * with masses as weights, so the stress meets grad v after S as well: the
+ * pressure that acts is S p.
  *
  * Derivation and proofs: doc/theory/treatments.md.
  *
@@ -43,19 +50,22 @@ namespace limber
   public:
     /**
      * @p velocity gives the coefficients of component d of the velocity as
-     * velocity(d)(k).
+     * velocity(d)(k); @p nodal is S div v, 1/s.
      */
-    StrainOperator(const Coefficients      &velocity,
-                   const CellGeometry<dim> &cell,
-                   const CellMeans<dim>    &means,
-                   const StrainProjection  &projection,
-                   const double             step)
+    StrainOperator(const Coefficients         &velocity,
+                   const CellGeometry<dim>    &cell,
+                   const CellMeans<dim>       &means,
+                   const NodalMean<dim, kind> &nodal,
+                   const StrainProjection     &projection,
+                   const double                step)
       : velocity(velocity)
+      , nodal(nodal)
+      , step(step)
     {
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         scale[d] = step * cell.inverse_edge[d];
-      if constexpr (kind == Projection::none)
+      if constexpr (kind == Projection::none || kind == Projection::node)
         return;
       else if constexpr (kind == Projection::cell)
 #pragma GCC unroll 8
@@ -95,8 +105,7 @@ namespace limber
           for (int e = 0; e < dim; ++e)
             motion.gradient[d][e] = scale[e] * gradient[e];
         }
-      if constexpr (kind == Projection::cell_shear ||
-                    kind == Projection::cell_full ||
+      if constexpr (averages_shear_in_cells(kind) ||
                     kind == Projection::assumed_strain)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
@@ -124,6 +133,8 @@ namespace limber
       if constexpr (kind == Projection::none ||
                     kind == Projection::assumed_strain)
         motion.volumetric = motion.trace();
+      else if constexpr (averages_around_nodes(kind))
+        motion.volumetric = step * nodal.template value<Number>(xi);
       else
         motion.volumetric = broadcast<Number>(divergence);
     }
@@ -210,6 +221,8 @@ namespace limber
     }
 
     const Coefficients                      &velocity;
+    const NodalMean<dim, kind>              &nodal;
+    const double                             step;
     std::array<double, dim>                  scale;
     double                                   divergence = 0;
     std::array<std::array<double, dim>, dim> mean;
@@ -236,12 +249,15 @@ namespace limber
     using Number = PointPack<dim>;
     using Nodes  = typename Linear<dim>::Nodes;
 
-    StressOperator(const CellGeometry<dim> &cell,
-                   const StrainProjection  &projection,
-                   const CellMeans<dim>    &means)
+    /** @p nodal is the pressure S p, Pa. */
+    StressOperator(const CellGeometry<dim>    &cell,
+                   const StrainProjection     &projection,
+                   const CellMeans<dim>       &means,
+                   const NodalMean<dim, kind> &nodal)
       : cell(cell)
       , projection(projection)
       , means(means)
+      , nodal(nodal)
     {}
 
     /**
@@ -266,7 +282,11 @@ namespace limber
         xi[d] =
           (read(points.position[d]) - cell.origin[d]) * cell.inverse_edge[d];
 
-      const Number p = volume * read(points.pressure);
+      Number p;
+      if constexpr (averages_around_nodes(kind))
+        p = volume * nodal.template value<Number>(xi);
+      else
+        p = volume * read(points.pressure);
       if constexpr (mean_pressure)
         pressure += p;
       if constexpr (deviator || !mean_pressure)
@@ -318,7 +338,8 @@ namespace limber
                 if (k & (k - 1))
                   a[k] = hourglass[d][k];
             const Nodes sums = sums_over_lanes(a);
-            if constexpr (kind == Projection::none || kind == Projection::cell)
+            if constexpr (!averages_shear_in_cells(kind) &&
+                          kind != Projection::assumed_strain)
               {
                 Nodes scale = broadcast<Nodes>(1.);
 #pragma GCC unroll 8
@@ -335,10 +356,10 @@ namespace limber
                                   sums[6] * means[1];
 #pragma GCC unroll 8
                 for (int e = 0; e < dim; ++e)
-                  result[d] += (sums[1 << e] * cell.inverse_edge[e]) *
-                               (kind == Projection::cell_shear && d == e ?
-                                  Linear<dim>::linear(e) :
-                                  means.derivatives(e));
+                  result[d] +=
+                    (sums[1 << e] * cell.inverse_edge[e]) *
+                    (normal_as_is && d == e ? Linear<dim>::linear(e) :
+                                              means.derivatives(e));
               }
           }
       if constexpr (mean_pressure)
@@ -355,8 +376,9 @@ namespace limber
     }
 
   private:
-    static constexpr bool mean_pressure =
-      kind != Projection::none && kind != Projection::assumed_strain;
+    static constexpr bool mean_pressure = averages_volume_in_cells(kind);
+    static constexpr bool normal_as_is =
+      kind == Projection::cell_shear || kind == Projection::hybrid;
 
     /** What acts on coefficients of hourglass modes at the points. */
     __attribute__((always_inline)) void
@@ -394,13 +416,13 @@ namespace limber
           if constexpr (dim == 3)
             {
               add_bilinear(t, xi, d, f);
-              if constexpr (kind != Projection::cell_shear)
+              if constexpr (!normal_as_is)
                 hourglass[d][1 << e | 1 << f] +=
                   t[d][e] * (h[e] * xi[f]) + t[d][f] * (h[f] * xi[e]);
-              if constexpr (kind == Projection::cell_shear)
+              if constexpr (normal_as_is)
                 hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f]));
-              if constexpr (kind == Projection::none ||
-                            kind == Projection::cell)
+              if constexpr (!averages_shear_in_cells(kind) &&
+                            kind != Projection::assumed_strain)
                 hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f])) +
                                    t[d][e] * (h[e] * (xi[d] * xi[f])) +
                                    t[d][f] * (h[f] * (xi[d] * xi[e]));
@@ -420,15 +442,16 @@ namespace limber
       if constexpr (kind == Projection::assumed_strain)
         on_mode += (projection.own * t[d][d] + projection.mate * t[e][e]) *
                    (h[d] * xi[e]);
-      else if constexpr (kind == Projection::cell_shear)
+      else if constexpr (normal_as_is)
         on_mode += t[d][d] * (h[d] * xi[e]);
       else
         on_mode += t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]);
     }
 
-    const CellGeometry<dim> &cell;
-    const StrainProjection  &projection;
-    const CellMeans<dim>    &means;
+    const CellGeometry<dim>    &cell;
+    const StrainProjection     &projection;
+    const CellMeans<dim>       &means;
+    const NodalMean<dim, kind> &nodal;
 
     Number                                        pressure{};
     std::array<std::array<Number, dim>, dim>      stress{};

@@ -88,6 +88,22 @@ namespace limber
 
 
 
+  /** A deviator as a matrix, with the zz component that is not stored. */
+  template <int dim>
+  inline std::array<std::array<double, 3>, 3>
+  full_matrix(const Deviator<dim, double> &s)
+  {
+    double yz = 0, zx = 0;
+    if constexpr (dim == 3)
+      {
+        yz = s[3];
+        zx = s[4];
+      }
+    return {{{{s[0], s[2], zx}}, {{s[2], s[1], yz}}, {{zx, yz, -s[0] - s[1]}}}};
+  }
+
+
+
   /** s : s, with the zz component that is not stored. */
   template <int dim, class Number>
   inline Number
@@ -116,6 +132,10 @@ namespace limber
    *  - bulk_modulus, shear_modulus at rest, Pa;
    *  - volumetric, the index of the history variable with the volumetric
    *    history, or -1 where that is the pressure itself;
+   *  - keeps_deviator, whether it has a deviatoric elastic strain; then also
+   *    deviatoric_strain(), set_deviatoric_strain(), deviatoric_energy(): the
+   *    strain in a form that may be averaged over points that share a frame
+   *    (logarithmic and in the current configuration where it is finite);
    *  - update(): new stress and history after a motion;
    *  - initialise(): the state at rest under a given pressure;
    *  - volume_ratio(), strain_energy(), volumetric_energy(),
@@ -126,6 +146,8 @@ namespace limber
   {
     static_assert(!std::is_polymorphic_v<Law>,
                   "a law has no virtual function: it is called per point");
+    static_assert(Law::has_deviator || !Law::keeps_deviator,
+                  "a law that bears no shear keeps none");
     static_assert(Law::volumetric >= -1 &&
                     Law::volumetric < Law::template n_history<2>,
                   "the volumetric variable is one of the history variables");

@@ -27,11 +27,12 @@ namespace limber
        law_parameters::poisson_ratio}};
 
     template <int>
-    static constexpr int  n_history    = 0;
-    static constexpr bool has_deviator = true;
-    static constexpr bool uses_spin    = false;
-    static constexpr bool dissipates   = false;
-    static constexpr int  volumetric   = -1;
+    static constexpr int  n_history      = 0;
+    static constexpr bool has_deviator   = true;
+    static constexpr bool keeps_deviator = true;
+    static constexpr bool uses_spin      = false;
+    static constexpr bool dissipates     = false;
+    static constexpr int  volumetric     = -1;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 0>;
@@ -96,12 +97,38 @@ namespace limber
       return pressure * pressure / (2. * bulk_modulus);
     }
 
+    template <int dim>
+    Deviator<dim, double>
+    deviatoric_strain(const State<dim, double> &state) const
+    {
+      auto strain = state.deviator;
+      for (double &component : strain)
+        component /= 2 * shear_modulus;
+      return strain;
+    }
+
+    template <int dim>
+    void
+    set_deviatoric_strain(State<dim, double>          &state,
+                          const Deviator<dim, double> &strain) const
+    {
+      for (unsigned int k = 0; k < strain.size(); ++k)
+        state.deviator[k] = 2 * shear_modulus * strain[k];
+    }
+
+    template <int dim, class Number>
+    Number
+    deviatoric_energy(const State<dim, Number> &state) const
+    {
+      return squared_norm<dim, Number>(state.deviator) / (4. * shear_modulus);
+    }
+
     template <int dim, class Number>
     Number
     strain_energy(const State<dim, Number> &state) const
     {
       return volumetric_energy(state.pressure) +
-             squared_norm<dim, Number>(state.deviator) / (4. * shear_modulus);
+             deviatoric_energy<dim, Number>(state);
     }
 
     template <int dim, class Number>

@@ -4,6 +4,7 @@
 
 #include <limber/base/law_parameter.h>
 #include <limber/materials/law.h>
+#include <limber/materials/symmetric_function.h>
 
 namespace limber
 {
@@ -33,11 +34,12 @@ namespace limber
        law_parameters::poisson_ratio}};
 
     template <int dim>
-    static constexpr int  n_history    = dim == 2 ? 4 : 6;
-    static constexpr bool has_deviator = true;
-    static constexpr bool uses_spin    = true;
-    static constexpr bool dissipates   = false;
-    static constexpr int  volumetric   = 0;
+    static constexpr int  n_history      = dim == 2 ? 4 : 6;
+    static constexpr bool has_deviator   = true;
+    static constexpr bool keeps_deviator = true;
+    static constexpr bool uses_spin      = true;
+    static constexpr bool dissipates     = false;
+    static constexpr int  volumetric     = 0;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, n_history<dim>>;
@@ -151,13 +153,53 @@ namespace limber
       return 0.5 * bulk_modulus * (0.5 * (J * J - 1.) - logarithm);
     }
 
+    /** ln(be) / 2; be has the determinant one, so the trace is zero. */
+    template <int dim>
+    Deviator<dim, double>
+    deviatoric_strain(const State<dim, double> &state) const
+    {
+      const auto e =
+        symmetric_function(isochoric_strain<dim>(state),
+                           [](const double x) { return 0.5 * std::log(x); });
+      if constexpr (dim == 2)
+        return {{e[0][0], e[1][1], e[0][1]}};
+      else
+        return {{e[0][0], e[1][1], e[0][1], e[1][2], e[2][0]}};
+    }
+
+    template <int dim>
+    void
+    set_deviatoric_strain(State<dim, double>          &state,
+                          const Deviator<dim, double> &strain) const
+    {
+      const auto be =
+        symmetric_function(full_matrix<dim>(strain),
+                           [](const double x) { return std::exp(2 * x); });
+      state.history[1] = be[0][0];
+      state.history[2] = be[1][1];
+      state.history[3] = be[0][1];
+      if constexpr (dim == 3)
+        {
+          state.history[4] = be[1][2];
+          state.history[5] = be[2][0];
+        }
+      set_stress<dim>(state);
+    }
+
+    template <int dim, class Number>
+    Number
+    deviatoric_energy(const State<dim, Number> &state) const
+    {
+      const auto be = isochoric_strain<dim>(state);
+      return 0.5 * shear_modulus * ((be[0][0] + be[1][1] + be[2][2]) - 3.);
+    }
+
     template <int dim, class Number>
     Number
     strain_energy(const State<dim, Number> &state) const
     {
-      const auto be = isochoric_strain<dim>(state);
       return volumetric_energy(state.history[0]) +
-             0.5 * shear_modulus * ((be[0][0] + be[1][1] + be[2][2]) - 3.);
+             deviatoric_energy<dim>(state);
     }
 
     /** An upper bound; exact at rest (largest eigenvalue by Gershgorin). */

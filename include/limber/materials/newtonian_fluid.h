@@ -53,11 +53,12 @@ namespace limber
        LawParameter{"Tait exponent", 7, 0, 100, false, "gamma, for tait"}}};
 
     template <int>
-    static constexpr int  n_history    = 1;
-    static constexpr bool has_deviator = viscous;
-    static constexpr bool uses_spin    = false;
-    static constexpr bool dissipates   = true;
-    static constexpr int  volumetric   = 0;
+    static constexpr int  n_history      = 1;
+    static constexpr bool has_deviator   = viscous;
+    static constexpr bool keeps_deviator = false;
+    static constexpr bool uses_spin      = false;
+    static constexpr bool dissipates     = true;
+    static constexpr int  volumetric     = 0;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 1>;

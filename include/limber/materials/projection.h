@@ -6,17 +6,58 @@ namespace limber
 {
   /**
    * Which parts of strain and stress are averaged over the points of a body
-   * in a cell (Hu-Washizu, Mast et al. 2012, with DGQ0 functions).
+   * (Hu-Washizu, Mast et al. 2012): in a cell (DGQ0 functions), or around each
+   * node (Q1 functions, lumped).
    */
   enum class Projection
   {
-    automatic,     // to be chosen from the law when the scene is read
-    none,          // nothing
-    cell,          // the volumetric part
-    cell_shear,    // the volumetric part and the shear components
-    cell_full,     // everything
-    assumed_strain // everything but what resists hourglass modes as bending
+    automatic,      // to be chosen from the law when the scene is read
+    none,           // nothing
+    cell,           // in a cell: the volumetric part
+    cell_shear,     // the volumetric part and the shear components
+    cell_full,      // everything
+    assumed_strain, // everything but what resists hourglass modes as bending
+    node,           // around nodes: the volumetric part
+    hybrid          // the same, and the shear components in a cell
   };
+
+
+
+  /** Whether the volumetric part is averaged around nodes. */
+  constexpr bool
+  averages_around_nodes(const Projection kind)
+  {
+    return kind == Projection::node || kind == Projection::hybrid;
+  }
+
+
+
+  /** Whether the volumetric part is constant in a cell. */
+  constexpr bool
+  averages_volume_in_cells(const Projection kind)
+  {
+    return kind == Projection::cell || kind == Projection::cell_shear ||
+           kind == Projection::cell_full;
+  }
+
+
+
+  /** Whether the shear components are constant in a cell. */
+  constexpr bool
+  averages_shear_in_cells(const Projection kind)
+  {
+    return kind == Projection::cell_shear || kind == Projection::cell_full ||
+           kind == Projection::hybrid;
+  }
+
+
+
+  /** Whether strain and stress are formed with means over a cell. */
+  constexpr bool
+  needs_cell_means(const Projection kind)
+  {
+    return kind != Projection::none && kind != Projection::node;
+  }
 
 
 

@@ -4,8 +4,9 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
-#include <limber/output/point_pressure.h>
+#include <limber/output/point_stress.h>
 
+#include <map>
 #include <vector>
 
 namespace limber
@@ -29,7 +30,7 @@ namespace limber
     bool                          lost = true;
     dealii::Point<dim>            position;     // m
     dealii::Tensor<1, dim>        velocity;     // m/s
-    double                        pressure = 0; // Cauchy, as PointPressure, Pa
+    double                        pressure = 0; // Cauchy, as PointStress, Pa
     dealii::SymmetricTensor<2, 3> stress;       // Cauchy, Pa
   };
 
@@ -60,9 +61,9 @@ namespace limber
 
     /**
      * Look at all of them. Pressure and stress are filled for those of
-     * @p with_stress only, since averages cost a search through the cells.
-     * Collective: one reduction, another for averages, another after a
-     * point has changed its rank.
+     * @p with_stress only, since averages cost a pass over the points of the
+     * body. Collective: one reduction, another after a point has changed its
+     * rank, and what averages need.
      */
     std::vector<PointSample<dim>>
     sample(const State<dim> &state, const std::vector<bool> &with_stress);
@@ -78,13 +79,12 @@ namespace limber
     revalidate(const State<dim> &state, const unsigned int t);
     void
     search(const State<dim> &state, const unsigned int t);
+    using Stresses = std::map<unsigned int, PointStress<dim>>; // by body
+
     std::vector<double>
-    collect(const State<dim> &state) const;
-    void
-    average_pressures(const State<dim>              &state,
-                      const std::vector<bool>       &with_stress,
-                      const std::vector<double>     &records,
-                      std::vector<PointSample<dim>> &samples) const;
+    collect(const State<dim>        &state,
+            const Stresses          &stresses,
+            const std::vector<bool> &with_stress) const;
 
     static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 

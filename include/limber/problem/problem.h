@@ -31,7 +31,7 @@ namespace limber
     fitted    // a lattice in the natural coordinates of a box or block
   };
 
-  /** What happens to the scatter of the volume ratios within a cell. */
+  /** What happens to the scatter of a history within a cell. */
   enum class HistoryTreatment
   {
     keep,     // every point keeps its own value
@@ -103,8 +103,10 @@ namespace limber
     HourglassResponse hourglass            = HourglassResponse::bending;
     double            hourglass_control    = 0; // chi, without dimension
     double            chequerboard_control = 0; // without dimension
-    HistoryTreatment  history              = HistoryTreatment::keep;
-    double            relaxation_time = 0; // s, for HistoryTreatment::relax
+    // of the volume ratios, and of the deviatoric strain
+    HistoryTreatment history            = HistoryTreatment::keep;
+    HistoryTreatment deviatoric_history = HistoryTreatment::keep;
+    double           relaxation_time    = 0; // s, for HistoryTreatment::relax
 
     /** Mass per volume in the reference state, kg/m^3. */
     double

@@ -3,6 +3,7 @@
 #define limber_state_material_body_h
 
 #include <limber/grid/nodal_fields.h>
+#include <limber/grid/nodal_projection.h>
 #include <limber/points/material_points.h>
 #include <limber/state/ledger.h>
 #include <limber/stress/stress_update.h>
@@ -12,15 +13,19 @@
 
 namespace limber
 {
-  /** A body at run time: its points, its law, its cell sums if projected. */
+  /** A body at run time: its points, its law, its means if projected. */
   template <int dim>
   struct MaterialBody
   {
     const Body<dim>                         &description;
     std::unique_ptr<const StressUpdate<dim>> stress;
     MaterialPoints<dim>                      points;
-    // Hu-Washizu sums in DGQ0, only where the treatment needs them
+    // Hu-Washizu sums in DGQ0, only where treatment or control need them
     std::optional<CellFields<dim>> cell_sums;
+    // Likewise of the deviatoric strain; only within a step, else zero
+    std::optional<CellFields<dim>> deviator_sums;
+    // Means around nodes (Q1), likewise: of the divergence, of the pressure
+    std::optional<NodalProjection<dim>> nodal_means;
     // Per cell, what the volumetric variable gets in this step against
     // chequerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};

@@ -7,6 +7,7 @@
 #include <limber/stress/stress_update.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 namespace limber
 {
@@ -36,8 +37,7 @@ namespace limber
       StateSummary result;
       for (std::size_t p = 0; p < points.size; ++p)
         {
-          const auto state =
-            load_state<double>(points, [&](const double *a) { return a[p]; });
+          const auto state = state_of(points, p);
           result.strain_energy += points.mass[p] * inverse_density *
                                   law.template strain_energy<dim>(state);
           const double J         = law.template volume_ratio<dim>(state);
@@ -52,11 +52,9 @@ namespace limber
     {
       double result = 0;
       for (std::size_t p = 0; p < points.size; ++p)
-        result = std::max(result,
-                          law.template wave_speed_squared<dim>(
-                            load_state<double>(points, [&](const double *a) {
-                              return a[p];
-                            })));
+        result =
+          std::max(result,
+                   law.template wave_speed_squared<dim>(state_of(points, p)));
       return result;
     }
 
@@ -83,8 +81,59 @@ namespace limber
                  double *const         volume_ratio) const override
     {
       for (std::size_t p = 0; p < points.size; ++p)
-        volume_ratio[p] = law.template volume_ratio<dim>(
-          load_state<double>(points, [&](const double *a) { return a[p]; }));
+        volume_ratio[p] = law.template volume_ratio<dim>(state_of(points, p));
+    }
+
+    void
+    sum_deviators(const PointView<dim> &points,
+                  double *const         sums) const override
+    {
+      if constexpr (Law::keeps_deviator)
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const auto e =
+              law.template deviatoric_strain<dim>(state_of(points, p));
+            double *const record = sums + points.cell[p] * DeviatorSums::stride;
+            record[DeviatorSums::mass] += points.mass[p];
+            for (unsigned int k = 0; k < e.size(); ++k)
+              record[DeviatorSums::strain + k] += points.mass[p] * e[k];
+          }
+      else
+        throw std::logic_error("no deviatoric history");
+    }
+
+    double
+    relax_deviators(const PointView<dim> &points,
+                    const double *const   sums,
+                    const double          share) const override
+    {
+      double removed = 0;
+      if constexpr (Law::keeps_deviator && averages_shear_in_cells(kind))
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            auto                state = state_of(points, p);
+            auto                e = law.template deviatoric_strain<dim>(state);
+            const double *const record =
+              sums + points.cell[p] * DeviatorSums::stride;
+            const double inverse_mass = 1 / record[DeviatorSums::mass];
+            for (unsigned int k = kind == Projection::cell_full ? 0 : 2;
+                 k < e.size();
+                 ++k)
+              e[k] += share *
+                      (record[DeviatorSums::strain + k] * inverse_mass - e[k]);
+            const double before = law.template deviatoric_energy<dim>(state);
+            law.template set_deviatoric_strain<dim>(state, e);
+            removed += points.mass[p] * inverse_density *
+                       (before - law.template deviatoric_energy<dim>(state));
+            store_state(points,
+                        state,
+                        [&](const double value, double *const a) {
+                          a[p] = value;
+                        });
+          }
+      else
+        throw std::logic_error("no deviatoric history that is averaged");
+      return removed;
     }
 
     const StrainProjection &
@@ -124,6 +173,8 @@ namespace limber
     }
 
   private:
+    using DeviatorSums = limber::DeviatorSums<dim>;
+
     template <class Number>
     using State = PointState<dim, Number, Law::template n_history<dim>>;
 
@@ -139,6 +190,12 @@ namespace limber
       for (unsigned int k = 0; k < state.history.size(); ++k)
         state.history[k] = load(points.history[k]);
       return state;
+    }
+
+    static State<double>
+    state_of(const PointView<dim> &points, const std::size_t p)
+    {
+      return load_state<double>(points, [&](const double *a) { return a[p]; });
     }
 
     template <class Number, class Store>
@@ -196,8 +253,9 @@ namespace limber
         const CellMeans<dim>          means(sums, batch.cell);
         [[maybe_unused]] const double shift =
           what.shift ? what.shift_share * what.shift[batch.cell] : 0;
+        const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
         const StrainOperator<dim, kind, decltype(velocity)> strain(
-          velocity, cell, means, strain_projection, what.step);
+          velocity, cell, means, divergence, strain_projection, what.step);
 
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {
@@ -249,7 +307,8 @@ namespace limber
                 const auto moved =
                   move_points<dim>(points, grid, batch.cell, lanes, shift);
                 displacement = larger(displacement, moved.displacement);
-                if constexpr (projected)
+                // without means over cells the sums may still be wanted
+                if (needs_cell_means(kind) || (projected && sums))
                   {
                     const CellGatherer<dim> gatherer(*sums);
                     if (moved.inside)

@@ -24,6 +24,8 @@ namespace limber
     // Per cell, what that variable gets besides; null: nothing.
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
+    // The divergence projected on nodes (nodal_means.h), where that is asked
+    const double *nodal_divergence = nullptr;
   };
 
 
@@ -64,6 +66,22 @@ namespace limber
            const GridView<dim>  &grid,
            const CellSums<dim>  *sums,
            const StressSweep    &what) const = 0;
+
+    /**
+     * Add to the records of the cells (DeviatorSums) the mass of the points
+     * and their deviatoric strain times mass. For laws that keep one.
+     */
+    virtual void
+    sum_deviators(const PointView<dim> &points, double *sums) const = 0;
+
+    /**
+     * Let the components that the treatment averages go @p share of the way
+     * to the mean of the cell; returns the energy that this removes, J.
+     */
+    virtual double
+    relax_deviators(const PointView<dim> &points,
+                    const double         *sums,
+                    double                share) const = 0;
 
     /** How the strain, and with it the stress, is averaged over cells. */
     virtual const StrainProjection &

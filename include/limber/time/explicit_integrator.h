@@ -138,6 +138,9 @@ namespace limber
     add_loads();
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
+    template <class Sum>
+    void
+    project_on_nodes(const Sum &sum);
     void
     advance_nodes();
     void
@@ -154,6 +157,12 @@ namespace limber
     interpolate_hanging();
     void
     grid_to_points(bool remap, bool move);
+    double
+    relaxation(const Body<dim> &body,
+               HistoryTreatment history,
+               double           length) const;
+    void
+    relax_deviators(double length);
     void
     update_stress(double length, bool remapped, bool move);
     void
@@ -167,7 +176,7 @@ namespace limber
     void
     exchange_points();
     void
-    complete_cells();
+    complete_cells(std::optional<CellFields<dim>> MaterialBody<dim>::*sums);
     void
     gather_cells();
 

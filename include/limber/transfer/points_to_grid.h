@@ -15,6 +15,8 @@ namespace limber
     bool             affine          = false; // momentum with the affine part
     double           inverse_density = 0;     // 1 / rho_0, m^3/kg
     StrainProjection projection; // of the strain that the force works with
+    // The pressure projected on nodes (nodal_means.h), where that is asked
+    const double *nodal_pressure = nullptr;
   };
 
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/nodal_fields.h>
+#include <limber/grid/nodal_projection.h>
+#include <limber/interpolation/nodal_means.h>
 
 #include <gtest/gtest.h>
 
@@ -269,6 +271,105 @@ namespace limber
                       linear(places.at(hanging.node)),
                       1e-14);
         }
+    }
+
+
+
+    /**
+     * With hanging nodes, points of several weights in half of the cells:
+     * a constant stays what it is, sum m a (S b) = sum m (S a) b, and a sum
+     * taken afresh knows nothing of the one before.
+     */
+    template <int dim>
+    void
+    check_projection_on_nodes()
+    {
+      BackgroundGrid<dim> grid(unit_box<dim>(), MPI_COMM_WORLD);
+      refine_corner(grid);
+      NodalFields<dim>           nodes(grid);
+      std::vector<std::uint32_t> cells;
+      for (std::uint32_t c = 0; c < grid.n_owned_cells(); ++c)
+        if (grid.geometry[c].origin[1] < 0.55)
+          cells.push_back(c);
+      nodes.set_occupied(std::vector<std::uint32_t>(cells), /*agree=*/true);
+
+      // the same on all ranks: it follows from the place
+      struct Point
+      {
+        std::uint32_t cell;
+        Place<dim>    xi;
+        double        mass, a, b;
+      };
+      std::vector<Point> points;
+      for (const std::uint32_t c : cells)
+        for (int k = 0; k < 3; ++k)
+          {
+            double seed = 3 * k;
+            for (int d = 0; d < dim; ++d)
+              seed += (7 + d) * grid.geometry[c].origin[d];
+            Point point{c,
+                        {},
+                        2 + std::sin(3 * seed),
+                        std::sin(5 * seed),
+                        std::cos(11 * seed)};
+            for (int d = 0; d < dim; ++d)
+              point.xi[d] = 0.5 + 0.5 * std::sin((d + 2) * seed);
+            points.push_back(point);
+          }
+
+      NodalProjection<dim> projection(grid);
+      const auto           project = [&](const auto &quantity) {
+        projection.clear(nodes.active_nodes());
+        for (const Point &point : points)
+          {
+            NodalSums<dim> sums;
+            sums.add(point.xi, point.mass, quantity(point));
+            sums.add_to_nodes(grid.geometry[point.cell], projection.data());
+          }
+        projection.start_completion(nodes.node_plan());
+        projection.finish_completion(nodes.active_nodes());
+        std::vector<double> result;
+        for (const Point &point : points)
+          result.push_back(
+            NodalMean<dim, Projection::node>(projection.data(),
+                                             grid.geometry[point.cell])
+              .template value<double>(point.xi));
+        return result;
+      };
+      const auto Sa   = project([](const Point &point) { return point.a; });
+      const auto Sb   = project([](const Point &point) { return point.b; });
+      const auto one  = project([](const Point &) { return 1.; });
+      double     a_Sb = 0, Sa_b = 0, change = 0;
+      for (std::size_t p = 0; p < points.size(); ++p)
+        {
+          EXPECT_NEAR(one[p], 1, 1e-14);
+          a_Sb += points[p].mass * points[p].a * Sb[p];
+          Sa_b += points[p].mass * Sa[p] * points[p].b;
+          change = std::max(change, std::abs(Sa[p] - points[p].a));
+        }
+      a_Sb = dealii::Utilities::MPI::sum(a_Sb, MPI_COMM_WORLD);
+      Sa_b = dealii::Utilities::MPI::sum(Sa_b, MPI_COMM_WORLD);
+      EXPECT_NEAR(a_Sb, Sa_b, 1e-13 * points.size());
+      EXPECT_GT(dealii::Utilities::MPI::max(change, MPI_COMM_WORLD), 0.1);
+
+      // A cleared record is clear, hanging nodes of empty cells included.
+      nodes.interpolate_hanging();
+      for (std::uint32_t n = 0; n < grid.n_nodes(); ++n)
+        nodes.record(n)[NodeLayout<dim>::velocity] = 1;
+      nodes.interpolate_hanging();
+      nodes.clear();
+      nodes.start_sum();
+      nodes.finish_sum();
+      for (const std::uint32_t n : nodes.active_nodes())
+        EXPECT_EQ(nodes.record(n)[NodeLayout<dim>::velocity], 0);
+    }
+
+
+
+    TEST(NodalProjection, IsSymmetricWithHangingNodesOnAnyNumberOfRanks)
+    {
+      check_projection_on_nodes<2>();
+      check_projection_on_nodes<3>();
     }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/points_to_grid.h>
+#include <limber/transfer/project_on_nodes.h>
 
 #include <gtest/gtest.h>
 #include <support/projections.h>
@@ -34,16 +35,24 @@ namespace
     {
       std::vector<MotionIncrement<dim, double>> result(points.size);
       const auto                                sums = grid.cell_sums();
+      const double *const                       divergence =
+        grid.nodal_means([&](double *const records) {
+          sum_divergence<dim>(points, grid.view(), false, records);
+        });
       for (std::size_t p = 0; p < points.size; ++p)
         {
           const auto &cell = grid.cells[points.cell[p]];
-          const NodalCoefficients<dim, Layout::velocity, dim> nodal(
+          const NodalCoefficients<dim, Layout::velocity, dim> velocities(
             cell, grid.nodes.data());
-          const auto velocity = [&](const int d) { return nodal.component(d); };
+          const auto velocity = [&](const int d) {
+            return velocities.component(d);
+          };
+          const NodalMean<dim, kind> nodal(divergence, cell);
           const StrainOperator<dim, kind, decltype(velocity)> B(
             velocity,
             cell,
             CellMeans<dim>(&sums, points.cell[p]),
+            nodal,
             projection_of(kind),
             1.);
           const auto              x = own.position(p);
@@ -71,11 +80,15 @@ namespace
                                Case<2, Projection::cell_shear>,
                                Case<2, Projection::cell_full>,
                                Case<2, Projection::assumed_strain>,
+                               Case<2, Projection::node>,
+                               Case<2, Projection::hybrid>,
                                Case<3, Projection::none>,
                                Case<3, Projection::cell>,
                                Case<3, Projection::cell_shear>,
                                Case<3, Projection::cell_full>,
-                               Case<3, Projection::assumed_strain>>;
+                               Case<3, Projection::assumed_strain>,
+                               Case<3, Projection::node>,
+                               Case<3, Projection::hybrid>>;
   TYPED_TEST_SUITE(Strain, Cases);
 } // namespace
 
@@ -120,7 +133,10 @@ TYPED_TEST(Strain, StressActsThroughTheTransposeOfTheStrainOperator)
       what.inverse_density = 0.8;
       what.projection      = projection_of(TestFixture::kind);
       this->grid.clear();
-      const auto sums = this->grid.cell_sums();
+      what.nodal_pressure = this->grid.nodal_means([&](double *const records) {
+        sum_pressure<dim>(points, this->grid.view(), records);
+      });
+      const auto sums     = this->grid.cell_sums();
       points_to_grid<dim>(points, this->grid.view(), what, &sums);
       double on_grid = 0;
       for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
@@ -167,7 +183,8 @@ TYPED_TEST(Strain, LinearFieldsAreReproduced)
 
 
 // The mean of the strain over the points of a cell is that of the gradient,
-// whatever the projection does to its deviation from the mean.
+// whatever the projection does to its deviation from the mean. Averages around
+// nodes keep that of the volumetric part over the whole body.
 TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
 {
   constexpr int dim    = TestFixture::dim;
@@ -211,13 +228,18 @@ TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
         }
       sum.volumetric += points.mass[p] * strain[p].volumetric;
     }
+  double volumetric = 0, trace = 0;
   for (const Sums &sum : sums)
     {
-      EXPECT_NEAR(sum.volumetric, sum.trace, 1e-12);
+      volumetric += sum.volumetric;
+      trace += sum.trace;
+      if (!averages_around_nodes(TestFixture::kind))
+        EXPECT_NEAR(sum.volumetric, sum.trace, 1e-12);
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           EXPECT_NEAR(sum.projected[d][e], sum.plain[d][e], 1e-12);
     }
+  EXPECT_NEAR(volumetric, trace, 1e-10);
 }
 
 
@@ -251,6 +273,13 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
 
       std::vector<std::array<double, dim>> places(5), mirrored_places;
       std::vector<double> sums(1 << dim), mirrored_sums(1 << dim);
+      // means of the divergence around the nodes, of whatever neighbours do
+      constexpr auto      stride = NodalMeanLayout::stride;
+      std::vector<double> means(stride << dim), mirrored_means(means.size());
+      for (int i = 0; i < 1 << dim; ++i)
+        means[i * stride + NodalMeanLayout::value] =
+          mirrored_means[(i ^ 1 << across) * stride + NodalMeanLayout::value] =
+            this->random();
       for (auto &xi : places)
         {
           for (double &x : xi)
@@ -273,16 +302,21 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
 
       const auto strain = [&](const std::vector<double>     &records,
                               const std::vector<double>     &moments,
+                              const std::vector<double>     &divergence,
                               const std::array<double, dim> &xi) {
         CellSums<dim> view;
         view.now = moments.data();
-        const NodalCoefficients<dim, Layout::velocity, dim> nodal(
+        const NodalCoefficients<dim, Layout::velocity, dim> velocities(
           cell, records.data());
-        const auto velocity = [&](const int d) { return nodal.component(d); };
+        const auto velocity = [&](const int d) {
+          return velocities.component(d);
+        };
+        const NodalMean<dim, TestFixture::kind> nodal(divergence.data(), cell);
         const StrainOperator<dim, TestFixture::kind, decltype(velocity)> B(
           velocity,
           cell,
           CellMeans<dim>(&view, 0),
+          nodal,
           projection_of(TestFixture::kind),
           1.);
         MotionIncrement<dim, double> result;
@@ -291,9 +325,11 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
       };
       for (std::size_t p = 0; p < places.size(); ++p)
         {
-          const auto one = strain(nodes, sums, places[p]);
-          const auto two =
-            strain(mirrored_nodes, mirrored_sums, mirrored_places[p]);
+          const auto one = strain(nodes, sums, means, places[p]);
+          const auto two = strain(mirrored_nodes,
+                                  mirrored_sums,
+                                  mirrored_means,
+                                  mirrored_places[p]);
           EXPECT_NEAR(one.volumetric, two.volumetric, 1e-13);
           for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)

@@ -446,3 +446,52 @@ TYPED_TEST(EveryLaw, PacksGiveWhatNumbersGive)
         compare_with_packs<TypeParam, 8>(law, this->random);
       }
 }
+
+
+
+// What is averaged of a history is all of it: a state follows from its strain,
+// which rotates as stress does.
+TYPED_TEST(EveryLaw, DeviatoricStrainIsTheWholeDeviatoricHistory)
+{
+  constexpr int dim = TestFixture::dim;
+  using Law         = typename TestFixture::Law;
+  if constexpr (Law::keeps_deviator)
+    for (const auto &law : samples<Law>())
+      for (int k = 0; k < 20; ++k)
+        {
+          const auto state  = random_state<TypeParam>(law, this->random);
+          const auto strain = law.template deviatoric_strain<dim>(state);
+          auto       again  = random_state<TypeParam>(law, this->random);
+          again.pressure    = state.pressure;
+          if constexpr (!TestFixture::pointwise)
+            again.history[Law::volumetric] = state.history[Law::volumetric];
+          law.template set_deviatoric_strain<dim>(again, strain);
+          const double scale = this->stiffness(law);
+          EXPECT_NEAR(again.pressure, state.pressure, 1e-13 * scale);
+          for (std::size_t i = 0; i < strain.size(); ++i)
+            EXPECT_NEAR(again.deviator[i], state.deviator[i], 1e-13 * scale);
+          for (std::size_t i = 0; i < state.history.size(); ++i)
+            EXPECT_NEAR(again.history[i], state.history[i], 1e-13);
+          EXPECT_NEAR(law.template deviatoric_energy<dim>(state) +
+                        law.template volumetric_energy<double>(
+                          this->volumetric(again)),
+                      law.template strain_energy<dim>(state),
+                      1e-13 * scale);
+
+          // small strain: s = 2 G e
+          auto small = strain;
+          for (double &component : small)
+            component *= 1e-6;
+          law.template set_deviatoric_strain<dim>(again, small);
+          for (std::size_t i = 0; i < small.size(); ++i)
+            EXPECT_NEAR(again.deviator[i],
+                        2 * law.shear_modulus * small[i],
+                        1e-11 * law.shear_modulus);
+
+          // none is rest
+          law.template set_deviatoric_strain<dim>(again, {});
+          EXPECT_NEAR(law.template deviatoric_energy<dim>(again), 0, 1e-15);
+          for (const double s : again.deviator)
+            EXPECT_NEAR(s, 0, 1e-15 * law.shear_modulus);
+        }
+}

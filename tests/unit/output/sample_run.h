@@ -22,7 +22,11 @@ namespace limber::test
      * cell, of an elastic body with K = 1e6 / 1.2 Pa and rho = 1000 kg/m^3.
      */
     explicit SampleRun(const bool projected)
-      : problem(describe(projected))
+      : SampleRun(projected ? Projection::cell : Projection::none)
+    {}
+
+    explicit SampleRun(const Projection treatment)
+      : problem(describe(treatment))
       , grid(problem.grid, MPI_COMM_WORLD)
       , nodes(grid)
       , state{problem, grid, nodes, bodies, 0, 0, 0, {}}
@@ -37,10 +41,17 @@ namespace limber::test
                                 problem.bodies[0].treatment,
                                 HourglassResponse::bending),
         MaterialPoints<dim>(grid, layout),
+        std::nullopt,
+        std::nullopt,
         std::nullopt});
-      if (projected)
+      if (needs_cell_means(treatment))
         bodies[0]->cell_sums.emplace(grid);
+      if (averages_around_nodes(treatment))
+        bodies[0]->nodal_means.emplace(grid);
       seed();
+      std::vector<std::uint32_t> cells;
+      points().collect_cells(cells);
+      nodes.set_occupied(std::move(cells));
       totals.bodies.resize(1);
     }
 
@@ -64,7 +75,7 @@ namespace limber::test
 
   private:
     static Problem<dim>
-    describe(const bool projected)
+    describe(const Projection treatment)
     {
       Problem<dim> problem;
       for (unsigned int d = 0; d < dim; ++d)
@@ -75,7 +86,7 @@ namespace limber::test
       Body<dim> body;
       body.name = "block";
       body.points_per_cell_edge.fill(2);
-      body.treatment = projected ? Projection::cell : Projection::none;
+      body.treatment = treatment;
       problem.bodies.push_back(body);
       return problem;
     }

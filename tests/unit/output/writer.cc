@@ -47,6 +47,7 @@ namespace limber::test
                                  "volume ratio",
                                  "mass",
                                  "point pressure",
+                                 "point stress",
                                  "body"};
     const std::string folder  = fresh_folder("writer.dir");
     Writer<2>         writer(folder);

@@ -514,3 +514,77 @@ TEST(StressUpdates, AreMadeByNameWithTheRightVariant)
     make_stress_update<2>("neo hookean", {}, Projection::none, response),
     std::logic_error);
 }
+
+
+
+// The components that a treatment averages tend to the mean of the cell, the
+// others stay; what the body loses of its energy is told.
+TYPED_TEST(Sweep, DeviatoricHistoryTendsToTheMeanOfTheCell)
+{
+  constexpr int dim = TestFixture::dim;
+  using Law         = typename TestFixture::Law;
+  if constexpr (Law::keeps_deviator)
+    {
+      const auto strains = [](const Law &law, const PointView<dim> &points) {
+        std::vector<Deviator<dim, double>> result;
+        for (std::size_t p = 0; p < points.size; ++p)
+          result.push_back(
+            law.template deviatoric_strain<dim>(TestFixture::get(points, p)));
+        return result;
+      };
+      const auto expect = [&](const auto        &sweep,
+                              const Law         &law,
+                              const unsigned int first,
+                              const double       share) {
+        auto       own      = this->stressed_points(law, true);
+        const auto points   = own.view();
+        const auto before   = strains(law, points);
+        const auto energy   = sweep.summarize(points).strain_energy;
+        const auto pressure = own.fields[2 * dim + 1];
+
+        std::vector<double> sums(this->grid.n_cells *
+                                 DeviatorSums<dim>::stride);
+        sweep.sum_deviators(points, sums.data());
+        const double removed =
+          sweep.relax_deviators(points, sums.data(), share);
+        const auto after = strains(law, points);
+        for (unsigned int k = 0; k < n_deviator<dim>; ++k)
+          {
+            const auto mean =
+              this->cell_means(points, [&](const std::size_t p) {
+                return before[p][k];
+              });
+            for (std::size_t p = 0; p < points.size; ++p)
+              EXPECT_NEAR(after[p][k],
+                          before[p][k] +
+                            (k < first ? 0 : share) *
+                              (mean[points.cell[p]] - before[p][k]),
+                          1e-13);
+          }
+        EXPECT_EQ(own.fields[2 * dim + 1], pressure);
+        EXPECT_GT(removed, 0);
+        EXPECT_NEAR(removed,
+                    energy - sweep.summarize(points).strain_energy,
+                    1e-12 * energy);
+      };
+      for (const auto &law : samples<Law>())
+        for (const double share : {0.3, 1.})
+          {
+            expect(LawSweep<dim, Law, Projection::cell_shear>(
+                     law, {Projection::cell_shear}),
+                   law,
+                   2,
+                   share);
+            expect(LawSweep<dim, Law, Projection::hybrid>(law,
+                                                          {Projection::hybrid}),
+                   law,
+                   2,
+                   share);
+            expect(LawSweep<dim, Law, Projection::cell_full>(
+                     law, {Projection::cell_full}),
+                   law,
+                   0,
+                   share);
+          }
+    }
+}

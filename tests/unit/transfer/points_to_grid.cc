@@ -2,6 +2,7 @@
 #include <limber/points/cell_batch.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/points_to_grid.h>
+#include <limber/transfer/project_on_nodes.h>
 
 #include <gtest/gtest.h>
 #include <support/projections.h>
@@ -183,6 +184,10 @@ TYPED_TEST(PointsToGrid, TotalsAreKept)
         what.inverse_density = 0.8;
         what.affine          = affine;
         what.projection      = projection_of(kind);
+        what.nodal_pressure =
+          this->grid.nodal_means([&](double *const records) {
+            sum_pressure<dim>(points, this->grid.view(), records);
+          });
         this->grid.clear();
         this->grid.gather(points);
         const auto sums = this->grid.cell_sums();

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_grid_nodal_projection_h
+#define limber_grid_nodal_projection_h
+
+#include <limber/base/lazy_array.h>
+#include <limber/grid/background_grid.h>
+
+namespace limber
+{
+  /**
+   * The projection on nodes of a quantity of one body: its records
+   * (NodalMeanLayout), owned and ghost, to which sweeps add and of which they
+   * read the means (interpolation/nodal_means.h). All ranks that hold a node
+   * get the same mean; that of a hanging node follows from its masters.
+   */
+  template <int dim>
+  class NodalProjection
+  {
+  public:
+    explicit NodalProjection(const BackgroundGrid<dim> &grid);
+
+    /** Adopt a changed mesh: all records zero. */
+    void
+    reinit();
+
+    /** The records, for sweeps. */
+    double *
+    data()
+    {
+      return records.data();
+    }
+
+    const double *
+    data() const
+    {
+      return records.data();
+    }
+
+    double
+    mean(const std::uint32_t node) const
+    {
+      return records[std::size_t(node) * Layout::stride + Layout::value];
+    }
+
+    /** Set the records of the given nodes and of hanging ones to zero. */
+    void
+    clear(const std::vector<std::uint32_t> &nodes);
+
+    /**
+     * Complete the sums with those of other ranks, and put the means of the
+     * given nodes, all that have any sums, into their places. Between start
+     * and finish nothing must be added.
+     */
+    void
+    start_completion(const ExchangePlan &plan);
+    void
+    finish_completion(const std::vector<std::uint32_t> &nodes);
+
+  private:
+    using Layout = NodalMeanLayout;
+
+    double *
+    record(const std::uint32_t node)
+    {
+      return records.data() + std::size_t(node) * Layout::stride;
+    }
+
+    const BackgroundGrid<dim> &grid;
+    LazyArray<double>          records;
+    RecordExchange             exchange{Layout::stride};
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_point_stress_h
+#define limber_output_point_stress_h
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <limber/state/material_body.h>
+
+#include <vector>
+
+/**
+ * @file From the Kirchhoff stress that points store to the Cauchy stress that
+ * users see: pressure positive in compression, stress positive in tension.
+ */
+namespace limber
+{
+  /** Sums over the points of one body in a cell. */
+  struct CellPressure
+  {
+    double mass     = 0; // kg
+    double volume   = 0; // times the reference density: sum of m J, kg
+    double pressure = 0; // likewise, sum of m J p, kg Pa
+
+    /** Cauchy, Pa; an empty cell bears none. */
+    double
+    mean_pressure() const
+    {
+      return volume != 0 ? pressure / volume : 0;
+    }
+
+    double
+    mean_volume_ratio() const
+    {
+      return mass != 0 ? volume / mass : 1;
+    }
+  };
+
+
+
+  /**
+   * The Cauchy stress at the points of a body as the treatment of locking
+   * sees it, with volumes as weights: what is averaged over cells is that
+   * average (sum of V sigma over sum of V of all points now in the cell); a
+   * pressure that is averaged around nodes is what these have of it; all else
+   * is the value of the point. To be made anew after a change of the mesh.
+   */
+  template <int dim>
+  class PointStress
+  {
+  public:
+    using Tensor = dealii::SymmetricTensor<2, 3>;
+
+    explicit PointStress(const State<dim> &state);
+
+    /** Turn to this body in its present state; collective. */
+    void
+    compute(const MaterialBody<dim> &body);
+
+    double
+    pressure(std::size_t p) const;
+
+    /** The deviator, zz included. */
+    Tensor
+    deviator(std::size_t p) const;
+
+    /** Before the average. */
+    double
+    point_pressure(const std::size_t p) const
+    {
+      return points.pressure[p] / volume_ratios[p];
+    }
+
+    Tensor
+    point_deviator(std::size_t p) const;
+
+    double
+    volume_ratio(const std::size_t p) const
+    {
+      return volume_ratios[p];
+    }
+
+    /** Whether the pressure is averaged around nodes. */
+    bool
+    is_nodal() const
+    {
+      return averages_around_nodes(kind);
+    }
+
+    /** All sums of an owned or ghost cell, if the body is projected. */
+    CellPressure
+    in_cell(std::uint32_t cell) const;
+
+    /** Of a node, if the pressure is averaged there. */
+    double
+    at_node(const std::uint32_t node) const
+    {
+      return nodal.mean(node);
+    }
+
+  private:
+    void
+    sum_over_cells();
+    void
+    sum_around_nodes();
+
+    const NodalFields<dim>    &nodes;
+    const ExchangePlan         plan;      // all cells that ranks share
+    CellFields<dim>            sums;      // mass, m J, m J p
+    CellFields<dim>            deviators; // of m J sigma, where averaged
+    NodalProjection<dim>       nodal;     // pressure
+    std::vector<std::uint32_t> touched;   // cells whose sums are not zero
+    PointView<dim>             points;
+    std::vector<double>        volume_ratios;
+    Projection                 kind = Projection::none;
+  };
+} // namespace limber
+
+#endif

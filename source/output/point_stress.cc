@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/nodal_means.h>
+#include <limber/output/point_stress.h>
+#include <limber/transfer/project_on_nodes.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** From the independent components, in their order (n_deviator). */
+    template <int dim, class Component>
+    dealii::SymmetricTensor<2, 3>
+    full_deviator(const Component &component)
+    {
+      dealii::SymmetricTensor<2, 3> s;
+      s[0][0] = component(0);
+      s[1][1] = component(1);
+      s[2][2] = -(s[0][0] + s[1][1]);
+      s[0][1] = component(2);
+      if constexpr (dim == 3)
+        {
+          s[1][2] = component(3);
+          s[0][2] = component(4);
+        }
+      return s;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  PointStress<dim>::PointStress(const State<dim> &state)
+    : nodes(state.nodes)
+    , plan(state.grid.shared_cells)
+    , sums(state.grid)
+    , deviators(state.grid)
+    , nodal(state.grid)
+  {}
+
+
+
+  template <int dim>
+  void
+  PointStress<dim>::compute(const MaterialBody<dim> &body)
+  {
+    points = body.points.view();
+    kind   = body.stress->projection().kind;
+    volume_ratios.resize(points.size);
+    body.stress->volume_ratio(points, volume_ratios.data());
+    if (kind != Projection::none)
+      sum_over_cells();
+    if (is_nodal())
+      sum_around_nodes();
+  }
+
+
+
+  template <int dim>
+  void
+  PointStress<dim>::sum_over_cells()
+  {
+    const bool averages_deviator =
+      averages_shear_in_cells(kind) && points.deviator[0] != nullptr;
+    // Points may sit in ghost cells, and those of other ranks in cells here.
+    sums.clear(touched);
+    deviators.clear(touched);
+    touched                       = plan.received;
+    double *const          data   = sums.view().next;
+    double *const          s_data = deviators.view().next;
+    constexpr unsigned int stride = CellSums<dim>::stride;
+    static_assert(n_deviator<dim> <= stride);
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const std::uint32_t cell = points.cell[p];
+        if (cell == invalid_cell)
+          continue;
+        if (touched.empty() || touched.back() != cell)
+          touched.push_back(cell);
+        double *const record = data + std::size_t(cell) * stride;
+        record[0] += points.mass[p];
+        record[1] += points.mass[p] * volume_ratios[p];
+        record[2] += points.mass[p] * points.pressure[p];
+        if (averages_deviator)
+          for (unsigned int k = 0; k < n_deviator<dim>; ++k)
+            s_data[std::size_t(cell) * stride + k] +=
+              points.mass[p] * points.deviator[k][p];
+      }
+    sums.start_completion(plan);
+    if (averages_deviator)
+      deviators.start_completion(plan);
+    sums.finish_completion();
+    if (averages_deviator)
+      deviators.finish_completion();
+  }
+
+
+
+  template <int dim>
+  void
+  PointStress<dim>::sum_around_nodes()
+  {
+    std::vector<double> pressures(points.size);
+    for (std::size_t p = 0; p < points.size; ++p)
+      pressures[p] = point_pressure(p);
+    GridView<dim> grid;
+    grid.cells = nodes.grid.geometry.data();
+    nodal.clear(nodes.active_nodes());
+    sum_weighted<dim>(
+      points, grid, volume_ratios.data(), pressures.data(), nodal.data());
+    nodal.start_completion(nodes.node_plan());
+    nodal.finish_completion(nodes.active_nodes());
+  }
+
+
+
+  template <int dim>
+  double
+  PointStress<dim>::pressure(const std::size_t p) const
+  {
+    const std::uint32_t cell = points.cell[p];
+    if (kind == Projection::none || cell == invalid_cell)
+      return point_pressure(p);
+    if (!is_nodal())
+      return in_cell(cell).mean_pressure();
+
+    const CellGeometry<dim> &geometry = nodes.grid.geometry[cell];
+    std::array<double, dim>  xi;
+    for (int d = 0; d < dim; ++d)
+      xi[d] =
+        (points.position[d][p] - geometry.origin[d]) * geometry.inverse_edge[d];
+    return NodalMean<dim, Projection::node>(nodal.data(), geometry)
+      .template value<double>(xi);
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, 3>
+  PointStress<dim>::point_deviator(const std::size_t p) const
+  {
+    if (points.deviator[0] == nullptr)
+      return {};
+    return full_deviator<dim>(
+             [&](const unsigned int k) { return points.deviator[k][p]; }) /
+           volume_ratios[p];
+  }
+
+
+
+  template <int dim>
+  dealii::SymmetricTensor<2, 3>
+  PointStress<dim>::deviator(const std::size_t p) const
+  {
+    Tensor              result = point_deviator(p);
+    const std::uint32_t cell   = points.cell[p];
+    if (!averages_shear_in_cells(kind) || points.deviator[0] == nullptr ||
+        cell == invalid_cell)
+      return result;
+    const double *const record = deviators.record(cell);
+    const Tensor        mean =
+      full_deviator<dim>([&](const unsigned int k) { return record[k]; }) /
+      in_cell(cell).volume;
+    for (unsigned int i = 0; i < 3; ++i)
+      for (unsigned int j = 0; j <= i; ++j)
+        if (i != j || kind == Projection::cell_full)
+          result[i][j] = mean[i][j];
+    return result;
+  }
+
+
+
+  template <int dim>
+  CellPressure
+  PointStress<dim>::in_cell(const std::uint32_t cell) const
+  {
+    if (cell == invalid_cell)
+      return {};
+    const double *const record = sums.record(cell);
+    return {record[0], record[1], record[2]};
+  }
+
+
+
+  template class PointStress<2>;
+  template class PointStress<3>;
+} // namespace limber

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/batch_lanes.h>
+#include <limber/interpolation/nodal_means.h>
+#include <limber/transfer/project_on_nodes.h>
+
+namespace limber
+{
+  namespace
+  {
+    template <int dim>
+    std::array<double, dim>
+    natural(const PointView<dim>    &points,
+            const CellGeometry<dim> &cell,
+            const std::size_t        p)
+    {
+      std::array<double, dim> xi;
+      for (int d = 0; d < dim; ++d)
+        xi[d] = (points.position[d][p] - cell.origin[d]) * cell.inverse_edge[d];
+      return xi;
+    }
+
+
+
+    /** Of a quantity that each point knows. */
+    template <int dim, class Quantity, class Weight>
+    void
+    sweep(const PointView<dim> &points,
+          const GridView<dim>  &grid,
+          const Weight         &weight,
+          const Quantity       &quantity,
+          double *const         records)
+    {
+      for_each_batch(points, [&](const CellBatch &batch) {
+        if (batch.cell == invalid_cell)
+          return;
+        const CellGeometry<dim> &cell = grid.cells[batch.cell];
+        NodalSums<dim>           sums;
+        for (std::size_t p = batch.begin; p < batch.end; ++p)
+          sums.add(natural(points, cell, p), weight(p), quantity(p));
+        sums.add_to_nodes(cell, records);
+      });
+    }
+
+
+
+    /** The divergence of the velocity in slots from @p first on. */
+    template <int dim, unsigned int first>
+    void
+    sweep_divergence(const PointView<dim> &points,
+                     const GridView<dim>  &grid,
+                     double *const         records)
+    {
+      using Number = PointPack<dim>;
+      for_each_batch(points, [&](const CellBatch &batch) {
+        const CellGeometry<dim>                 &cell = grid.cells[batch.cell];
+        const NodalCoefficients<dim, first, dim> velocity(cell, grid.nodes);
+        NodalSums<dim>                           sums;
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            const auto xi = lanes.natural(points, cell);
+            Number     divergence{};
+            for (int d = 0; d < dim; ++d)
+              divergence +=
+                cell.inverse_edge[d] *
+                Linear<dim>::template gradient<Number>(velocity.component(d),
+                                                       xi)[d];
+            for (int k = 0; k < lanes.n; ++k)
+              sums.add(natural(points, cell, lanes.first + k),
+                       points.mass[lanes.first + k],
+                       divergence[k]);
+          });
+        sums.add_to_nodes(cell, records);
+      });
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  sum_divergence(const PointView<dim> &points,
+                 const GridView<dim>  &grid,
+                 const bool            remapped,
+                 double *const         records)
+  {
+    using Layout = NodeLayout<dim>;
+    if (remapped)
+      sweep_divergence<dim, Layout::remapped>(points, grid, records);
+    else
+      sweep_divergence<dim, Layout::velocity>(points, grid, records);
+  }
+
+
+
+  template <int dim>
+  void
+  sum_pressure(const PointView<dim> &points,
+               const GridView<dim>  &grid,
+               double *const         records)
+  {
+    sweep(
+      points,
+      grid,
+      [&](const std::size_t p) { return points.mass[p]; },
+      [&](const std::size_t p) { return points.pressure[p]; },
+      records);
+  }
+
+
+
+  template <int dim>
+  void
+  sum_weighted(const PointView<dim> &points,
+               const GridView<dim>  &grid,
+               const double *const   ratio,
+               const double *const   value,
+               double *const         records)
+  {
+    sweep(
+      points,
+      grid,
+      [&](const std::size_t p) { return points.mass[p] * ratio[p]; },
+      [&](const std::size_t p) { return value[p]; },
+      records);
+  }
+
+
+
+  template void
+  sum_divergence(const PointView<2> &, const GridView<2> &, bool, double *);
+  template void
+  sum_divergence(const PointView<3> &, const GridView<3> &, bool, double *);
+  template void
+  sum_pressure(const PointView<2> &, const GridView<2> &, double *);
+  template void
+  sum_pressure(const PointView<3> &, const GridView<3> &, double *);
+  template void
+  sum_weighted(const PointView<2> &,
+               const GridView<2> &,
+               const double *,
+               const double *,
+               double *);
+  template void
+  sum_weighted(const PointView<3> &,
+               const GridView<3> &,
+               const double *,
+               const double *,
+               double *);
+} // namespace limber
