@@ -44,6 +44,7 @@ namespace limber
               {"wall_seconds", json::number(summary.wall_seconds)},
               {"cpu_seconds", json::number(summary.cpu_seconds)},
               {"ns_per_point_step", json::number(summary.ns_per_point_step)},
+              {"memory_bytes", json::number(summary.memory_bytes)},
               {"bytes_per_point", json::number(summary.bytes_per_point)},
               {"energy_drift", json::number(summary.energy_drift)},
               {"momentum_error", json::number(summary.momentum_error)},

@@ -425,8 +425,8 @@ namespace limber
 
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    summary.bytes_per_point =
-      sum(1024. * usage.ru_maxrss, communicator) / n_points_at_start;
+    summary.memory_bytes = sum(1024. * usage.ru_maxrss, communicator);
+    summary.bytes_per_point = summary.memory_bytes / n_points_at_start;
     summary.energy_drift   = totals.energy_drift;
     summary.momentum_error = totals.momentum_error;
     summary.lost_points    = sum(state.ledger.lost_points, communicator);

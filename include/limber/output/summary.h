@@ -24,6 +24,7 @@ namespace limber
     double        wall_seconds      = 0;
     double        cpu_seconds       = 0; // sum over ranks
     double        ns_per_point_step = 0; // wall time of a core, output excluded
+    double        memory_bytes      = 0; // largest, sum over ranks
     double        bytes_per_point   = 0;
     double        energy_drift      = 0;
     double        momentum_error    = 0;
