@@ -6,7 +6,8 @@
 Reads study.csv and study.json, as `limber study` and `limber stability` write
 them. One panel for each measure and one line for each method; on charts of
 error against cost the Pareto front is ringed, variants that have failed stand
-as crosses at the upper edge, each with what went wrong.
+as crosses at the upper edge, each with what went wrong. On maps of stability an
+open triangle means that no limit was found below it.
 """
 
 import argparse
@@ -48,6 +49,9 @@ def draw_line(axis, rows, measure, meta, style):
         x, y, _ = zip(*points)
         axis.plot(x, y, label=rows[0]["method"], **style)
     for x, y, row in points:
+        if row["beyond"].startswith("stable up to"):  # no limit was found
+            axis.plot(x, y, "^", markersize=9, fillstyle="none",
+                      color=style["color"])
         if meta["against cost"]:
             axis.annotate(label_of(row, meta["variations"]), (x, y), fontsize=6,
                           textcoords="offset points", xytext=(4, 3),
@@ -65,7 +69,7 @@ def draw_failed(axis, rows, meta, colour):
         if row["outcome"] == "finished":
             continue
         x = number(row[meta["horizontal"]])
-        if np.isfinite(x) and x > 0:
+        if np.isfinite(x):
             axis.plot(x, 0.97, "x", color=colour, transform=transform,
                       clip_on=False)
             axis.annotate(f"{label_of(row, meta['variations'])}: "
@@ -97,8 +101,9 @@ def draw_panel(axis, rows, measure, meta):
         draw_line(axis, own, measure, meta, style)
         draw_failed(axis, own, meta, style["color"])
     draw_closed_forms(axis, methods, meta)
-    if meta["logarithmic"]:
+    if meta["logarithmic"] in ("both", "horizontal"):
         axis.set_xscale("log")
+    if meta["logarithmic"] in ("both", "vertical"):
         axis.set_yscale("log")
     if meta["against cost"]:
         for level in meta["error levels"]:
@@ -107,7 +112,7 @@ def draw_panel(axis, rows, measure, meta):
     axis.set_ylabel(meta["vertical label"] or
                     ("error: " + measure if meta["against cost"] else measure))
     lower, upper = axis.get_ylim()
-    if meta["logarithmic"] and lower < 1e-10 * upper:
+    if axis.get_yscale() == "log" and lower < 1e-10 * upper:
         axis.set_ylim(bottom=1e-10 * upper)  # what is zero up to round-off
     axis.grid(alpha=0.25)
     if axis.get_legend_handles_labels()[0]:

@@ -36,6 +36,7 @@ namespace limber
     return json::object(
              {{"verdict", json::string(summary.verdict)},
               {"message", json::string(summary.message)},
+              {"failure", json::string(summary.failure)},
               {"steps", json::integer(summary.steps)},
               {"points", json::integer(summary.points)},
               {"lost_points", json::integer(summary.lost_points)},

@@ -22,6 +22,9 @@ namespace limber
     // partitioned anew; that costs about as much as 200 steps.
     constexpr double admitted_imbalance = 1.2;
 
+    // A step shorter than this share of the first one will never arrive.
+    constexpr double smallest_step = 1e-6;
+
     // Times closer than this, relative to the step, are one time.
     constexpr double same_time = 1e-9;
   } // namespace
@@ -93,7 +96,7 @@ namespace limber
       }
     catch (const ComputationError &failure)
       {
-        finish_failed(failure.what());
+        finish_failed(failure);
       }
 
     if (stop != 0)
@@ -106,7 +109,7 @@ namespace limber
       std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
         return check.passed;
       });
-    finish(passed ? "finished" : "check missed", "");
+    finish(passed ? "finished" : "check missed", "", "");
     return int(passed ? ExitCode::success : ExitCode::check_missed);
   }
 
@@ -120,11 +123,12 @@ namespace limber
       write_checkpoint();
     if (stop == wall_time_limit)
       {
-        finish("wall time", "the limit of the scene; go on with --resume");
+        finish("wall time", "the limit of the scene; go on with --resume", "");
         return int(ExitCode::stopped_by_signal) + SIGTERM;
       }
     finish("stopped",
-           "by signal " + std::to_string(stop) + "; go on with --resume");
+           "by signal " + std::to_string(stop) + "; go on with --resume",
+           "");
     return int(ExitCode::stopped_by_signal) + stop;
   }
 
@@ -132,11 +136,12 @@ namespace limber
 
   template <int dim>
   void
-  Simulation<dim>::finish_failed(const std::string &reason)
+  Simulation<dim>::finish_failed(const ComputationError &failure)
   {
-    const std::string message = reason + " " + describe_last_state();
-    finish("unstable", message);
-    throw ComputationError(message);
+    const std::string message =
+      std::string(failure.what()) + " " + describe_last_state();
+    finish("unstable", message, name_of(failure.kind));
+    throw ComputationError(message, failure.kind);
   }
 
 
@@ -178,7 +183,9 @@ namespace limber
         record();
         write_pictures();
       }
-    while (state.time < problem.end_time)
+    const double first_step = integrator.longest_step();
+    while (state.time < problem.end_time &&
+           (problem.end_step == 0 || state.step < problem.end_step))
       {
         look_at_the_clock();
         if (stop != 0)
@@ -191,6 +198,8 @@ namespace limber
         if (integrator.reorganise() &&
             integrator.imbalance() > admitted_imbalance)
           rebalance();
+        if (!(integrator.longest_step() > smallest_step * first_step))
+          refuse_step(first_step);
         const double step = next_step();
         integrator.advance(state.time, step);
         state.time += step;
@@ -211,6 +220,21 @@ namespace limber
           write_pictures();
         show_progress();
       }
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::refuse_step(const double first_step) const
+  {
+    std::ostringstream text;
+    text << "The step has shrunk to " << integrator.longest_step()
+         << " s, from " << first_step << " s at first, at time " << state.time
+         << " s. Usually a point is compressed to nothing, so that its wave "
+            "speed grows without bound. Look at 'smallest volume ratio' in the "
+            "statistics; refine 'Grid/Cells' or load more slowly.";
+    throw ComputationError(text.str(), FailureKind::step_too_small);
   }
 
 
@@ -246,6 +270,7 @@ namespace limber
   Simulation<dim>::row_is_due() const
   {
     return state.step % problem.output.statistics_interval == 0 ||
+           state.step == problem.end_step ||
            std::find(targets.begin(), targets.end(), state.time) !=
              targets.end();
   }
@@ -262,6 +287,18 @@ namespace limber
     if (statistics)
       statistics->add(statistics_row(state, totals, observed));
 
+    if (totals.smallest_volume <= 0)
+      {
+        std::ostringstream text;
+        text << "A point has turned inside out: the smallest volume ratio is "
+             << totals.smallest_volume << ", at time " << state.time
+             << " s with step " << state.step_size
+             << " s. Usually the material is compressed or sheared by more "
+                "than the grid resolves, or the step is too long. Refine "
+                "'Grid/Cells', load more slowly, or set Method/Courant number "
+                "to 0.4 or below.";
+        throw ComputationError(text.str(), FailureKind::inverted_point);
+      }
     if (!(std::abs(totals.energy_drift) < problem.method.energy_growth_limit))
       {
         std::ostringstream text;
@@ -275,7 +312,10 @@ namespace limber
                 "material too stiff for it. Set Method/Courant number to 0.4 "
                 "or below; 'Energy growth limit' is "
              << problem.method.energy_growth_limit << ".";
-        throw ComputationError(text.str());
+        throw ComputationError(text.str(),
+                               std::isfinite(totals.energy_drift) ?
+                                 FailureKind::growing_energy :
+                                 FailureKind::not_finite);
       }
   }
 
@@ -336,7 +376,7 @@ namespace limber
                 "in 'Boundaries' with slip, or raise 'Method/Lost points "
                 "limit' above "
              << double(lost) / n_points_at_start << ".";
-        throw ComputationError(text.str());
+        throw ComputationError(text.str(), FailureKind::lost_points);
       }
   }
 
@@ -450,13 +490,15 @@ namespace limber
   template <int dim>
   void
   Simulation<dim>::finish(const std::string &verdict,
-                          const std::string &message)
+                          const std::string &message,
+                          const std::string &failure)
   {
     if (statistics)
       statistics->flush();
     Summary summary = summarize();
     summary.verdict = verdict;
     summary.message = message;
+    summary.failure = failure;
     if (statistics)
       write_summary(problem.output.directory, summary);
     show_summary(summary);

@@ -191,9 +191,18 @@ signal n.
 
 
 
+    int
+    stability(const int argc, const char *const *argv)
+    {
+      return call_study(run_stability, argc, argv);
+    }
+
+
+
     using Command = int (*)(const int, const char *const *);
 
-    const std::map<std::string, Command> commands = {{"study", study}};
+    const std::map<std::string, Command> commands = {{"study", study},
+                                                     {"stability", stability}};
   } // namespace
 
 

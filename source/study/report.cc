@@ -77,19 +77,6 @@ namespace limber
 
 
 
-    /** What the method's formula says for this variant, or not a number. */
-    double
-    expected(const StudyReport &report, const StudyRow &row)
-    {
-      const Formula<2> &formula =
-        report.study.methods[row.variant.method].closed_form;
-      if (formula.empty() || report.study.horizontal_axis.empty())
-        return std::nan("");
-      return formula.value({abscissa(report.study, row.variant), 0}, 0);
-    }
-
-
-
     bool
     has_closed_forms(const StudyReport &report)
     {
@@ -113,7 +100,7 @@ namespace limber
       for (const Measure &measure : study.measures)
         for (const char *const what : {" value", " error", " Pareto"})
           header.push_back(measure.name + what);
-      header.push_back("closed form");
+      header.insert(header.end(), {"closed form", "beyond"});
       for (const Cost cost : {Cost::cpu_seconds,
                               Cost::wall_seconds,
                               Cost::memory,
@@ -142,7 +129,7 @@ namespace limber
               text += "," + csv_number(found.value) + "," +
                       csv_number(found.error) + "," + (fronts[m][r] ? "1" : "0");
             }
-          text += "," + csv_number(expected(report, row));
+          text += "," + csv_number(expected(report, row)) + "," + row.beyond;
           for (const Cost cost : {Cost::cpu_seconds,
                                   Cost::wall_seconds,
                                   Cost::memory,
@@ -173,7 +160,9 @@ namespace limber
           upper          = std::max(upper, x);
         }
       constexpr unsigned int n    = 200;
-      const bool             logs = study.logarithmic && lower > 0;
+      const bool             logs =
+        lower > 0 &&
+        (study.logarithmic == "both" || study.logarithmic == "horizontal");
       for (const StudyMethod &method : study.methods)
         {
           if (method.closed_form.empty() || !(lower < upper))
@@ -223,7 +212,7 @@ namespace limber
                                 study.horizontal_label)},
                 {"vertical label", json::string(study.vertical_label)},
                 {"against cost", json::boolean(study.horizontal_axis.empty())},
-                {"logarithmic", json::boolean(study.logarithmic)},
+                {"logarithmic", json::string(study.logarithmic)},
                 {"error levels", json::array(levels)},
                 {"closed forms", closed_forms(report)}})
                .text +
@@ -259,6 +248,15 @@ namespace limber
           header += " closed form |";
           rule += " --: |";
         }
+      const bool has_beyond =
+        std::any_of(report.rows.begin(),
+                    report.rows.end(),
+                    [](const StudyRow &row) { return !row.beyond.empty(); });
+      if (has_beyond)
+        {
+          header += " beyond |";
+          rule += " --- |";
+        }
       text << header << " " << name_of(study.cost) << " |\n"
            << rule << " --: |\n";
 
@@ -288,6 +286,8 @@ namespace limber
               const double value = expected(report, row);
               text << " " << (std::isfinite(value) ? brief(value) : "") << " |";
             }
+          if (has_beyond)
+            text << " " << row.beyond << " |";
           const double cost = cost_of(report, row);
           text << " " << (std::isfinite(cost) ? brief(cost) : "") << " |\n";
         }
@@ -353,6 +353,18 @@ namespace limber
       return result;
     }
   } // namespace
+
+
+
+  double
+  expected(const StudyReport &report, const StudyRow &row)
+  {
+    const Formula<2> &formula =
+      report.study.methods[row.variant.method].closed_form;
+    if (formula.empty() || report.study.horizontal_axis.empty())
+      return std::nan("");
+    return formula.value({abscissa(report.study, row.variant), 0}, 0);
+  }
 
 
 

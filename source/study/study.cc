@@ -22,7 +22,8 @@ namespace limber
     StudyRow
     row_from(const StudyFile &study, const Variant &variant, const ChildEnd &end)
     {
-      StudyRow row{variant, outcome_of(end, variant.folder), end.exit_code, {}, {}};
+      StudyRow row{
+        variant, outcome_of(end, variant.folder), "", end.exit_code, {}, {}};
       if (!std::filesystem::exists(variant.folder + "/summary.json"))
         return row;
       const RecordedSummary summary = read_summary(variant.folder);

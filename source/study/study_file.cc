@@ -181,9 +181,9 @@ namespace limber
                          "What stands at the axis; empty: the name of the "
                          "measure.");
       parameters.declare("Logarithmic",
-                         "true",
-                         flag(),
-                         "Whether both axes are logarithmic.");
+                         "both",
+                         one_of({"both", "horizontal", "vertical", "none"}),
+                         "Which axes are logarithmic.");
       parameters.leave_subsection();
     }
 
@@ -640,7 +640,7 @@ namespace limber
       for (const Variation &variation : study.variations)
         names.push_back(variation.name);
       check_known(axis, names, "axis", section.where("Horizontal axis"));
-      study.logarithmic      = section.flag("Logarithmic");
+      study.logarithmic      = section.text("Logarithmic");
       study.horizontal_label = section.text("Horizontal label");
       study.vertical_label   = section.text("Vertical label");
       if (axis == "cost")

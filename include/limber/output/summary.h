@@ -16,6 +16,8 @@ namespace limber
     // "finished", "check missed", "unstable", "stopped", "wall time"
     std::string   verdict;
     std::string   message; // why, where it did not finish
+    // of an unstable run, in a word or two: name_of(FailureKind)
+    std::string   failure;
     unsigned long steps             = 0;
     unsigned long points            = 0; // at the end
     unsigned long lost_points       = 0;

@@ -58,11 +58,13 @@ namespace limber
     int
     finish_stopped();
     [[noreturn]] void
-    finish_failed(const std::string &reason);
+    finish_failed(const ComputationError &failure);
     std::string
     describe_last_state();
     double
     next_step() const;
+    [[noreturn]] void
+    refuse_step(double first_step) const;
     void
     record();
     void
@@ -76,7 +78,9 @@ namespace limber
     void
     show_progress();
     void
-    finish(const std::string &verdict, const std::string &message);
+    finish(const std::string &verdict,
+           const std::string &message,
+           const std::string &failure);
     Summary
     summarize() const;
     void

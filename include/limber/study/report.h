@@ -21,6 +21,7 @@ namespace limber
   {
     Variant               variant;
     std::string           outcome; // "finished", or what went wrong
+    std::string           beyond;  // outcome just above a largest stable value
     int                   exit_code = 0;
     std::map<Cost, double> costs;   // of a run that has left a summary
     std::vector<Measured> measured; // one per measure, if it has finished
@@ -32,6 +33,10 @@ namespace limber
     std::vector<StudyRow> rows;
     std::string           caption; // machine, version, command
   };
+
+  /** What the method's formula says for this variant, or not a number. */
+  double
+  expected(const StudyReport &report, const StudyRow &row);
 
   /** Rows that no other one beats in both cost and error, by measure. */
   std::vector<bool>

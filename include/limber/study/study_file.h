@@ -110,7 +110,7 @@ namespace limber
     std::string      horizontal_axis;
     std::string      horizontal_label; // what stands at the axis
     std::string      vertical_label;
-    bool             logarithmic = true;
+    std::string      logarithmic = "both"; // "horizontal", "vertical", "none"
     BisectionRequest bisection;
     bool             is_short = false;
   };
