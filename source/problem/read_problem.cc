@@ -48,8 +48,8 @@ namespace limber
     {
       std::vector<std::string> result;
       for (const auto &[name, value] : parameters.entries())
-        if (name != "End time" && name != "End step" && name.rfind("Output/", 0) != 0 &&
-            name.rfind("Checkpoint/", 0) != 0)
+        if (name != "End time" && name != "End step" &&
+            name.rfind("Output/", 0) != 0 && name.rfind("Checkpoint/", 0) != 0)
           result.push_back(name + " = " + value);
       return result;
     }

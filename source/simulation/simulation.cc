@@ -465,11 +465,11 @@ namespace limber
 
     rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    summary.memory_bytes = sum(1024. * usage.ru_maxrss, communicator);
+    summary.memory_bytes    = sum(1024. * usage.ru_maxrss, communicator);
     summary.bytes_per_point = summary.memory_bytes / n_points_at_start;
-    summary.energy_drift   = totals.energy_drift;
-    summary.momentum_error = totals.momentum_error;
-    summary.lost_points    = sum(state.ledger.lost_points, communicator);
+    summary.energy_drift    = totals.energy_drift;
+    summary.momentum_error  = totals.momentum_error;
+    summary.lost_points     = sum(state.ledger.lost_points, communicator);
 
     auto   verbs = integrator.verb_seconds;
     double all   = 0;

@@ -63,9 +63,8 @@ namespace limber
     end_from(const int status)
     {
       ChildEnd end;
-      end.killed = WIFSIGNALED(status);
-      end.exit_code =
-        end.killed ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+      end.killed    = WIFSIGNALED(status);
+      end.exit_code = end.killed ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
       return end;
     }
   } // namespace

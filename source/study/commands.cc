@@ -4,7 +4,7 @@
 #include <limber/base/text.h>
 #include <limber/simulation/command_line.h>
 #include <limber/study/commands.h>
-#include <limber/study/study.h>
+#include <limber/study/study_commands.h>
 
 #include <cstdlib>
 #include <iostream>
@@ -125,8 +125,8 @@ signal n.
       std::vector<std::string> overrides;
       for (const std::string &setting : line.overrides)
         overrides.push_back(line.output_directory &&
-                                setting == "Output/Directory=" +
-                                             *line.output_directory ?
+                                setting ==
+                                  "Output/Directory=" + *line.output_directory ?
                               "Directory=" + *line.output_directory :
                               setting);
       return overrides;
@@ -201,8 +201,11 @@ signal n.
 
     using Command = int (*)(const int, const char *const *);
 
-    const std::map<std::string, Command> commands = {{"study", study},
-                                                     {"stability", stability}};
+    const std::map<std::string, Command> commands = {
+      {"study", study},
+      {"stability", stability},
+      {"inf-sup", inf_sup_command},
+      {"advise", advise_command}};
   } // namespace
 
 

@@ -66,9 +66,9 @@ namespace limber
     std::vector<std::string>
     labels_of(const StudyReport &report, const StudyRow &row)
     {
-      const StudyFile         &study = report.study;
-      std::vector<std::string> labels =
-        {study.methods[row.variant.method].choice.label};
+      const StudyFile         &study  = report.study;
+      std::vector<std::string> labels = {
+        study.methods[row.variant.method].choice.label};
       for (std::size_t v = 0; v < study.variations.size(); ++v)
         labels.push_back(
           study.variations[v].choices[row.variant.choices[v]].label);
@@ -101,10 +101,8 @@ namespace limber
         for (const char *const what : {" value", " error", " Pareto"})
           header.push_back(measure.name + what);
       header.insert(header.end(), {"closed form", "beyond"});
-      for (const Cost cost : {Cost::cpu_seconds,
-                              Cost::wall_seconds,
-                              Cost::memory,
-                              Cost::steps})
+      for (const Cost cost :
+           {Cost::cpu_seconds, Cost::wall_seconds, Cost::memory, Cost::steps})
         header.push_back(name_of(cost));
 
       std::vector<std::vector<bool>> fronts;
@@ -127,7 +125,8 @@ namespace limber
               const Measured found =
                 m < row.measured.size() ? row.measured[m] : none;
               text += "," + csv_number(found.value) + "," +
-                      csv_number(found.error) + "," + (fronts[m][r] ? "1" : "0");
+                      csv_number(found.error) + "," +
+                      (fronts[m][r] ? "1" : "0");
             }
           text += "," + csv_number(expected(report, row)) + "," + row.beyond;
           for (const Cost cost : {Cost::cpu_seconds,
@@ -160,9 +159,8 @@ namespace limber
           upper          = std::max(upper, x);
         }
       constexpr unsigned int n    = 200;
-      const bool             logs =
-        lower > 0 &&
-        (study.logarithmic == "both" || study.logarithmic == "horizontal");
+      const bool             logs = lower > 0 && (study.logarithmic == "both" ||
+                                      study.logarithmic == "horizontal");
       for (const StudyMethod &method : study.methods)
         {
           if (method.closed_form.empty() || !(lower < upper))
@@ -171,9 +169,8 @@ namespace limber
           for (unsigned int i = 0; i <= n; ++i)
             {
               const double share = double(i) / n;
-              const double x     = logs ?
-                                     lower * std::pow(upper / lower, share) :
-                                     lower + share * (upper - lower);
+              const double x = logs ? lower * std::pow(upper / lower, share) :
+                                      lower + share * (upper - lower);
               xs.push_back(json::number(x));
               ys.push_back(json::number(method.closed_form.value({x, 0}, 0)));
             }

@@ -62,10 +62,10 @@ namespace limber
                        ", which 'Measure " + measure.name +
                        "/Name' asks for. Usually it is misspelt or missing in "
                        "the scene. " +
-                       (meant         ? "Did you mean " + in_quotes(*meant) + "?" :
-                        known.empty() ? "It has none at all." :
-                                        "Choose from: " + join(known, ", ") +
-                                  "."));
+                       (meant ? "Did you mean " + in_quotes(*meant) + "?" :
+                        known.empty() ?
+                                "It has none at all." :
+                                "Choose from: " + join(known, ", ") + "."));
     }
 
 
@@ -118,7 +118,7 @@ namespace limber
       for (const double value : values)
         if (std::isnan(value) && measure.reduction != Reduction::last)
           return nothing;
-      const auto extremes = std::minmax_element(values.begin(), values.end());
+      const auto   extremes = std::minmax_element(values.begin(), values.end());
       const double first = values.front(), last = values.back();
       switch (measure.reduction)
         {
@@ -203,9 +203,9 @@ namespace limber
     for (const auto &[name, value] : tree)
       if (value.empty())
         summary.numbers[name] = number_or_nan(value.data());
-    summary.verdict = member(tree, "verdict");
-    summary.failure = member(tree, "failure");
-    summary.message = member(tree, "message");
+    summary.verdict   = member(tree, "verdict");
+    summary.failure   = member(tree, "failure");
+    summary.message   = member(tree, "message");
     const auto checks = tree.find("checks");
     if (checks != tree.not_found())
       for (const auto &[name, check] : checks->second)

@@ -20,10 +20,10 @@ namespace limber
     double
     energy_growth(const std::string &folder, const std::string &variant)
     {
-      const Table table   = read_statistics(folder);
-      const auto &kinetic = table.at("kinetic energy");
-      const auto &strain  = table.at("strain energy");
-      const double start  = kinetic.front() + strain.front();
+      const Table  table   = read_statistics(folder);
+      const auto  &kinetic = table.at("kinetic energy");
+      const auto  &strain  = table.at("strain energy");
+      const double start   = kinetic.front() + strain.front();
       if (!(start > 0))
         throw InputError("The variant " + in_quotes(variant) +
                          " starts without kinetic or strain energy, so its "
@@ -98,12 +98,12 @@ namespace limber
       is_stable(const double value)
       {
         const unsigned int interval = std::max(1u, request.steps / 200);
-        const std::vector<std::string> settings =
-          {request.entry + "=" + to_text(value),
-           "End step=" + std::to_string(request.steps),
-           "End time=1e100",
-           "Output/Time interval=0",
-           "Output/Statistics interval=" + std::to_string(interval)};
+        const std::vector<std::string> settings = {
+          request.entry + "=" + to_text(value),
+          "End step=" + std::to_string(request.steps),
+          "End time=1e100",
+          "Output/Time interval=0",
+          "Output/Statistics interval=" + std::to_string(interval)};
         const std::string subfolder = std::to_string(++count);
         const auto        end       = runs.run(variant, settings, subfolder);
         if (!end)
@@ -115,15 +115,15 @@ namespace limber
         const std::string ended  = outcome_of(*end, folder);
         if (ended == "refused")
           throw InputError("The variant " + in_quotes(variant.name) +
-                           " was refused with " + settings.front() +
-                           "; see " + folder +
+                           " was refused with " + settings.front() + "; see " +
+                           folder +
                            ".log. Usually the bounds in section 'Bisection' "
                            "are not admissible for the entry.");
         if (ended == "finished" &&
             energy_growth(folder, variant.name) <= request.growth)
           return true;
-        outcome = ended == "finished" ? name_of(FailureKind::growing_energy) :
-                                        ended;
+        outcome =
+          ended == "finished" ? name_of(FailureKind::growing_energy) : ended;
         return false;
       }
 
@@ -173,7 +173,8 @@ namespace limber
             if (row.variant.method == m && !row.measured.empty())
               {
                 const double formula = expected(report, row);
-                if (std::isfinite(formula) && row.beyond.rfind("stable", 0) != 0)
+                if (std::isfinite(formula) &&
+                    row.beyond.rfind("stable", 0) != 0)
                   worst = std::max(
                     worst, std::abs(row.measured.front().value / formula - 1));
               }

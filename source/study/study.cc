@@ -20,7 +20,9 @@ namespace limber
   {
     /** Costs and measures of a run, from its folder. */
     StudyRow
-    row_from(const StudyFile &study, const Variant &variant, const ChildEnd &end)
+    row_from(const StudyFile &study,
+             const Variant   &variant,
+             const ChildEnd  &end)
     {
       StudyRow row{
         variant, outcome_of(end, variant.folder), "", end.exit_code, {}, {}};

@@ -288,11 +288,8 @@ namespace limber
     {
       using namespace admissible;
       parameters.enter_subsection("Measure " + name);
-      declare_word(parameters,
-                   "Source",
-                   "check",
-                   source_words(),
-                   "Where it is found.");
+      declare_word(
+        parameters, "Source", "check", source_words(), "Where it is found.");
       parameters.declare("Name",
                          "",
                          names("first mode"),
@@ -395,11 +392,11 @@ namespace limber
     std::vector<Choice>
     read_choices(const Section &section)
     {
-      const std::string entry  = section.required_text("Entry");
+      const std::string entry = section.required_text("Entry");
       const auto values = split(section.required_text("Values"), separator);
-      const auto labels =
-        section.is_empty("Labels") ? values :
-                                     split(section.text("Labels"), separator);
+      const auto labels = section.is_empty("Labels") ?
+                            values :
+                            split(section.text("Labels"), separator);
       if (labels.size() != values.size())
         throw InputError("There are " + std::to_string(labels.size()) +
                          " labels for " + std::to_string(values.size()) +
@@ -411,13 +408,12 @@ namespace limber
         {
           for (std::size_t j = 0; j < i; ++j)
             if (labels[j] == labels[i])
-              throw InputError("The label " + in_quotes(labels[i]) +
-                               " stands twice in " +
-                               section.where(section.is_empty("Labels") ?
-                                               "Values" :
-                                               "Labels") +
-                               ". Usually a value was copied. Tell them apart "
-                               "with 'Labels'.");
+              throw InputError(
+                "The label " + in_quotes(labels[i]) + " stands twice in " +
+                section.where(section.is_empty("Labels") ? "Values" :
+                                                           "Labels") +
+                ". Usually a value was copied. Tell them apart "
+                "with 'Labels'.");
           choices.push_back({labels[i], {entry + "=" + values[i]}});
         }
       return choices;
@@ -438,13 +434,12 @@ namespace limber
           if (found == labels.end())
             {
               const auto meant = nearest(label, labels);
-              throw InputError(in_quotes(label) + " in " +
-                               section.where("Short") +
-                               " is no label of this variation. Usually it is "
-                               "misspelt. " +
-                               (meant ?
-                                  "Did you mean " + in_quotes(*meant) + "?" :
-                                  "Choose from: " + join(labels, " | ") + "."));
+              throw InputError(
+                in_quotes(label) + " in " + section.where("Short") +
+                " is no label of this variation. Usually it is "
+                "misspelt. " +
+                (meant ? "Did you mean " + in_quotes(*meant) + "?" :
+                         "Choose from: " + join(labels, " | ") + "."));
             }
           kept.push_back(choices[found - labels.begin()]);
         }
@@ -462,13 +457,12 @@ namespace limber
       if (std::find(known.begin(), known.end(), name) != known.end())
         return;
       const auto meant = nearest(name, known);
-      throw InputError("There is no " + what + " " + in_quotes(name) +
-                       ", which is named in " + where +
-                       ". Usually it is misspelt. " +
-                       (meant         ? "Did you mean " + in_quotes(*meant) + "?" :
-                        known.empty() ? "None is declared." :
-                                        "Choose from: " + join(known, ", ") +
-                                  "."));
+      throw InputError(
+        "There is no " + what + " " + in_quotes(name) + ", which is named in " +
+        where + ". Usually it is misspelt. " +
+        (meant         ? "Did you mean " + in_quotes(*meant) + "?" :
+         known.empty() ? "None is declared." :
+                         "Choose from: " + join(known, ", ") + "."));
     }
 
 
@@ -502,7 +496,7 @@ namespace limber
             variations[std::find(leaders.begin(), leaders.end(), leader) -
                        leaders.begin()]
               .choices;
-          const std::string entry  = section.required_text("Entry");
+          const std::string entry = section.required_text("Entry");
           const auto values = split(section.required_text("Values"), separator);
           if (values.size() != choices.size())
             throw InputError("There are " + std::to_string(values.size()) +
@@ -579,8 +573,9 @@ namespace limber
           measure.name   = name;
           measure.source = read_word(section, "Source", source_words());
           section.required_text("Name");
-          measure.of        = section.list("Name");
-          measure.reduction = read_word(section, "Reduction", reduction_words());
+          measure.of = section.list("Name");
+          measure.reduction =
+            read_word(section, "Reduction", reduction_words());
           measure.from_time = section.number("From time");
           if (!section.is_empty("Until time"))
             measure.until_time = section.number("Until time");
@@ -588,12 +583,12 @@ namespace limber
           measure.scale     = optional_number(section, "Scale");
           if (measure.source == MeasureSource::check &&
               (measure.reference || measure.scale))
-            throw InputError("A reference or scale is given in " +
-                             section.where(measure.reference ? "Reference" :
-                                                               "Scale") +
-                             ", but a check brings its own. Usually it was "
-                             "meant for the scene. Set 'Check NAME/Reference' "
-                             "in 'Settings'.");
+            throw InputError(
+              "A reference or scale is given in " +
+              section.where(measure.reference ? "Reference" : "Scale") +
+              ", but a check brings its own. Usually it was "
+              "meant for the scene. Set 'Check NAME/Reference' "
+              "in 'Settings'.");
           if (measure.source == MeasureSource::summary &&
               measure.of.size() != 1)
             throw InputError("There are " + std::to_string(measure.of.size()) +
@@ -671,11 +666,10 @@ namespace limber
       request.steps     = static_cast<unsigned int>(section.number("Steps"));
       request.growth    = section.number("Growth");
       if (request.lower >= request.upper)
-        throw InputError("The lower end " + section.text("Lower") + " in " +
-                         section.where("Lower") +
-                         " is not below the upper one, " +
-                         section.text("Upper") +
-                         ". Usually they are exchanged.");
+        throw InputError(
+          "The lower end " + section.text("Lower") + " in " +
+          section.where("Lower") + " is not below the upper one, " +
+          section.text("Upper") + ". Usually they are exchanged.");
       return request;
     }
   } // namespace
@@ -744,10 +738,8 @@ namespace limber
     declare_study(parameters, {"cell"}, {"refinement"}, {"frequency"});
     Scan scan;
     scan.origin = "the template";
-    parameters.read(scan,
-                    {"Methods=cell",
-                     "Variations=refinement",
-                     "Measures=frequency"});
+    parameters.read(
+      scan, {"Methods=cell", "Variations=refinement", "Measures=frequency"});
     parameters.print(out, style);
   }
 } // namespace limber

@@ -89,7 +89,7 @@ namespace limber
   void
   StudyRuns::prepare_folder()
   {
-    namespace fs = std::filesystem;
+    namespace fs        = std::filesystem;
     const fs::path runs = fs::path(study.directory) / "runs";
     if (fs::exists(runs) && !call.resume && !study.replace)
       throw InputError("The folder " + in_quotes(study.directory) +
@@ -132,8 +132,8 @@ namespace limber
   {
     const std::string folder =
       variant.folder + (subfolder.empty() ? "" : "." + subfolder);
-    const std::string done      = folder + ".done";
-    const std::string depends   = dependencies(variant, settings);
+    const std::string done    = folder + ".done";
+    const std::string depends = dependencies(variant, settings);
     if (call.resume)
       if (const auto former = former_end(done, depends))
         return former;

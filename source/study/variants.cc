@@ -29,8 +29,7 @@ namespace limber
 
 
     void
-    append(std::vector<std::string>       &to,
-           const std::vector<std::string> &from)
+    append(std::vector<std::string> &to, const std::vector<std::string> &from)
     {
       to.insert(to.end(), from.begin(), from.end());
     }
@@ -58,7 +57,7 @@ namespace limber
                  const std::size_t               method,
                  const std::vector<std::size_t> &choices)
     {
-      Variant variant{method, choices, "", "", study.settings, ""};
+      Variant       variant{method, choices, "", "", study.settings, ""};
       const Choice &line = study.methods[method].choice;
       variant.name       = line.label;
       append(variant.settings, line.settings);

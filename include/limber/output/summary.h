@@ -14,8 +14,8 @@ namespace limber
   struct Summary
   {
     // "finished", "check missed", "unstable", "stopped", "wall time"
-    std::string   verdict;
-    std::string   message; // why, where it did not finish
+    std::string verdict;
+    std::string message; // why, where it did not finish
     // of an unstable run, in a word or two: name_of(FailureKind)
     std::string   failure;
     unsigned long steps             = 0;

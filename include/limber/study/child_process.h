@@ -10,7 +10,7 @@ namespace limber
   /** How a program ended that was started by run_child(). */
   struct ChildEnd
   {
-    int    exit_code = 0; // 128 + n where signal n has ended it
+    int    exit_code = 0;     // 128 + n where signal n has ended it
     bool   killed    = false; // by a signal that it did not catch
     bool   timed_out = false; // by us, at the time limit
     double seconds   = 0;     // wall time

@@ -19,12 +19,12 @@ namespace limber
   /** What a variant has given. */
   struct StudyRow
   {
-    Variant               variant;
-    std::string           outcome; // "finished", or what went wrong
-    std::string           beyond;  // outcome just above a largest stable value
-    int                   exit_code = 0;
-    std::map<Cost, double> costs;   // of a run that has left a summary
-    std::vector<Measured> measured; // one per measure, if it has finished
+    Variant                variant;
+    std::string            outcome; // "finished", or what went wrong
+    std::string            beyond;  // outcome just above a largest stable value
+    int                    exit_code = 0;
+    std::map<Cost, double> costs;    // of a run that has left a summary
+    std::vector<Measured>  measured; // one per measure, if it has finished
   };
 
   struct StudyReport

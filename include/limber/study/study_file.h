@@ -67,7 +67,7 @@ namespace limber
     // up; of a number of summary.json
     std::vector<std::string> of;
     Reduction                reduction = Reduction::last; // of columns
-    double from_time = 0; // s; earlier and later rows do not count
+    double from_time  = 0; // s; earlier and later rows do not count
     double until_time = std::numeric_limits<double>::infinity();
     // |value - reference| / scale is the error. Without reference: the value
     std::optional<double> reference;

@@ -62,7 +62,7 @@ namespace limber
     const StudyCall     &call;
     Console             &console;
     std::vector<Variant> all;
-    std::vector<double>  seconds; // wall time of the variants done; 0: kept
+    std::vector<double>  seconds;     // wall time of the variants done; 0: kept
     double               present = 0; // of the one that is being done
   };
 } // namespace limber

@@ -13,10 +13,10 @@ namespace limber
   struct Variant
   {
     std::size_t              method = 0;
-    std::vector<std::size_t> choices;  // one per variation
-    std::string              name;     // "cell, 4", unique in the study
-    std::string              folder;   // of its run
-    std::vector<std::string> settings; // all of them, "Section/Name=value"
+    std::vector<std::size_t> choices;    // one per variation
+    std::string              name;       // "cell, 4", unique in the study
+    std::string              folder;     // of its run
+    std::vector<std::string> settings;   // all of them, "Section/Name=value"
     std::string              parameters; // all entries as the run will use them
   };
 
