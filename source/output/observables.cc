@@ -24,6 +24,7 @@ namespace limber
           case ObservableKind::position:
           case ObservableKind::stress:
           case ObservableKind::pressure:
+          case ObservableKind::volume_ratio:
             return true;
           default:
             return false;
@@ -53,6 +54,8 @@ namespace limber
             return "J";
           case ObservableKind::momentum:
             return "kg m/s";
+          case ObservableKind::volume_ratio:
+            return "";
           case ObservableKind::frequency:
             return "Hz";
           case ObservableKind::reaction_force:
@@ -252,6 +255,8 @@ namespace limber
           return point.stress[axis][observable.second_axis];
         case ObservableKind::pressure:
           return point.pressure;
+        case ObservableKind::volume_ratio:
+          return point.volume_ratio;
         case ObservableKind::kinetic_energy:
           return body.kinetic_energy;
         case ObservableKind::strain_energy:

@@ -37,6 +37,7 @@ namespace limber
              {{"verdict", json::string(summary.verdict)},
               {"message", json::string(summary.message)},
               {"failure", json::string(summary.failure)},
+              {"suspected", json::string(summary.suspected)},
               {"steps", json::integer(summary.steps)},
               {"points", json::integer(summary.points)},
               {"lost_points", json::integer(summary.lost_points)},

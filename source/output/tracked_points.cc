@@ -224,6 +224,7 @@ namespace limber
             samples[t].position[d] = record[T::position + d];
             samples[t].velocity[d] = record[T::velocity + d];
           }
+        samples[t].volume_ratio = record[T::volume];
       }
     average_pressures(state, with_stress, records, samples);
     return samples;

@@ -27,6 +27,16 @@ namespace limber
 
     // Times closer than this, relative to the step, are one time.
     constexpr double same_time = 1e-9;
+
+
+
+    std::string
+    in_words(const Diagnosis &diagnosis)
+    {
+      return diagnosis.mode.empty() ?
+               "" :
+               "Suspected: " + diagnosis.mode + ", for " + diagnosis.text + " ";
+    }
   } // namespace
 
 
@@ -109,7 +119,15 @@ namespace limber
       std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
         return check.passed;
       });
-    finish(passed ? "finished" : "check missed", "", "");
+    if (passed)
+      finish("finished", "", "");
+    else
+      {
+        const Diagnosis suspected = look_for_cause(/*unstable=*/false);
+        if (!suspected.mode.empty())
+          console.say(in_words(suspected));
+        finish("check missed", in_words(suspected), "", suspected.mode);
+      }
     return int(passed ? ExitCode::success : ExitCode::check_missed);
   }
 
@@ -138,10 +156,27 @@ namespace limber
   void
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
-    const std::string message =
-      std::string(failure.what()) + " " + describe_last_state();
-    finish("unstable", message, name_of(failure.kind));
+    const Diagnosis   suspected = look_for_cause(/*unstable=*/true);
+    const std::string message   = std::string(failure.what()) + " " +
+                                in_words(suspected) + describe_last_state();
+    finish("unstable", message, name_of(failure.kind), suspected.mode);
     throw ComputationError(message, failure.kind);
+  }
+
+
+
+  template <int dim>
+  Diagnosis
+  Simulation<dim>::look_for_cause(const bool unstable)
+  {
+    // The speeds of a run that has blown up say nothing about its step.
+    const Method &method = problem.method;
+    const auto    speeds = integrator.state();
+    Symptoms      symptoms =
+      find_symptoms(state, speeds.wave_speed + speeds.point_speed);
+    if (method.time_step == 0)
+      symptoms.courant_number = method.courant_number;
+    return diagnose(symptoms, problem, unstable);
   }
 
 
@@ -491,14 +526,16 @@ namespace limber
   void
   Simulation<dim>::finish(const std::string &verdict,
                           const std::string &message,
-                          const std::string &failure)
+                          const std::string &failure,
+                          const std::string &suspected)
   {
     if (statistics)
       statistics->flush();
-    Summary summary = summarize();
-    summary.verdict = verdict;
-    summary.message = message;
-    summary.failure = failure;
+    Summary summary   = summarize();
+    summary.verdict   = verdict;
+    summary.message   = message;
+    summary.failure   = failure;
+    summary.suspected = suspected;
     if (statistics)
       write_summary(problem.output.directory, summary);
     show_summary(summary);

@@ -17,7 +17,8 @@ namespace limber
     std::string verdict;
     std::string message; // why, where it did not finish
     // of an unstable run, in a word or two: name_of(FailureKind)
-    std::string   failure;
+    std::string failure;
+    std::string suspected; // what it has most likely fallen into, see Diagnosis
     unsigned long steps             = 0;
     unsigned long points            = 0; // at the end
     unsigned long lost_points       = 0;

@@ -164,6 +164,7 @@ namespace limber
     velocity,
     stress,
     pressure,
+    volume_ratio,
     position,
     extreme_coordinate,
     kinetic_energy,

@@ -5,6 +5,7 @@
 #include <limber/base/console.h>
 #include <limber/base/exceptions.h>
 #include <limber/output/checks.h>
+#include <limber/output/diagnosis.h>
 #include <limber/output/observables.h>
 #include <limber/output/statistics.h>
 #include <limber/output/summary.h>
@@ -61,6 +62,8 @@ namespace limber
     finish_failed(const ComputationError &failure);
     std::string
     describe_last_state();
+    Diagnosis
+    look_for_cause(bool unstable);
     double
     next_step() const;
     [[noreturn]] void
@@ -80,7 +83,8 @@ namespace limber
     void
     finish(const std::string &verdict,
            const std::string &message,
-           const std::string &failure);
+           const std::string &failure,
+           const std::string &suspected = "");
     Summary
     summarize() const;
     void
