@@ -195,7 +195,7 @@ namespace limber
     {
       for (const Body<dim> &body : problem.bodies)
         {
-          const bool         fluid  = body.law == "newtonian fluid";
+          const bool         fluid  = body.is_liquid;
           const unsigned int enough = fluid ? 3 : 2;
           const unsigned int most =
             *std::max_element(body.points_per_cell_edge.begin(),

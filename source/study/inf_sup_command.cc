@@ -186,7 +186,8 @@ square, no velocity on its boundary.
       zero.name             = "zero modes";
       report.study.measures = {beta, mean, zero};
       for (const PressureSpace space : call.pressures)
-        report.study.methods.push_back({{name_of(space), {}}, {}});
+        report.study.methods.push_back(
+          {{name_of(space), {}}, Runner::points, {}});
       Variation variation{"cells per edge", {}};
       for (const unsigned int n : call.cells)
         variation.choices.push_back({std::to_string(n), {}});

@@ -59,6 +59,19 @@ namespace limber
 
 
 
+    const Words<Runner> &
+    runner_words()
+    {
+      static const Words<Runner> words = {
+        {"points", Runner::points, "the material point method"},
+        {"reference",
+         std::nullopt,
+         "the finite elements of 'limber reference'"}};
+      return words;
+    }
+
+
+
     const Words<Cost> &
     cost_words()
     {
@@ -236,6 +249,11 @@ namespace limber
                          settings_text(),
                          "Entries of the scene that make this method; empty: "
                          "as in the scene.");
+      declare_word(parameters,
+                   "Run by",
+                   "points",
+                   runner_words(),
+                   "What computes the scene.");
       parameters.declare("Closed form",
                          "",
                          admissible::text("formula of x, or empty",
@@ -537,7 +555,9 @@ namespace limber
       for (const std::string &name : names)
         {
           const Section section = root.subsection("Method " + name);
-          StudyMethod   method{{name, read_settings(section, "Settings")}, {}};
+          StudyMethod   method{{name, read_settings(section, "Settings")},
+                             read_word(section, "Run by", runner_words()),
+                             {}};
           if (!section.is_empty("Closed form"))
             method.closed_form = Formula<2>(section.text("Closed form"),
                                             {},
@@ -546,7 +566,7 @@ namespace limber
           methods.push_back(method);
         }
       if (methods.empty())
-        methods.push_back({{"as in the scene", {}}, {}});
+        methods.push_back({{"as in the scene", {}}, Runner::points, {}});
       return methods;
     }
 

@@ -119,6 +119,9 @@ namespace limber
       std::filesystem::last_write_time(this_program()).time_since_epoch();
     return "program " + run_info().revision + " " +
            std::to_string(built.count()) + "\nscene " + study.scene +
+           (study.methods[variant.method].runner == Runner::reference ?
+              " by reference" :
+              "") +
            "\ntime limit " + to_text(study.time_limit) + "\n" +
            join(settings, "\n") + "\n" + variant.parameters;
   }
@@ -132,6 +135,7 @@ namespace limber
   {
     const std::string folder =
       variant.folder + (subfolder.empty() ? "" : "." + subfolder);
+    const Runner      runner  = study.methods[variant.method].runner;
     const std::string done    = folder + ".done";
     const std::string depends = dependencies(variant, settings);
     if (call.resume)
@@ -141,7 +145,10 @@ namespace limber
     // Nothing of a former run may be taken for a result of this one.
     std::filesystem::remove(done);
     std::filesystem::remove_all(folder);
-    std::vector<std::string> command = {this_program(), study.scene};
+    std::vector<std::string> command = {this_program()};
+    if (runner == Runner::reference)
+      command.push_back("reference");
+    command.push_back(study.scene);
     for (const auto *const list : {&variant.settings, &settings})
       for (const std::string &setting : *list)
         command.insert(command.end(), {"--set", setting});

@@ -24,10 +24,18 @@ namespace limber
     std::vector<std::string> settings; // "Section/Name=value"
   };
 
+  /** What a variant is run by. */
+  enum class Runner
+  {
+    points,   // limber scene.prm
+    reference // limber reference scene.prm
+  };
+
   /** A line of the chart. */
   struct StudyMethod
   {
     Choice choice;
+    Runner runner = Runner::points;
     // What the measure is expected to be, as a formula of x, the number on the
     // horizontal axis; empty: not known
     Formula<2> closed_form;

@@ -15,7 +15,8 @@ namespace
     Measure     measure;
     measure.name          = "frequency";
     report.study.measures = {measure};
-    report.study.methods  = {{{"locked", {}}, {}}, {{"cured", {}}, {}}};
+    report.study.methods  = {{{"locked", {}}, Runner::points, {}},
+                             {{"cured", {}}, Runner::points, {}}};
     for (const auto &[method, cost, error] : method_cost_error)
       {
         StudyRow row;
