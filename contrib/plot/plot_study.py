@@ -95,9 +95,11 @@ def draw_panel(axis, rows, measure, meta):
         style = {"color": COLOURS[index % len(COLOURS)],
                  "marker": MARKERS[index % len(MARKERS)], "markersize": 4,
                  "linewidth": 1}
-        # where a formula is drawn, the measured values stand alone
-        if method in meta["closed forms"]:
-            style["linestyle"] = "none"
+        # where formulas are drawn, measured values stand alone, and can be
+        # told apart where they coincide
+        if meta["closed forms"]:
+            style.update(linestyle="none", fillstyle="none",
+                         markersize=4 + 2 * index)
         draw_line(axis, own, measure, meta, style)
         draw_failed(axis, own, meta, style["color"])
     draw_closed_forms(axis, methods, meta)

@@ -117,7 +117,7 @@ namespace limber
             }
           smallest = std::min(smallest, volume[p]);
           seen.kinetic_energy += 0.5 * points.mass[p] * squared;
-          give_to_nodes(points, p, cell, xi, seen);
+          give_to_nodes<dim>(points, p, cell, xi, seen);
 
           CellSymptoms<dim> &sums     = seen.cells.back()[cell];
           const double       pressure = points.pressure[p] / volume[p];
@@ -341,24 +341,28 @@ namespace limber
 
 
 
-    /** USL: C < sqrt(2 xi) for a cell filled to xi (doc/theory). */
+    /**
+     * USL needs C < sqrt(2 xi) where a cell at the rim of a body is filled to
+     * xi; in full cells it holds to 0.7. Points that cross make every xi, so
+     * what is seen now need not be what began it.
+     */
     Diagnosis
     find_cut_cell(const Symptoms     &symptoms,
                   const BodySymptoms &body,
                   const Method       &method)
     {
-      const double limit = std::sqrt(2 * std::max(0., body.filling));
-      if (method.order != StressUpdateOrder::last ||
-          symptoms.courant_number <= limit)
+      const double courant_number = symptoms.courant_number;
+      if (method.order != StressUpdateOrder::last || courant_number > 0.7)
         return {};
       return {"small cut cell",
-              "the points of body '" + body.body + "' reach only " +
-                brief(body.filling) +
-                " edges into a cell at its rim; with the stress update 'last' "
-                "the Courant number must stay below " +
-                brief(limit) + " there, and is " +
-                brief(symptoms.courant_number) +
-                ". Set 'Method/Stress update = last, remapped'."};
+              "with the stress update 'last' a Courant number of " +
+                brief(courant_number) +
+                " is unstable in a cell at the rim of a body that points fill "
+                "to less than " +
+                brief(0.5 * courant_number * courant_number) +
+                " edges (now the emptiest one of body '" + body.body +
+                "' is filled to " + brief(2 * body.filling) +
+                "). Set 'Method/Stress update = auto'."};
     }
 
 

@@ -24,9 +24,11 @@ namespace limber
   std::string
   to_json(const Summary &summary)
   {
-    json::Members verbs;
+    json::Members verbs, memory;
     for (const auto &[name, share] : summary.verbs)
       verbs.emplace_back(name, json::number(share));
+    for (const auto &[name, share] : summary.memory)
+      memory.emplace_back(name, json::number(share));
     std::vector<json::Value> checks, warnings;
     for (const CheckResult &check : summary.checks)
       checks.push_back(check_to_json(check));
@@ -51,6 +53,7 @@ namespace limber
               {"energy_drift", json::number(summary.energy_drift)},
               {"momentum_error", json::number(summary.momentum_error)},
               {"verbs", json::object(verbs)},
+              {"memory", json::object(memory)},
               {"checks", json::array(checks)},
               {"warnings", json::array(warnings)}})
              .text +

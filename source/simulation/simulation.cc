@@ -4,7 +4,6 @@
 #include <limber/simulation/simulation.h>
 
 #include <malloc.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -498,9 +497,15 @@ namespace limber
     summary.ns_per_point_step =
       1e9 * computing / std::max(1ul, points_and_steps);
 
-    rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    summary.memory_bytes    = sum(1024. * usage.ru_maxrss, communicator);
+    summary.memory_bytes = sum(largest_memory(), communicator);
+    const auto share     = [&](const double bytes) {
+      return sum(bytes, communicator) / summary.memory_bytes;
+    };
+    summary.memory          = {{"program", share(memory_of_program)},
+                               {"grid", share(memory_with_grid - memory_of_program)},
+                               {"points", share(memory_with_points - memory_with_grid)},
+                               {"nodes and buffers",
+                                share(largest_memory() - memory_with_points)}};
     summary.bytes_per_point = summary.memory_bytes / n_points_at_start;
     summary.energy_drift    = totals.energy_drift;
     summary.momentum_error  = totals.momentum_error;

@@ -31,6 +31,8 @@ namespace limber
     double        bytes_per_point   = 0;
     double        energy_drift      = 0;
     double        momentum_error    = 0;
+    // Share of the largest memory that each part took when it was built
+    std::vector<std::pair<std::string, double>> memory;
     // Share of the time that each verb of the step took
     std::vector<std::pair<std::string, double>> verbs;
     std::vector<CheckResult>                    checks;
