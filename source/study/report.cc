@@ -337,7 +337,8 @@ namespace limber
 
 
 
-    double
+    /** In words; method -1: of all. */
+    std::string
     smallest_error(const StudyReport &report,
                    const std::size_t  measure,
                    const int          method)
@@ -347,7 +348,10 @@ namespace limber
         if (has_error(row, measure) &&
             (method < 0 || row.variant.method == std::size_t(method)))
           result = std::min(result, row.measured[measure].error);
-      return result;
+      std::ostringstream text;
+      text.precision(3);
+      text << "the smallest error is " << result;
+      return std::isfinite(result) ? text.str() : "none has finished";
     }
   } // namespace
 
@@ -404,8 +408,8 @@ namespace limber
           const int best = cheapest(report, m, level, -1);
           if (best < 0)
             {
-              text << "reached by no variant; the smallest error is "
-                   << smallest_error(report, m, -1) << "\n";
+              text << "reached by no variant; " << smallest_error(report, m, -1)
+                   << "\n";
               continue;
             }
           const StudyRow &winner = report.rows[best];
@@ -420,7 +424,7 @@ namespace limber
               text << "  " << study.methods[method].choice.label << ": ";
               const int own = cheapest(report, m, level, int(method));
               if (own < 0)
-                text << "not reached, smallest error "
+                text << "not reached, "
                      << smallest_error(report, m, int(method)) << "\n";
               else
                 text << cost_of(report, report.rows[own]) / cost

@@ -124,8 +124,7 @@ TEST(StudyFile, ShortVersion)
 
 TEST(StudyFile, CommandLineCounts)
 {
-  const StudyFile study =
-    read(good, {"Methods=locked", "Directory=elsewhere", "Cost=steps"});
+  const StudyFile study = read(good, {"Directory=elsewhere", "Cost=steps"});
   EXPECT_EQ(study.directory, "elsewhere");
   EXPECT_EQ(study.cost, Cost::steps);
 }
@@ -151,7 +150,7 @@ TEST(StudyFile, WrongInputIsRefused)
           "is no number",
           false);
   refused("set With = cells", "set With = cels", "Did you mean 'cells'?");
-  refused("Horizontal axis = cells", "Horizontal axis = cel", "'cells'");
+  refused("Horizontal axis = cells", "Horizontal axis = cell", "'cells'");
   refused("Reference = 1", "Reference = 0", "Set 'Scale'");
   refused("Reduction = last over first", "Reduction = last", "");
   refused("Source = column", "Source = check", "brings its own");
