@@ -209,10 +209,11 @@ namespace limber
              "Body '" + body.name + "': " + std::to_string(most) +
                " points per cell edge; for an error of " + percent(error) +
                ", " + std::to_string(enough) +
-               (fluid ? " do in liquids (the front of the dam break moves by "
-                        "1 to 2 %, the tank at rest needs no more)" :
-                        " do in solids (frequencies of the cantilever move by "
-                        "less than 0.5 %)") +
+               (fluid ?
+                  " do in liquids (the front of the dam break moves by "
+                  "1.2 %, and the tank at rest stays still)" :
+                  " do in solids (the frequency of the cantilever four cells "
+                  "deep moves by 0.4 %)") +
                ", unless the material is stretched so far that its points come "
                "to lie a cell apart. Set 'Body " +
                body.name + "/Points per cell edge=" + std::to_string(enough) +

@@ -43,21 +43,38 @@ namespace limber
 
 
 
+    /** As typed, without what says where the results are, or where from. */
+    std::string
+    command_of(const int argc, const char *const *argv)
+    {
+      std::string command = "limber";
+      for (int i = 1; i < argc; ++i)
+        {
+          const std::string word = argv[i];
+          if (word == "--output-directory")
+            ++i;
+          else if (word != "--resume" && word != "Replace=true" &&
+                   word.compare(0, 19, "--output-directory=") != 0 &&
+                   !(word == "--set" && i + 1 < argc &&
+                     argv[i + 1] == std::string("Replace=true")))
+            command += " " + (word.find_first_of(" |;'") == std::string::npos ?
+                                word :
+                                "\"" + word + "\"");
+        }
+      return command;
+    }
+
+
+
     StudyWords
     parse(const int argc, const char *const *argv)
     {
       StudyWords                result;
       std::vector<const char *> rest = {argv[0]};
-      result.call.command            = "limber";
-      for (int i = 1; i < argc; ++i)
+      result.call.command            = command_of(argc, argv);
+      for (int i = 2; i < argc; ++i)
         {
           const std::string word = argv[i];
-          result.call.command +=
-            " " + (word.find_first_of(" |;'") == std::string::npos ?
-                     word :
-                     "\"" + word + "\"");
-          if (i == 1)
-            continue;
           if (word == "--short")
             result.is_short = true;
           else if (word.compare(0, 12, "--for-error=") == 0)
@@ -68,7 +85,6 @@ namespace limber
                 throw InputError("The option '--for-error' at the end of the "
                                  "command line lacks its value. Write "
                                  "'--for-error 0.01', for instance.");
-              result.call.command += std::string(" ") + argv[i + 1];
               result.call.error_levels.push_back(error_level(argv[++i]));
             }
           else

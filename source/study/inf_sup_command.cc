@@ -209,7 +209,10 @@ square, no velocity on its boundary.
       }
     std::string command = "limber";
     for (int i = 1; i < argc; ++i)
-      command += std::string(" ") + argv[i];
+      if (argv[i] == std::string("--output-directory"))
+        ++i;
+      else
+        command += std::string(" ") + argv[i];
     StudyReport report = report_frame(call, command);
 
     std::cout
