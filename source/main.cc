@@ -8,6 +8,7 @@
 #include <limber/simulation/command_line.h>
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
+#include <limber/study/commands.h>
 
 #include <iostream>
 #include <sstream>
@@ -103,6 +104,18 @@ namespace
 int
 main(int argc, char *argv[])
 {
+  // Before MPI: the runs of a study are processes with an MPI of their own.
+  if (is_study_command(argc, argv))
+    try
+      {
+        return run_study_command(argc, argv);
+      }
+    catch (const Failure &failure)
+      {
+        std::cerr << "Error: " << failure.what() << std::endl;
+        return int(failure.code);
+      }
+
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;

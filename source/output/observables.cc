@@ -24,6 +24,7 @@ namespace limber
           case ObservableKind::position:
           case ObservableKind::stress:
           case ObservableKind::pressure:
+          case ObservableKind::volume_ratio:
             return true;
           default:
             return false;
@@ -53,6 +54,8 @@ namespace limber
             return "J";
           case ObservableKind::momentum:
             return "kg m/s";
+          case ObservableKind::volume_ratio:
+            return "";
           case ObservableKind::frequency:
             return "Hz";
           case ObservableKind::reaction_force:
@@ -141,7 +144,9 @@ namespace limber
     for (unsigned int i = 0; i < problem.observables.size(); ++i)
       {
         const ObservableKind kind = problem.observables[i].kind;
-        if (kind == ObservableKind::stress || kind == ObservableKind::pressure)
+        if (kind == ObservableKind::stress ||
+            kind == ObservableKind::pressure ||
+            kind == ObservableKind::volume_ratio)
           with_stress[memory.tracked_of[i]] = true;
         has_extremes |= kind == ObservableKind::extreme_coordinate;
       }
@@ -252,6 +257,8 @@ namespace limber
           return point.stress[axis][observable.second_axis];
         case ObservableKind::pressure:
           return point.pressure;
+        case ObservableKind::volume_ratio:
+          return point.volume_ratio;
         case ObservableKind::kinetic_energy:
           return body.kinetic_energy;
         case ObservableKind::strain_energy:

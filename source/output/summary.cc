@@ -24,9 +24,11 @@ namespace limber
   std::string
   to_json(const Summary &summary)
   {
-    json::Members verbs;
+    json::Members verbs, memory;
     for (const auto &[name, share] : summary.verbs)
       verbs.emplace_back(name, json::number(share));
+    for (const auto &[name, share] : summary.memory)
+      memory.emplace_back(name, json::number(share));
     std::vector<json::Value> checks, warnings;
     for (const CheckResult &check : summary.checks)
       checks.push_back(check_to_json(check));
@@ -36,6 +38,8 @@ namespace limber
     return json::object(
              {{"verdict", json::string(summary.verdict)},
               {"message", json::string(summary.message)},
+              {"failure", json::string(summary.failure)},
+              {"suspected", json::string(summary.suspected)},
               {"steps", json::integer(summary.steps)},
               {"points", json::integer(summary.points)},
               {"lost_points", json::integer(summary.lost_points)},
@@ -44,10 +48,12 @@ namespace limber
               {"wall_seconds", json::number(summary.wall_seconds)},
               {"cpu_seconds", json::number(summary.cpu_seconds)},
               {"ns_per_point_step", json::number(summary.ns_per_point_step)},
+              {"memory_bytes", json::number(summary.memory_bytes)},
               {"bytes_per_point", json::number(summary.bytes_per_point)},
               {"energy_drift", json::number(summary.energy_drift)},
               {"momentum_error", json::number(summary.momentum_error)},
               {"verbs", json::object(verbs)},
+              {"memory", json::object(memory)},
               {"checks", json::array(checks)},
               {"warnings", json::array(warnings)}})
              .text +

@@ -16,9 +16,10 @@ namespace limber
       static constexpr unsigned int found    = 0;
       static constexpr unsigned int position = 1;
       static constexpr unsigned int velocity = 1 + dim;
-      static constexpr unsigned int pressure = 1 + 2 * dim;
-      static constexpr unsigned int deviator = 2 + 2 * dim;
-      static constexpr unsigned int stride   = 8 + 2 * dim;
+      static constexpr unsigned int volume   = 1 + 2 * dim;
+      static constexpr unsigned int pressure = 2 + 2 * dim;
+      static constexpr unsigned int deviator = 3 + 2 * dim;
+      static constexpr unsigned int stride   = 9 + 2 * dim;
     };
 
 
@@ -169,6 +170,7 @@ namespace limber
         if (!with_stress[t])
           continue;
         const PointStress<dim> &stress = stresses.at(tracked[t].body);
+        record[T::volume]              = stress.volume_ratio(index[t]);
         record[T::pressure]            = stress.pressure(index[t]);
         const auto s                   = stress.deviator(index[t]);
         std::copy(s.begin_raw(), s.end_raw(), record + T::deviator);
@@ -224,6 +226,7 @@ namespace limber
             samples[t].position[d] = record[T::position + d];
             samples[t].velocity[d] = record[T::velocity + d];
           }
+        samples[t].volume_ratio = record[T::volume];
         samples[t].pressure = record[T::pressure];
         dealii::SymmetricTensor<2, 3> s;
         std::copy_n(record + T::deviator, 6, s.begin_raw());

@@ -31,6 +31,7 @@ namespace limber
         {"velocity", K::velocity, component, body},
         {"stress", K::stress, component, body},
         {"pressure", K::pressure, at_point, body},
+        {"volume ratio", K::volume_ratio, at_point, body},
         {"position", K::position, component, body},
         {"extreme coordinate",
          K::extreme_coordinate,

@@ -48,8 +48,8 @@ namespace limber
     {
       std::vector<std::string> result;
       for (const auto &[name, value] : parameters.entries())
-        if (name != "End time" && name.rfind("Output/", 0) != 0 &&
-            name.rfind("Checkpoint/", 0) != 0)
+        if (name != "End time" && name != "End step" &&
+            name.rfind("Output/", 0) != 0 && name.rfind("Checkpoint/", 0) != 0)
           result.push_back(name + " = " + value);
       return result;
     }
@@ -72,6 +72,7 @@ namespace limber
     // Each part may ask those before it.
     Problem<dim> problem;
     problem.end_time = root.number("End time");
+    problem.end_step = static_cast<unsigned long>(root.number("End step"));
     problem.grid     = read_grid<dim>(root.subsection("Grid"));
     read_boundaries(root.subsection("Boundaries"), problem);
     read_volume_loads(loads, problem);

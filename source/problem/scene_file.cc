@@ -113,6 +113,11 @@ namespace limber
                          "1",
                          admissible::positive_number("1"),
                          "Time at which the run ends, s; it begins at 0.");
+      parameters.declare("End step",
+                         "0",
+                         admissible::non_negative_integer("1000"),
+                         "Number of steps after which the run ends if the time "
+                         "has not come; 0: the time alone counts.");
       declare_constants(parameters);
       parameters.declare_list("Bodies",
                               "",

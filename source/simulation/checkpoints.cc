@@ -283,7 +283,7 @@ namespace limber
             throw InputError(
               "The scene differs from that of the checkpoint: it has " +
               in_quotes(is) + ", the checkpoint " + in_quotes(was) +
-              ". Usually the scene was edited in between. Only 'End time', "
+              ". Usually the scene was edited in between. Only 'End time', 'End step', "
               "'Output' and 'Checkpoint' may change when a run is resumed; "
               "set the entry back, or run without --resume.");
         }

@@ -4,7 +4,6 @@
 #include <limber/simulation/simulation.h>
 
 #include <malloc.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -22,8 +21,21 @@ namespace limber
     // partitioned anew; that costs about as much as 200 steps.
     constexpr double admitted_imbalance = 1.2;
 
+    // A step shorter than this share of the first one will never arrive.
+    constexpr double smallest_step = 1e-6;
+
     // Times closer than this, relative to the step, are one time.
     constexpr double same_time = 1e-9;
+
+
+
+    std::string
+    in_words(const Diagnosis &diagnosis)
+    {
+      return diagnosis.mode.empty() ?
+               "" :
+               "Suspected: " + diagnosis.mode + ", for " + diagnosis.text + " ";
+    }
   } // namespace
 
 
@@ -93,7 +105,7 @@ namespace limber
       }
     catch (const ComputationError &failure)
       {
-        finish_failed(failure.what());
+        finish_failed(failure);
       }
 
     if (stop != 0)
@@ -106,7 +118,15 @@ namespace limber
       std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
         return check.passed;
       });
-    finish(passed ? "finished" : "check missed", "");
+    if (passed)
+      finish("finished", "", "");
+    else
+      {
+        const Diagnosis suspected = look_for_cause(/*unstable=*/false);
+        if (!suspected.mode.empty())
+          console.say(in_words(suspected));
+        finish("check missed", in_words(suspected), "", suspected.mode);
+      }
     return int(passed ? ExitCode::success : ExitCode::check_missed);
   }
 
@@ -120,11 +140,12 @@ namespace limber
       write_checkpoint();
     if (stop == wall_time_limit)
       {
-        finish("wall time", "the limit of the scene; go on with --resume");
+        finish("wall time", "the limit of the scene; go on with --resume", "");
         return int(ExitCode::stopped_by_signal) + SIGTERM;
       }
     finish("stopped",
-           "by signal " + std::to_string(stop) + "; go on with --resume");
+           "by signal " + std::to_string(stop) + "; go on with --resume",
+           "");
     return int(ExitCode::stopped_by_signal) + stop;
   }
 
@@ -132,11 +153,29 @@ namespace limber
 
   template <int dim>
   void
-  Simulation<dim>::finish_failed(const std::string &reason)
+  Simulation<dim>::finish_failed(const ComputationError &failure)
   {
-    const std::string message = reason + " " + describe_last_state();
-    finish("unstable", message);
-    throw ComputationError(message);
+    const Diagnosis   suspected = look_for_cause(/*unstable=*/true);
+    const std::string message   = std::string(failure.what()) + " " +
+                                in_words(suspected) + describe_last_state();
+    finish("unstable", message, name_of(failure.kind), suspected.mode);
+    throw ComputationError(message, failure.kind);
+  }
+
+
+
+  template <int dim>
+  Diagnosis
+  Simulation<dim>::look_for_cause(const bool unstable)
+  {
+    // The speeds of a run that has blown up say nothing about its step.
+    const Method &method = problem.method;
+    const auto    speeds = integrator.state();
+    Symptoms      symptoms =
+      find_symptoms(state, speeds.wave_speed + speeds.point_speed);
+    if (method.time_step == 0)
+      symptoms.courant_number = method.courant_number;
+    return diagnose(symptoms, problem, unstable);
   }
 
 
@@ -178,7 +217,9 @@ namespace limber
         record();
         write_pictures();
       }
-    while (state.time < problem.end_time)
+    const double first_step = integrator.longest_step();
+    while (state.time < problem.end_time &&
+           (problem.end_step == 0 || state.step < problem.end_step))
       {
         look_at_the_clock();
         if (stop != 0)
@@ -191,6 +232,8 @@ namespace limber
         if (integrator.reorganise() &&
             integrator.imbalance() > admitted_imbalance)
           rebalance();
+        if (!(integrator.longest_step() > smallest_step * first_step))
+          refuse_step(first_step);
         const double step = next_step();
         integrator.advance(state.time, step);
         state.time += step;
@@ -211,6 +254,21 @@ namespace limber
           write_pictures();
         show_progress();
       }
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::refuse_step(const double first_step) const
+  {
+    std::ostringstream text;
+    text << "The step has shrunk to " << integrator.longest_step()
+         << " s, from " << first_step << " s at first, at time " << state.time
+         << " s. Usually a point is compressed to nothing, so that its wave "
+            "speed grows without bound. Look at 'smallest volume ratio' in the "
+            "statistics; refine 'Grid/Cells' or load more slowly.";
+    throw ComputationError(text.str(), FailureKind::step_too_small);
   }
 
 
@@ -246,6 +304,7 @@ namespace limber
   Simulation<dim>::row_is_due() const
   {
     return state.step % problem.output.statistics_interval == 0 ||
+           state.step == problem.end_step ||
            std::find(targets.begin(), targets.end(), state.time) !=
              targets.end();
   }
@@ -262,6 +321,18 @@ namespace limber
     if (statistics)
       statistics->add(statistics_row(state, totals, observed));
 
+    if (totals.smallest_volume <= 0)
+      {
+        std::ostringstream text;
+        text << "A point has turned inside out: the smallest volume ratio is "
+             << totals.smallest_volume << ", at time " << state.time
+             << " s with step " << state.step_size
+             << " s. Usually the material is compressed or sheared by more "
+                "than the grid resolves, or the step is too long. Refine "
+                "'Grid/Cells', load more slowly, or set Method/Courant number "
+                "to 0.4 or below.";
+        throw ComputationError(text.str(), FailureKind::inverted_point);
+      }
     if (!(std::abs(totals.energy_drift) < problem.method.energy_growth_limit))
       {
         std::ostringstream text;
@@ -275,7 +346,10 @@ namespace limber
                 "material too stiff for it. Set Method/Courant number to 0.4 "
                 "or below; 'Energy growth limit' is "
              << problem.method.energy_growth_limit << ".";
-        throw ComputationError(text.str());
+        throw ComputationError(text.str(),
+                               std::isfinite(totals.energy_drift) ?
+                                 FailureKind::growing_energy :
+                                 FailureKind::not_finite);
       }
   }
 
@@ -336,7 +410,7 @@ namespace limber
                 "in 'Boundaries' with slip, or raise 'Method/Lost points "
                 "limit' above "
              << double(lost) / n_points_at_start << ".";
-        throw ComputationError(text.str());
+        throw ComputationError(text.str(), FailureKind::lost_points);
       }
   }
 
@@ -423,13 +497,19 @@ namespace limber
     summary.ns_per_point_step =
       1e9 * computing / std::max(1ul, points_and_steps);
 
-    rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    summary.bytes_per_point =
-      sum(1024. * usage.ru_maxrss, communicator) / n_points_at_start;
-    summary.energy_drift   = totals.energy_drift;
-    summary.momentum_error = totals.momentum_error;
-    summary.lost_points    = sum(state.ledger.lost_points, communicator);
+    summary.memory_bytes = sum(largest_memory(), communicator);
+    const auto share     = [&](const double bytes) {
+      return sum(bytes, communicator) / summary.memory_bytes;
+    };
+    summary.memory          = {{"program", share(memory_of_program)},
+                               {"grid", share(memory_with_grid - memory_of_program)},
+                               {"points", share(memory_with_points - memory_with_grid)},
+                               {"nodes and buffers",
+                                share(largest_memory() - memory_with_points)}};
+    summary.bytes_per_point = summary.memory_bytes / n_points_at_start;
+    summary.energy_drift    = totals.energy_drift;
+    summary.momentum_error  = totals.momentum_error;
+    summary.lost_points     = sum(state.ledger.lost_points, communicator);
 
     auto   verbs = integrator.verb_seconds;
     double all   = 0;
@@ -450,13 +530,17 @@ namespace limber
   template <int dim>
   void
   Simulation<dim>::finish(const std::string &verdict,
-                          const std::string &message)
+                          const std::string &message,
+                          const std::string &failure,
+                          const std::string &suspected)
   {
     if (statistics)
       statistics->flush();
-    Summary summary = summarize();
-    summary.verdict = verdict;
-    summary.message = message;
+    Summary summary   = summarize();
+    summary.verdict   = verdict;
+    summary.message   = message;
+    summary.failure   = failure;
+    summary.suspected = suspected;
     if (statistics)
       write_summary(problem.output.directory, summary);
     show_summary(summary);

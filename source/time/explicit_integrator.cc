@@ -513,7 +513,9 @@ namespace limber
             "stiffness, or 'Stress update' is 'last' without re-mapping. Set "
             "Method/Courant number to 0.4 or below, or Method/Time step to "
          << 0.4 * grid.smallest_edge / (wave_speed + point_speed) << " s.";
-    throw ComputationError(text.str());
+    throw ComputationError(text.str(),
+                           cells >= 1e300 ? FailureKind::not_finite :
+                                            FailureKind::growing_energy);
   }
 
 

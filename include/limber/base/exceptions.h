@@ -52,13 +52,52 @@ namespace limber
 
 
 
+  /** In which way a computation has failed, for scripts. */
+  enum class FailureKind
+  {
+    other,
+    growing_energy, // or nodes faster than the grid can follow
+    not_finite,
+    inverted_point, // turned inside out: J <= 0
+    lost_points,
+    step_too_small
+  };
+
+  /** "growing energy", ...; "failed" for other ones. */
+  inline const char *
+  name_of(const FailureKind kind)
+  {
+    switch (kind)
+      {
+        case FailureKind::growing_energy:
+          return "growing energy";
+        case FailureKind::not_finite:
+          return "not finite";
+        case FailureKind::inverted_point:
+          return "inverted point";
+        case FailureKind::lost_points:
+          return "lost points";
+        case FailureKind::step_too_small:
+          return "step too small";
+        case FailureKind::other:
+          break;
+      }
+    return "failed";
+  }
+
+
+
   /** The run became unstable, not finite, or lost too many points. */
   class ComputationError : public Failure
   {
   public:
-    explicit ComputationError(const std::string &message)
+    explicit ComputationError(const std::string &message,
+                              const FailureKind  kind = FailureKind::other)
       : Failure(ExitCode::computation_failed, message)
+      , kind(kind)
     {}
+
+    const FailureKind kind;
   };
 
 

@@ -14,8 +14,11 @@ namespace limber
   struct Summary
   {
     // "finished", "check missed", "unstable", "stopped", "wall time"
-    std::string   verdict;
-    std::string   message; // why, where it did not finish
+    std::string verdict;
+    std::string message; // why, where it did not finish
+    // of an unstable run, in a word or two: name_of(FailureKind)
+    std::string failure;
+    std::string suspected; // what it has most likely fallen into, see Diagnosis
     unsigned long steps             = 0;
     unsigned long points            = 0; // at the end
     unsigned long lost_points       = 0;
@@ -24,9 +27,12 @@ namespace limber
     double        wall_seconds      = 0;
     double        cpu_seconds       = 0; // sum over ranks
     double        ns_per_point_step = 0; // wall time of a core, output excluded
+    double        memory_bytes      = 0; // largest, sum over ranks
     double        bytes_per_point   = 0;
     double        energy_drift      = 0;
     double        momentum_error    = 0;
+    // Share of the largest memory that each part took when it was built
+    std::vector<std::pair<std::string, double>> memory;
     // Share of the time that each verb of the step took
     std::vector<std::pair<std::string, double>> verbs;
     std::vector<CheckResult>                    checks;

@@ -28,8 +28,9 @@ namespace limber
   struct PointSample
   {
     bool                          lost = true;
-    dealii::Point<dim>            position;     // m
-    dealii::Tensor<1, dim>        velocity;     // m/s
+    dealii::Point<dim>            position;         // m
+    dealii::Tensor<1, dim>        velocity;         // m/s
+    double                        volume_ratio = 1; // J
     double                        pressure = 0; // Cauchy, as PointStress, Pa
     dealii::SymmetricTensor<2, 3> stress;       // Cauchy, Pa
   };

@@ -176,6 +176,7 @@ namespace limber
     velocity,
     stress,
     pressure,
+    volume_ratio,
     position,
     extreme_coordinate,
     kinetic_energy,
@@ -218,6 +219,7 @@ namespace limber
   struct Problem
   {
     double                         end_time = 1; // s
+    unsigned long                  end_step = 0; // 0: the time alone counts
     std::vector<Body<dim>>         bodies;
     GridDescription<dim>           grid;
     std::array<Side<dim>, 2 * dim> sides;

@@ -4,7 +4,9 @@
 
 #include <limber/base/console.h>
 #include <limber/base/exceptions.h>
+#include <limber/base/memory.h>
 #include <limber/output/checks.h>
+#include <limber/output/diagnosis.h>
 #include <limber/output/observables.h>
 #include <limber/output/statistics.h>
 #include <limber/output/summary.h>
@@ -58,11 +60,15 @@ namespace limber
     int
     finish_stopped();
     [[noreturn]] void
-    finish_failed(const std::string &reason);
+    finish_failed(const ComputationError &failure);
     std::string
     describe_last_state();
+    Diagnosis
+    look_for_cause(bool unstable);
     double
     next_step() const;
+    [[noreturn]] void
+    refuse_step(double first_step) const;
     void
     record();
     void
@@ -76,7 +82,10 @@ namespace limber
     void
     show_progress();
     void
-    finish(const std::string &verdict, const std::string &message);
+    finish(const std::string &verdict,
+           const std::string &message,
+           const std::string &failure,
+           const std::string &suspected = "");
     Summary
     summarize() const;
     void
@@ -86,20 +95,24 @@ namespace limber
     void
     look_at_the_clock();
 
-    const Problem<dim>                             &problem;
-    Console                                        &console;
-    const MPI_Comm                                  communicator;
-    BackgroundGrid<dim>                             grid;
+    const Problem<dim> &problem;
+    Console            &console;
+    const MPI_Comm      communicator;
+    // Memory in use before and after parts are built, in their order, bytes
+    const double        memory_of_program = resident_memory();
+    BackgroundGrid<dim> grid;
+    const double        memory_with_grid = resident_memory();
     std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
-    NodalFields<dim>                                nodes;
-    State<dim>                                      state;
-    ExplicitIntegrator<dim>                         integrator;
-    Balance<dim>                                    balance_of_start;
-    Observables<dim>                                observables;
-    Checks                                          checks;
-    Writer<dim>                                     writer;
-    Checkpoints<dim>                                checkpoints;
-    std::optional<Statistics>                       statistics;
+    const double              memory_with_points = resident_memory();
+    NodalFields<dim>          nodes;
+    State<dim>                state;
+    ExplicitIntegrator<dim>   integrator;
+    Balance<dim>              balance_of_start;
+    Observables<dim>          observables;
+    Checks                    checks;
+    Writer<dim>               writer;
+    Checkpoints<dim>          checkpoints;
+    std::optional<Statistics> statistics;
 
     Totals<dim>         totals; // of the last row
     const unsigned long n_points_at_start;

@@ -1,0 +1,150 @@
+#!/usr/bin/env python3
+"""Draws the chart of a study: study.svg and study.png.
+
+    plot_study.py <folder of the study>
+
+Reads study.csv and study.json, as `limber study` and `limber stability` write
+them. One panel for each measure and one line for each method; on charts of
+error against cost the Pareto front is ringed, variants that have failed stand
+as crosses at the upper edge, each with what went wrong. On maps of stability an
+open triangle means that no limit was found below it.
+"""
+
+import argparse
+import csv
+import json
+import math
+import textwrap
+from pathlib import Path
+
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+COLOURS = plt.rcParams["axes.prop_cycle"].by_key()["color"]
+MARKERS = "osD^v<>pPXh8"
+
+
+def number(text):
+    return float(text) if text not in ("", "nan") else math.nan
+
+
+def methods_of(rows):
+    return list(dict.fromkeys(row["method"] for row in rows))
+
+
+def label_of(row, variations):
+    return ", ".join(row[name] for name in variations)
+
+
+def draw_line(axis, rows, measure, meta, style):
+    """One method: its points, joined in the order of the horizontal axis."""
+    vertical = measure + " error"
+    points = [(number(row[meta["horizontal"]]), number(row[vertical]), row)
+              for row in rows if row["outcome"] == "finished"]
+    points = [p for p in points if np.isfinite(p[0]) and np.isfinite(p[1])]
+    points.sort(key=lambda p: p[0])
+    if points:
+        x, y, _ = zip(*points)
+        axis.plot(x, y, label=rows[0]["method"], **style)
+    for x, y, row in points:
+        if row["beyond"].startswith("stable up to"):  # no limit was found
+            axis.plot(x, y, "^", markersize=9, fillstyle="none",
+                      color=style["color"])
+        if meta["against cost"]:
+            axis.annotate(label_of(row, meta["variations"]), (x, y), fontsize=6,
+                          textcoords="offset points", xytext=(4, 3),
+                          color=style["color"])
+            if row[measure + " Pareto"] == "1":
+                axis.plot(x, y, "o", markersize=11, fillstyle="none",
+                          color="black", markeredgewidth=0.8)
+    return bool(points)
+
+
+def draw_failed(axis, rows, meta, colour):
+    """Crosses at the upper edge; a failed run may have no cost at all."""
+    transform = axis.get_xaxis_transform()
+    for row in rows:
+        if row["outcome"] == "finished":
+            continue
+        x = number(row[meta["horizontal"]])
+        if np.isfinite(x):
+            axis.plot(x, 0.97, "x", color=colour, transform=transform,
+                      clip_on=False)
+            axis.annotate(f"{label_of(row, meta['variations'])}: "
+                          f"{row['outcome']}", (x, 0.97), fontsize=6,
+                          xycoords=transform, rotation=90, color=colour,
+                          textcoords="offset points", xytext=(3, -3),
+                          verticalalignment="top")
+
+
+def draw_closed_forms(axis, methods, meta):
+    for index, method in enumerate(methods):
+        line = meta["closed forms"].get(method)
+        if line:
+            y = [math.nan if v is None else v for v in line["y"]]
+            axis.plot(line["x"], y, "--", linewidth=1,
+                      color=COLOURS[index % len(COLOURS)])
+
+
+def draw_panel(axis, rows, measure, meta):
+    methods = methods_of(rows)
+    for index, method in enumerate(methods):
+        own = [row for row in rows if row["method"] == method]
+        style = {"color": COLOURS[index % len(COLOURS)],
+                 "marker": MARKERS[index % len(MARKERS)], "markersize": 4,
+                 "linewidth": 1}
+        # where formulas are drawn, measured values stand alone, and can be
+        # told apart where they coincide
+        if meta["closed forms"]:
+            style.update(linestyle="none", fillstyle="none",
+                         markersize=4 + 2 * index)
+        draw_line(axis, own, measure, meta, style)
+        draw_failed(axis, own, meta, style["color"])
+    draw_closed_forms(axis, methods, meta)
+    if meta["logarithmic"] in ("both", "horizontal"):
+        axis.set_xscale("log")
+    if meta["logarithmic"] in ("both", "vertical"):
+        axis.set_yscale("log")
+    if meta["against cost"]:
+        for level in meta["error levels"]:
+            axis.axhline(level, color="grey", linewidth=0.5, linestyle=":")
+    axis.set_xlabel(meta["horizontal label"])
+    axis.set_ylabel(meta["vertical label"] or
+                    ("error: " + measure if meta["against cost"] else measure))
+    lower, upper = axis.get_ylim()
+    if axis.get_yscale() == "log" and lower < 1e-10 * upper:
+        axis.set_ylim(bottom=1e-10 * upper)  # what is zero up to round-off
+    axis.grid(alpha=0.25)
+    if axis.get_legend_handles_labels()[0]:
+        axis.legend(fontsize=7)
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    folder = parser.parse_args().folder
+    with open(folder / "study.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    meta = json.loads((folder / "study.json").read_text())
+
+    measures = meta["measures"]
+    figure, axes = plt.subplots(1, len(measures), squeeze=False,
+                                figsize=(1 + 6 * len(measures), 5.2),
+                                layout="constrained")
+    for axis, measure in zip(axes[0], measures):
+        draw_panel(axis, rows, measure, meta)
+        if len(measures) > 1:
+            axis.set_title(measure, fontsize=9)
+    figure.suptitle(meta["title"])
+    width = 100 * len(measures)
+    figure.supxlabel("\n".join(textwrap.wrap(meta["caption"], width)),
+                     fontsize=6, color="grey")
+    for ending in ("svg", "png"):
+        figure.savefig(folder / f"study.{ending}", dpi=150)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/run_info.h>
+#include <limber/base/text.h>
+#include <limber/output/files.h>
+#include <limber/simulation/signals.h>
+#include <limber/study/study_runs.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    /** The first line of NAME.done. */
+    std::string
+    first_line(const ChildEnd &end)
+    {
+      std::ostringstream text;
+      text << "ended " << end.exit_code << ' ' << end.killed << ' '
+           << end.timed_out << ' ' << end.seconds << '\n';
+      return text.str();
+    }
+
+
+
+    /** How a former run ended, if it depended on the same things. */
+    std::optional<ChildEnd>
+    former_end(const std::string &path, const std::string &dependencies)
+    {
+      std::ifstream file(path);
+      std::string   line, word;
+      if (!std::getline(file, line))
+        return std::nullopt;
+      std::istringstream words(line);
+      ChildEnd           end;
+      if (!(words >> word >> end.exit_code >> end.killed >> end.timed_out >>
+            end.seconds))
+        return std::nullopt;
+      std::ostringstream rest;
+      rest << file.rdbuf();
+      return rest.str() == dependencies ? std::optional<ChildEnd>(end) :
+                                          std::nullopt;
+    }
+
+
+
+    std::string
+    duration(const double seconds)
+    {
+      std::ostringstream text;
+      if (seconds < 100)
+        text << int(seconds + 0.5) << " s";
+      else
+        text << int(seconds / 60 + 0.5) << " min";
+      return text.str();
+    }
+  } // namespace
+
+
+
+  StudyRuns::StudyRuns(const StudyFile &study,
+                       const StudyCall &call,
+                       Console         &console)
+    : study(study)
+    , call(call)
+    , console(console)
+    , all(expand(study))
+  {
+    console.say(study.title + ": " + std::to_string(all.size()) +
+                " variants of " + study.scene);
+    if (call.validate)
+      {
+        for (const Variant &variant : all)
+          console.say("  " + variant.name);
+        console.say("The study is valid.");
+        return;
+      }
+    prepare_folder();
+    catch_signals();
+  }
+
+
+
+  void
+  StudyRuns::prepare_folder()
+  {
+    namespace fs        = std::filesystem;
+    const fs::path runs = fs::path(study.directory) / "runs";
+    if (fs::exists(runs) && !call.resume && !study.replace)
+      throw InputError("The folder " + in_quotes(study.directory) +
+                       " holds a study already. Usually the same one was "
+                       "started before. Go on with it by '--resume', choose "
+                       "another '--output-directory', or overwrite it with "
+                       "--set Replace=true.");
+    std::error_code error;
+    if (!call.resume)
+      fs::remove_all(runs, error);
+    if (!error)
+      fs::create_directories(runs, error);
+    if (error)
+      throw FileError("The folder " + in_quotes(runs.string()) +
+                      " cannot be made: " + error.message() +
+                      ". Usually writing is not permitted there. Choose "
+                      "another '--output-directory'.");
+  }
+
+
+
+  std::string
+  StudyRuns::dependencies(const Variant                  &variant,
+                          const std::vector<std::string> &settings) const
+  {
+    const auto built =
+      std::filesystem::last_write_time(this_program()).time_since_epoch();
+    return "program " + run_info().revision + " " +
+           std::to_string(built.count()) + "\nscene " + study.scene +
+           (study.methods[variant.method].runner == Runner::reference ?
+              " by reference" :
+              "") +
+           "\ntime limit " + to_text(study.time_limit) + "\n" +
+           join(settings, "\n") + "\n" + variant.parameters;
+  }
+
+
+
+  std::optional<ChildEnd>
+  StudyRuns::run(const Variant                  &variant,
+                 const std::vector<std::string> &settings,
+                 const std::string              &subfolder)
+  {
+    const std::string folder =
+      variant.folder + (subfolder.empty() ? "" : "." + subfolder);
+    const Runner      runner  = study.methods[variant.method].runner;
+    const std::string done    = folder + ".done";
+    const std::string depends = dependencies(variant, settings);
+    if (call.resume)
+      if (const auto former = former_end(done, depends))
+        return former;
+
+    // Nothing of a former run may be taken for a result of this one.
+    std::filesystem::remove(done);
+    std::filesystem::remove_all(folder);
+    std::vector<std::string> command = {this_program()};
+    if (runner == Runner::reference)
+      command.push_back("reference");
+    command.push_back(study.scene);
+    for (const auto *const list : {&variant.settings, &settings})
+      for (const std::string &setting : *list)
+        command.insert(command.end(), {"--set", setting});
+    command.insert(command.end(), {"--output-directory", folder});
+
+    const ChildEnd end = run_child(command, folder + ".log", study.time_limit);
+    present += end.seconds;
+    const bool stopped =
+      caught_signal() != 0 || (!end.timed_out && end.exit_code == 128 + SIGINT);
+    if (stopped)
+      return std::nullopt;
+    write_whole_file(done, first_line(end) + depends);
+    return end;
+  }
+
+
+
+  // As long as other methods took for the same choices, else the mean.
+  double
+  StudyRuns::seconds_left() const
+  {
+    double       mean = 0, left = 0;
+    unsigned int n = 0;
+    for (const double s : seconds)
+      if (s > 0)
+        {
+          mean += s;
+          ++n;
+        }
+    mean /= n > 0 ? n : 1;
+    for (std::size_t next = seconds.size(); next < all.size(); ++next)
+      {
+        double       sum  = 0;
+        unsigned int like = 0;
+        for (std::size_t i = 0; i < seconds.size(); ++i)
+          if (seconds[i] > 0 && all[i].choices == all[next].choices)
+            {
+              sum += seconds[i];
+              ++like;
+            }
+        left += like > 0 ? sum / like : mean;
+      }
+    return left;
+  }
+
+
+
+  void
+  StudyRuns::progress(const Variant &variant, const std::string &text)
+  {
+    seconds.push_back(present);
+    std::ostringstream line;
+    line << "[" << std::setw(int(std::to_string(all.size()).size()))
+         << seconds.size() << "/" << all.size() << "] " << variant.name << ": "
+         << text << (present > 0 ? "" : " (kept)");
+    if (seconds.size() < all.size())
+      line << "; left some " << duration(seconds_left());
+    console.say(line.str());
+    present = 0;
+  }
+
+
+
+  int
+  StudyRuns::interrupted()
+  {
+    const int signal = caught_signal() != 0 ? caught_signal() : SIGINT;
+    console.say("Interrupted after " + std::to_string(seconds.size()) + " of " +
+                std::to_string(all.size()) +
+                " variants; go on with the same command and --resume.");
+    return int(ExitCode::stopped_by_signal) + signal;
+  }
+} // namespace limber

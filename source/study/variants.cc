@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_problem.h>
+#include <limber/study/variants.h>
+
+#include <cctype>
+#include <limits>
+#include <set>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    /** A name for a folder: letters, digits and '.', all else becomes '_'. */
+    std::string
+    as_folder(const std::string &name)
+    {
+      std::string result;
+      for (const char c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-')
+          result += c;
+        else if (!result.empty() && result.back() != '_')
+          result += '_';
+      return result;
+    }
+
+
+
+    void
+    append(std::vector<std::string> &to, const std::vector<std::string> &from)
+    {
+      to.insert(to.end(), from.begin(), from.end());
+    }
+
+
+
+    /** Count on as an odometer does; false when all have been seen. */
+    bool
+    next(std::vector<std::size_t>     &choices,
+         const std::vector<Variation> &variations)
+    {
+      for (std::size_t v = choices.size(); v-- > 0;)
+        {
+          if (++choices[v] < variations[v].choices.size())
+            return true;
+          choices[v] = 0;
+        }
+      return false;
+    }
+
+
+
+    Variant
+    make_variant(const StudyFile                &study,
+                 const std::size_t               method,
+                 const std::vector<std::size_t> &choices)
+    {
+      Variant       variant{method, choices, "", "", study.settings, ""};
+      const Choice &line = study.methods[method].choice;
+      variant.name       = line.label;
+      append(variant.settings, line.settings);
+      for (std::size_t v = 0; v < choices.size(); ++v)
+        {
+          const Choice &choice = study.variations[v].choices[choices[v]];
+          variant.name += ", " + choice.label;
+          append(variant.settings, choice.settings);
+        }
+      return variant;
+    }
+
+
+
+    /** What the run is going to do first, done here; the entries it uses. */
+    std::string
+    check_scene(const StudyFile &study, const Variant &variant)
+    {
+      try
+        {
+          const SceneFile scene(study.scene, variant.settings);
+          if (scene.dimension() == 2)
+            read_problem<2>(scene);
+          else
+            read_problem<3>(scene);
+          std::ostringstream text;
+          print_parameters(text, PrintStyle::prm, &scene);
+          return text.str();
+        }
+      catch (const InputError &error)
+        {
+          throw InputError("The variant " + in_quotes(variant.name) + " of " +
+                           study.path + " is refused. " + error.what());
+        }
+    }
+  } // namespace
+
+
+
+  std::vector<Variant>
+  expand(const StudyFile &study)
+  {
+    std::vector<Variant>  variants;
+    std::set<std::string> folders;
+    for (std::size_t method = 0; method < study.methods.size(); ++method)
+      {
+        std::vector<std::size_t> choices(study.variations.size(), 0);
+        do
+          {
+            Variant     variant = make_variant(study, method, choices);
+            std::string folder  = as_folder(variant.name);
+            while (!folders.insert(folder).second)
+              folder += "_";
+            variant.folder     = study.directory + "/runs/" + folder;
+            variant.parameters = check_scene(study, variant);
+            variants.push_back(variant);
+          }
+        while (next(choices, study.variations));
+      }
+    return variants;
+  }
+
+
+
+  double
+  abscissa(const StudyFile &study, const Variant &variant)
+  {
+    for (std::size_t v = 0; v < study.variations.size(); ++v)
+      if (study.variations[v].name == study.horizontal_axis)
+        return *to_number(
+          study.variations[v].choices[variant.choices[v]].label);
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+} // namespace limber

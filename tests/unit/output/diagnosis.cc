@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/diagnosis.h>
+
+#include <gtest/gtest.h>
+
+#include "sample_run.h"
+
+namespace limber::test
+{
+  namespace
+  {
+    bool
+    speaks()
+    {
+      return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+    }
+
+
+
+    template <class Pressure>
+    void
+    set_pressure(SampleRun<2> &run, const Pressure &pressure)
+    {
+      const PointView<2> points = run.points().view();
+      for (std::size_t p = 0; p < points.size; ++p)
+        points.pressure[p] =
+          pressure(points.position[0][p], points.position[1][p]);
+    }
+  } // namespace
+
+
+
+  TEST(Diagnosis, ABodyAtRestShowsNothing)
+  {
+    SampleRun<2>   run(/*projected=*/true);
+    const Symptoms seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    EXPECT_EQ(seen.unseen_energy, 0);
+    EXPECT_EQ(seen.not_finite, 0u);
+    EXPECT_NEAR(seen.bodies[0].filling, 0.5, 1e-12);
+    EXPECT_EQ(seen.bodies[0].isolated_cells, 0);
+    EXPECT_EQ(diagnose(seen, run.problem, true).mode, "");
+  }
+
+
+
+  TEST(Diagnosis, LinearPressureIsNoChequerboardAndDoesNotLock)
+  {
+    SampleRun<2> run(/*projected=*/false);
+    set_pressure(run, [](double, double y) { return 10 * (1 - y); });
+    const Symptoms seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    EXPECT_NEAR(seen.bodies[0].chequerboard, 0, 1e-3);
+    EXPECT_LT(seen.bodies[0].pressure_scatter, 0.2);
+  }
+
+
+
+  TEST(Diagnosis, PressureThatOscillatesWithinCellsIsLocking)
+  {
+    SampleRun<2> run(/*projected=*/false);
+    set_pressure(run, [](double x, double) {
+      return std::fmod(x, 0.25) < 0.125 ? 11. : -9.;
+    });
+    const Symptoms seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    EXPECT_NEAR(seen.bodies[0].pressure_scatter, 10, 0.1);
+    const Diagnosis found = diagnose(seen, run.problem, false);
+    EXPECT_EQ(found.mode, "locking");
+    EXPECT_NE(found.text.find("Locking treatment"), std::string::npos);
+  }
+
+
+
+  TEST(Diagnosis, Chequerboard)
+  {
+    SampleRun<2> run(/*projected=*/true);
+    set_pressure(run, [](double x, double y) {
+      return (int(x / 0.25) + int(y / 0.25)) % 2 == 0 ? 1. : -1.;
+    });
+    const Symptoms seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    EXPECT_NEAR(seen.bodies[0].chequerboard, 2, 1e-4);
+    EXPECT_EQ(diagnose(seen, run.problem, false).mode, "chequerboard");
+  }
+
+
+
+  TEST(Diagnosis, NullSpace)
+  {
+    SampleRun<2>       run(/*projected=*/true);
+    const PointView<2> points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.velocity[0][p] =
+        std::fmod(points.position[0][p], 0.25) < 0.125 ? 1 : -1;
+    const Symptoms seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    EXPECT_GT(seen.unseen_energy, 0.8); // all but at the free ends
+    EXPECT_EQ(diagnose(seen, run.problem, false).mode, "null space");
+  }
+
+
+
+  TEST(Diagnosis, CutCellAndCourantNumber)
+  {
+    SampleRun<2> run(/*projected=*/true);
+    Symptoms     seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    Problem<2> problem     = run.problem;
+    seen.courant_number    = 0.4;
+    seen.bodies[0].filling = 0.01;
+    problem.method.order   = StressUpdateOrder::last;
+    EXPECT_EQ(diagnose(seen, problem, true).mode, "small cut cell");
+    problem.method.order = StressUpdateOrder::last_remapped;
+    EXPECT_EQ(diagnose(seen, problem, true).mode, "");
+    seen.courant_number = 2.5;
+    EXPECT_EQ(diagnose(seen, problem, true).mode, "Courant number");
+    seen.courant_number            = 0.4;
+    seen.bodies[0].smallest_volume = -0.2;
+    EXPECT_EQ(diagnose(seen, problem, true).mode, "inverted point");
+  }
+} // namespace limber::test

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/study/study_file.h>
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+using namespace limber;
+
+namespace
+{
+  const std::string good = R"(
+    set Scene = scenes/beam.prm
+    set Settings = Method/Transfer=flip | End time=2
+    set Short settings = End time=1
+    set Methods = locked, cured
+    set Short methods = cured
+    set Variations = cells, speed, points
+    set Measures = energy
+    subsection Method cured
+      set Settings = Body beam/Locking treatment=cell
+      set Closed form = 2*x
+    end
+    subsection Variation cells
+      set Entry = Grid/Cells
+      set Values = 9, 5 | 18, 10 | 36, 20
+      set Labels = 1 | 2 | 4
+      set Short = 4
+    end
+    subsection Variation speed
+      set Entry = Body beam/Constants
+      set Values = a = 1, b = 2 | a = 2, b = 2
+    end
+    subsection Variation points
+      set With = cells
+      set Entry = Body beam/Points per cell edge
+      set Values = 4 | 3 | 2
+    end
+    subsection Measure energy
+      set Source = column
+      set Name = kinetic energy, strain energy
+      set Reduction = last over first
+      set Reference = 1
+    end
+    subsection Chart
+      set Horizontal axis = cells
+    end)";
+
+
+
+  StudyFile
+  read(const std::string              &text,
+       const std::vector<std::string> &overrides  = {},
+       const bool                      take_short = false)
+  {
+    std::ofstream("study_under_test.prm") << text;
+    return read_study("study_under_test.prm", overrides, take_short);
+  }
+
+
+
+  std::string
+  error_of(const std::string &text, const bool take_short = false)
+  {
+    try
+      {
+        read(text, {}, take_short);
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+
+
+
+  std::string
+  replaced(const std::string &what, const std::string &with)
+  {
+    std::string text  = good;
+    const auto  place = text.find(what);
+    EXPECT_NE(place, std::string::npos) << what;
+    return text.replace(place, what.size(), with);
+  }
+} // namespace
+
+
+
+TEST(StudyFile, AllParts)
+{
+  const StudyFile study = read(good);
+  EXPECT_EQ(study.scene, "scenes/beam.prm");
+  EXPECT_EQ(study.directory, "studies/study_under_test");
+  EXPECT_EQ(study.settings.size(), 2u);
+  ASSERT_EQ(study.methods.size(), 2u);
+  EXPECT_TRUE(study.methods[0].closed_form.empty());
+  EXPECT_EQ(study.methods[1].closed_form.value({3, 0}, 0), 6);
+  ASSERT_EQ(study.variations.size(), 2u); // the third goes with the first
+  EXPECT_EQ(study.variations[0].choices[1].label, "2");
+  EXPECT_EQ(study.variations[0].choices[1].settings,
+            (std::vector<std::string>{"Grid/Cells=18, 10",
+                                      "Body beam/Points per cell edge=3"}));
+  EXPECT_EQ(study.variations[1].choices[0].label, "a = 1, b = 2");
+  EXPECT_EQ(study.measures[0].of.size(), 2u);
+  EXPECT_EQ(study.measures[0].reference, 1);
+}
+
+
+
+TEST(StudyFile, ShortVersion)
+{
+  const StudyFile study = read(good, {}, true);
+  EXPECT_EQ(study.settings.back(), "End time=1");
+  ASSERT_EQ(study.methods.size(), 1u);
+  EXPECT_EQ(study.methods[0].choice.label, "cured");
+  ASSERT_EQ(study.variations[0].choices.size(), 1u);
+  EXPECT_EQ(study.variations[0].choices[0].settings.back(),
+            "Body beam/Points per cell edge=2");
+}
+
+
+
+TEST(StudyFile, CommandLineCounts)
+{
+  const StudyFile study = read(good, {"Directory=elsewhere", "Cost=steps"});
+  EXPECT_EQ(study.directory, "elsewhere");
+  EXPECT_EQ(study.cost, Cost::steps);
+}
+
+
+
+TEST(StudyFile, WrongInputIsRefused)
+{
+  const auto refused = [](const std::string &what,
+                          const std::string &with,
+                          const std::string &message,
+                          const bool         take_short = false) {
+    const std::string error = error_of(replaced(what, with), take_short);
+    EXPECT_NE(error.find(message), std::string::npos) << with << ": " << error;
+  };
+  refused("set Scene = scenes/beam.prm", "", "'Scene'");
+  refused("set Values = 4 | 3 | 2", "set Values = 4 | 3", "equally long");
+  refused("set Labels = 1 | 2 | 4", "set Labels = 1 | 2", "labels for 3");
+  refused("set Labels = 1 | 2 | 4", "set Labels = 1 | 2 | 2", "stands twice");
+  refused("set Labels = 1 | 2 | 4", "set Labels = 1 | 2 | x", "no label", true);
+  refused("set Labels = 1 | 2 | 4",
+          "set Labels = 1 | 2 | x",
+          "is no number",
+          false);
+  refused("set With = cells", "set With = cels", "Did you mean 'cells'?");
+  refused("Horizontal axis = cells", "Horizontal axis = cell", "'cells'");
+  refused("Reference = 1", "Reference = 0", "Set 'Scale'");
+  refused("Reduction = last over first", "Reduction = last", "");
+  refused("Source = column", "Source = check", "brings its own");
+  refused("set Short methods = cured", "set Short methods = curd", "", false);
+  refused("set Short methods = cured",
+          "set Short methods = curd",
+          "Did you mean 'cured'?",
+          true);
+  refused("subsection Method cured",
+          "subsection Method cured 2",
+          "belongs to no name in the list 'Methods'");
+}
