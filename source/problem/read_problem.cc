@@ -49,7 +49,8 @@ namespace limber
       std::vector<std::string> result;
       for (const auto &[name, value] : parameters.entries())
         if (name != "End time" && name.rfind("Output/", 0) != 0 &&
-            name.rfind("Checkpoint/", 0) != 0)
+            name.rfind("Checkpoint/", 0) != 0 &&
+            name.rfind("Reference/", 0) != 0)
           result.push_back(name + " = " + value);
       return result;
     }
@@ -81,6 +82,7 @@ namespace limber
     choose_stress_update(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
+    problem.reference  = read_reference(root.subsection("Reference"));
     read_observables(root, problem);
     read_checks(root, problem);
     problem.fixed_entries = fixed_entries(scene.parameters());

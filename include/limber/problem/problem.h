@@ -158,6 +158,36 @@ namespace limber
     double       wall_time_limit = 0;    // s; 0: none
   };
 
+  enum class ReferenceElement
+  {
+    q1,
+    q2,
+    q1_p0_p0, // displacement, pressure, volume ratio
+    q2_p1_p1
+  };
+
+  enum class ReferenceMethod
+  {
+    quasi_static,   // load steps without inertia
+    implicit_steps, // Newmark's method
+    explicit_steps  // central differences
+  };
+
+  /** How the finite element reference of the scene is computed. */
+  struct ReferenceRequest
+  {
+    ReferenceElement          element    = ReferenceElement::q2_p1_p1;
+    ReferenceMethod           method     = ReferenceMethod::implicit_steps;
+    unsigned int              over_depth = 4; // elements
+    std::vector<unsigned int> elements;       // along each direction, or empty
+    std::string               mesh_file;      // empty: a mesh of our own
+    unsigned int              refinements = 0;
+    double                    time_step   = 0; // s; 0: from the wave speed
+    unsigned int              load_steps  = 1;
+    double                    tolerance   = 1e-8; // residual over forces
+    unsigned int              frequencies = 0;    // how many; 0: solve in time
+  };
+
   enum class ObservableKind
   {
     displacement,
@@ -213,6 +243,7 @@ namespace limber
     Method                         method;
     OutputRequest                  output;
     CheckpointRequest              checkpoint;
+    ReferenceRequest               reference;
     std::vector<Observable<dim>>   observables;
     std::vector<Check>             checks;
     std::vector<std::string> notes; // what the reader decided, for the log

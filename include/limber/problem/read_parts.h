@@ -168,6 +168,14 @@ namespace limber
   CheckpointRequest
   read_checkpoint(const Section &section);
 
+  // Finite element reference (source/problem/read_reference.cc)
+
+  void
+  declare_reference(Parameters &parameters, const unsigned int dim);
+
+  ReferenceRequest
+  read_reference(const Section &section);
+
   // Observables and checks (source/problem/read_observables.cc)
 
   void
