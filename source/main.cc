@@ -9,6 +9,7 @@
 #include <limber/simulation/reference_run.h>
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
+#include <limber/study/compare.h>
 
 #include <iostream>
 #include <sstream>
@@ -110,6 +111,8 @@ main(int argc, char *argv[])
       Console console(first, std::cout);
       if (argc > 1 && std::string(argv[1]) == "reference")
         return run_reference(parse_command_line(argc - 1, argv + 1), console);
+      if (argc > 1 && std::string(argv[1]) == "compare")
+        return run_compare({argv + 2, argv + argc}, console);
       return execute(parse_command_line(argc, argv), console);
     }
   catch (const Failure &failure)

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/fe/fe_q.h>
-
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
@@ -8,8 +6,10 @@
 #include <limber/base/exceptions.h>
 #include <limber/fem/fitted_mesh.h>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <optional>
+#include <sstream>
 
 namespace limber
 {
@@ -45,6 +45,73 @@ namespace limber
         result[d] =
           static_cast<unsigned int>(std::round(length[d] / depth * over_depth));
       return result;
+    }
+
+
+
+    /** Corners of a body that has such, in deal.II's order. */
+    template <int dim>
+    std::optional<BlockCorners<dim>>
+    corners_of(const Shape<dim> &shape)
+    {
+      const auto box = dynamic_cast<const BoxShape<dim> *>(&shape);
+      if (box == nullptr)
+        return {};
+      BlockCorners<dim> corners;
+      for (unsigned int v = 0; v < corners.size(); ++v)
+        for (unsigned int d = 0; d < dim; ++d)
+          corners[v][d] = (v >> d) % 2 == 0 ? box->lower[d] : box->upper[d];
+      return corners;
+    }
+
+
+
+    /** Distance of a place from the plane of a face of a block, m. */
+    template <int dim>
+    double
+    distance_from_face(const BlockCorners<dim>  &corners,
+                       const unsigned int        face,
+                       const dealii::Point<dim> &place)
+    {
+      // three corners of the face, in the plane two
+      std::vector<dealii::Point<dim>> on_face;
+      for (unsigned int v = 0; v < corners.size(); ++v)
+        if ((v >> (face / 2)) % 2 == face % 2)
+          on_face.push_back(corners[v]);
+      dealii::Tensor<1, dim> normal;
+      if constexpr (dim == 2)
+        normal = dealii::cross_product_2d(on_face[1] - on_face[0]);
+      else
+        normal = dealii::cross_product_3d(on_face[1] - on_face[0],
+                                          on_face[2] - on_face[0]);
+      return std::abs((place - on_face[0]) * normal) / normal.norm();
+    }
+
+
+
+    /** Number boundaries as the faces of the body; 2 dim: none of them. */
+    template <int dim>
+    void
+    mark_faces(const std::optional<BlockCorners<dim>> &corners, Mesh<dim> &mesh)
+    {
+      for (const auto &cell : mesh.active_cell_iterators())
+        for (const unsigned int f : cell->face_indices())
+          if (cell->face(f)->at_boundary())
+            {
+              const auto   face      = cell->face(f);
+              const double tolerance = 1e-6 * face->diameter();
+              face->set_all_boundary_ids(2 * dim);
+              for (unsigned int g = 0; corners && g < 2 * dim; ++g)
+                {
+                  bool in_face = true;
+                  for (unsigned int v = 0; v < face->n_vertices(); ++v)
+                    in_face &=
+                      distance_from_face<dim>(*corners, g, face->vertex(v)) <
+                      tolerance;
+                  if (in_face)
+                    face->set_all_boundary_ids(g);
+                }
+            }
     }
 
 
@@ -120,22 +187,21 @@ namespace limber
   {
     const ReferenceRequest    &request = problem.reference;
     const Body<dim>           &body    = problem.bodies.front();
+    const auto                 corners = corners_of<dim>(*body.shape);
     std::unique_ptr<Mesh<dim>> mesh;
     if (!request.mesh_file.empty())
-      mesh = read_mesh<dim>(request.mesh_file, communicator);
-    else if (const auto box =
-               dynamic_cast<const BoxShape<dim> *>(body.shape.get()))
       {
-        BlockCorners<dim> corners;
-        for (unsigned int v = 0; v < corners.size(); ++v)
-          for (unsigned int d = 0; d < dim; ++d)
-            corners[v][d] = (v >> d) % 2 == 0 ? box->lower[d] : box->upper[d];
-        auto elements = square_elements<dim>(corners, request.over_depth);
+        mesh = read_mesh<dim>(request.mesh_file, communicator);
+        mark_faces<dim>(corners, *mesh);
+      }
+    else if (corners)
+      {
+        auto elements = square_elements<dim>(*corners, request.over_depth);
         if (!request.elements.empty())
           std::copy(request.elements.begin(),
                     request.elements.end(),
                     elements.begin());
-        mesh = make_block_mesh<dim>(corners, elements, communicator);
+        mesh = make_block_mesh<dim>(*corners, elements, communicator);
       }
     else
       throw InputError("The body '" + body.name +

@@ -11,6 +11,8 @@
 #include <deal.II/lac/sparsity_tools.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
+#include <deal.II/numerics/rtree.h>
+
 #include <limber/base/exceptions.h>
 #include <limber/fem/solid_model.h>
 
@@ -46,6 +48,32 @@ namespace limber
       constexpr const char *names[] = {
         "left", "right", "bottom", "top", "back", "front"};
       return names[side];
+    }
+
+
+
+    /** Whether a place lies in a cell, and where in it. */
+    template <int dim>
+    bool
+    find_in_cell(
+      const dealii::Mapping<dim>                                   &mapping,
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const dealii::Point<dim>                                     &place,
+      dealii::Point<dim>                                           &unit)
+    {
+      constexpr double tolerance = 1e-8; // of round-off between cells
+      try
+        {
+          unit = mapping.transform_real_to_unit_cell(cell, place);
+        }
+      catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &)
+        {
+          return false;
+        }
+      if (!dealii::GeometryInfo<dim>::is_inside_unit_cell(unit, tolerance))
+        return false;
+      unit = dealii::GeometryInfo<dim>::project_to_unit_cell(unit);
+      return true;
     }
   } // namespace
 
@@ -564,6 +592,40 @@ namespace limber
 
 
   template <int dim>
+  void
+  SolidModel<dim>::fill_samples(
+    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+    const std::vector<dealii::Point<dim>>                        &unit_places,
+    const NodalVector                                            &displacement,
+    const NodalVector                                            &velocity,
+    std::vector<PlaceSample<dim>>                                &samples) const
+  {
+    dealii::FEValues<dim> values(fe, quadrature, update_flags);
+    dealii::FEValues<dim> places(fe,
+                                 dealii::Quadrature<dim>(unit_places),
+                                 update_flags);
+    values.reinit(cell);
+    places.reinit(cell);
+    const auto u      = values_of(cell, displacement);
+    const auto v      = values_of(cell, velocity);
+    const auto states = element->states(values, places, u);
+    samples.assign(unit_places.size(), PlaceSample<dim>());
+    for (unsigned int q = 0; q < unit_places.size(); ++q)
+      {
+        samples[q].inside   = true;
+        samples[q].material = states[q];
+        for (unsigned int i = 0; i < u.size(); ++i)
+          {
+            const unsigned int c = fe.system_to_component_index(i).first;
+            samples[q].displacement[c] += places.shape_value(i, q) * u[i];
+            samples[q].velocity[c] += places.shape_value(i, q) * v[i];
+          }
+      }
+  }
+
+
+
+  template <int dim>
   PlaceSample<dim>
   SolidModel<dim>::sample(const dealii::Point<dim> &place,
                           const NodalVector        &displacement,
@@ -571,45 +633,28 @@ namespace limber
   {
     constexpr unsigned int n_stress = 9;
     // count, displacement, velocity, volume ratio, pressure, stress
-    std::vector<double>          sums(1 + 2 * dim + 2 + n_stress);
-    const dealii::MappingQ1<dim> mapping;
-    dealii::FEValues<dim>        values(fe, quadrature, update_flags);
+    std::vector<double>           sums(1 + 2 * dim + 2 + n_stress);
+    const dealii::MappingQ1<dim>  mapping;
+    std::vector<PlaceSample<dim>> here;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned() &&
           cell->bounding_box().point_inside(place, 1e-6))
         {
           dealii::Point<dim> unit;
-          try
-            {
-              unit = mapping.transform_real_to_unit_cell(cell, place);
-            }
-          catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &)
-            {
-              continue;
-            }
-          if (!dealii::GeometryInfo<dim>::is_inside_unit_cell(unit, 1e-8))
+          if (!find_in_cell<dim>(mapping, cell, place, unit))
             continue;
-          dealii::FEValues<dim> here(
-            fe,
-            dealii::Quadrature<dim>(
-              dealii::GeometryInfo<dim>::project_to_unit_cell(unit)),
-            update_flags);
-          values.reinit(cell);
-          here.reinit(cell);
-          const auto u     = values_of(cell, displacement);
-          const auto v     = values_of(cell, velocity);
-          const auto state = element->states(values, here, u).front();
+          fill_samples(cell, {unit}, displacement, velocity, here);
+          const PlaceSample<dim> &found = here.front();
           sums[0] += 1;
-          for (unsigned int i = 0; i < u.size(); ++i)
+          for (unsigned int d = 0; d < dim; ++d)
             {
-              const unsigned int c = fe.system_to_component_index(i).first;
-              sums[1 + c] += here.shape_value(i, 0) * u[i];
-              sums[1 + dim + c] += here.shape_value(i, 0) * v[i];
+              sums[1 + d] += found.displacement[d];
+              sums[1 + dim + d] += found.velocity[d];
             }
-          sums[1 + 2 * dim] += state.volume_ratio;
-          sums[2 + 2 * dim] += state.pressure;
+          sums[1 + 2 * dim] += found.material.volume_ratio;
+          sums[2 + 2 * dim] += found.material.pressure;
           for (unsigned int k = 0; k < n_stress; ++k)
-            sums[3 + 2 * dim + k] += state.stress[k / 3][k % 3];
+            sums[3 + 2 * dim + k] += found.material.stress[k / 3][k % 3];
         }
     dealii::Utilities::MPI::sum(sums, communicator, sums);
 
@@ -617,19 +662,61 @@ namespace limber
     result.inside = sums[0] > 0;
     if (!result.inside)
       return result;
-    for (double &sum : sums)
-      if (&sum != &sums[0])
-        sum /= sums[0];
     for (unsigned int d = 0; d < dim; ++d)
       {
-        result.displacement[d] = sums[1 + d];
-        result.velocity[d]     = sums[1 + dim + d];
+        result.displacement[d] = sums[1 + d] / sums[0];
+        result.velocity[d]     = sums[1 + dim + d] / sums[0];
       }
-    result.material.volume_ratio = sums[1 + 2 * dim];
-    result.material.pressure     = sums[2 + 2 * dim];
+    result.material.volume_ratio = sums[1 + 2 * dim] / sums[0];
+    result.material.pressure     = sums[2 + 2 * dim] / sums[0];
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j <= i; ++j)
-        result.material.stress[i][j] = sums[3 + 2 * dim + 3 * i + j];
+        result.material.stress[i][j] = sums[3 + 2 * dim + 3 * i + j] / sums[0];
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<PlaceSample<dim>>
+  SolidModel<dim>::sample(const std::vector<dealii::Point<dim>> &places,
+                          const NodalVector                     &displacement,
+                          const NodalVector                     &velocity) const
+  {
+    // Places by what they lie in: the box of every cell asks for its own.
+    std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
+    for (std::size_t p = 0; p < places.size(); ++p)
+      entries.emplace_back(places[p], p);
+    const auto tree = dealii::pack_rtree(entries);
+
+    std::vector<PlaceSample<dim>>   result(places.size()), here;
+    const dealii::MappingQ1<dim>    mapping;
+    std::vector<dealii::Point<dim>> unit_places;
+    std::vector<std::size_t>        indices;
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      {
+        unit_places.clear();
+        indices.clear();
+        dealii::BoundingBox<dim> box = cell->bounding_box();
+        box.extend(1e-6 * smallest_edge);
+        for (auto it = tree.qbegin(boost::geometry::index::intersects(box));
+             it != tree.qend();
+             ++it)
+          {
+            dealii::Point<dim> unit;
+            if (!result[it->second].inside &&
+                find_in_cell<dim>(mapping, cell, it->first, unit))
+              {
+                unit_places.push_back(unit);
+                indices.push_back(it->second);
+              }
+          }
+        if (indices.empty())
+          continue;
+        fill_samples(cell, unit_places, displacement, velocity, here);
+        for (std::size_t k = 0; k < indices.size(); ++k)
+          result[indices[k]] = here[k];
+      }
     return result;
   }
 

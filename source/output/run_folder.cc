@@ -100,6 +100,8 @@ namespace limber
                                      "summary.json",
                                      "statistics",
                                      "frequencies",
+                                     "comparison",
+                                     "comparison.json",
                                      "parameters.prm",
                                      "original.json",
                                      "original.prm"})

@@ -50,7 +50,8 @@ namespace limber
       for (const auto &[name, value] : parameters.entries())
         if (name != "End time" && name.rfind("Output/", 0) != 0 &&
             name.rfind("Checkpoint/", 0) != 0 &&
-            name.rfind("Reference/", 0) != 0)
+            name.rfind("Reference/", 0) != 0 &&
+            name.rfind("Exact solution/", 0) != 0)
           result.push_back(name + " = " + value);
       return result;
     }
@@ -83,6 +84,7 @@ namespace limber
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
     problem.reference  = read_reference(root.subsection("Reference"));
+    read_exact_solution(root.subsection("Exact solution"), problem);
     read_observables(root, problem);
     read_checks(root, problem);
     problem.fixed_entries = fixed_entries(scene.parameters());

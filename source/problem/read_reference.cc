@@ -96,4 +96,60 @@ namespace limber
                        "with 'Refinements'.");
     return request;
   }
+
+
+
+  void
+  declare_exact_solution(Parameters &parameters, const unsigned int dim)
+  {
+    const auto declare = [&](const std::string &name,
+                             const unsigned int n_components,
+                             const std::string &text) {
+      parameters.declare(
+        name,
+        "",
+        admissible::text(
+          "formula of " + variable_names(dim) +
+            (n_components > 1 ?
+               " with " + std::to_string(n_components) + " components" :
+               "") +
+            ", or empty",
+          n_components > 1 ? for_each_direction(dim, "0", "; ") : "0"),
+        text);
+    };
+    parameters.enter_subsection("Exact solution");
+    declare("Displacement",
+            dim,
+            "u, m, of the point that was at x, y at the start, at time t; for "
+            "'limber compare RUN exact'.");
+    declare("Velocity", dim, "v, m/s, of that point.");
+    declare("Pressure", 1, "p, Pa, of that point, positive in compression.");
+    declare_constants(parameters);
+    parameters.leave_subsection();
+  }
+
+
+
+  template <int dim>
+  void
+  read_exact_solution(const Section &section, Problem<dim> &problem)
+  {
+    const Constants constants = read_constants(section);
+    const auto      read = [&](const std::string &name, const unsigned int n) {
+      return section.is_empty(name) ?
+                    Formula<dim>() :
+                    read_formula<dim>(
+                 section, name, n, constants, corners(problem.grid));
+    };
+    problem.exact.displacement = read("Displacement", dim);
+    problem.exact.velocity     = read("Velocity", dim);
+    problem.exact.pressure     = read("Pressure", 1);
+  }
+
+
+
+  template void
+  read_exact_solution<2>(const Section &, Problem<2> &);
+  template void
+  read_exact_solution<3>(const Section &, Problem<3> &);
 } // namespace limber

@@ -172,6 +172,8 @@ namespace limber
     return R"(limber [options] scene.prm
 mpirun -np 4 limber [options] scene.prm
 limber reference [options] scene.prm    the scene in finite elements
+limber compare RUN OTHER                fields and observables of a run folder
+                                        against a reference, a run or 'exact'
 
 The scene is a .prm or .json file; '--' reads prm from standard input.
 

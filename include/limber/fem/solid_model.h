@@ -150,6 +150,15 @@ namespace limber
            const NodalVector        &displacement,
            const NodalVector        &velocity) const;
 
+    /**
+     * The same at many places, in their order, each in one element that holds
+     * it. For one rank.
+     */
+    std::vector<PlaceSample<dim>>
+    sample(const std::vector<dealii::Point<dim>> &places,
+           const NodalVector                     &displacement,
+           const NodalVector                     &velocity) const;
+
     /** States of the owned nodes: means over the elements that meet there. */
     std::vector<MaterialState>
     nodal_states(const NodalVector &displacement) const;
@@ -199,6 +208,13 @@ namespace limber
     assemble_masses();
     double
     prescribed_velocity(const Held &held, const double time) const;
+    void
+    fill_samples(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const std::vector<dealii::Point<dim>>                        &unit_places,
+      const NodalVector             &displacement,
+      const NodalVector             &velocity,
+      std::vector<PlaceSample<dim>> &samples) const;
     std::vector<double>
     values_of(
       const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,

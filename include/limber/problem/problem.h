@@ -144,9 +144,10 @@ namespace limber
   struct OutputRequest
   {
     std::string              directory     = "output";
-    bool                     replace       = false;   // an existing run folder
-    double                   time_interval = 0;       // s; 0: statistics only
-    std::vector<std::string> fields;                  // names of point fields
+    bool                     replace       = false; // an existing run folder
+    double                   time_interval = 0;     // s; 0: statistics only
+    std::vector<std::string> fields;                // names of point fields
+    bool                     point_arrays = false;  // HDF5 beside the pictures
     unsigned int             statistics_interval = 1; // steps
     double                   progress_interval   = 5; // s of wall time
   };
@@ -223,6 +224,14 @@ namespace limber
     unsigned int side = 0;   // reaction force
   };
 
+  /** Formulas of initial place and time; those not given are empty. */
+  template <int dim>
+  struct ExactSolution
+  {
+    Formula<dim> displacement, velocity; // dim components, m, m/s
+    Formula<dim> pressure;               // 1 component, Pa
+  };
+
   struct Check
   {
     std::string           name;
@@ -244,6 +253,7 @@ namespace limber
     OutputRequest                  output;
     CheckpointRequest              checkpoint;
     ReferenceRequest               reference;
+    ExactSolution<dim>             exact;
     std::vector<Observable<dim>>   observables;
     std::vector<Check>             checks;
     std::vector<std::string> notes; // what the reader decided, for the log

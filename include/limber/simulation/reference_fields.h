@@ -5,15 +5,14 @@
 #include <limber/fem/reference_solver.h>
 
 #include <string>
-#include <vector>
 
 /** @file The fields of a reference on disk: nodes/nodes_00012.h5. */
 namespace limber
 {
   /**
-   * Write initial places, displacements, velocities, Cauchy stress and
-   * pressure of all nodes, with the time. Stress and pressure are means over
-   * the elements that meet at a node. Collective; throws FileError.
+   * Write the arrays of all nodes (output/point_arrays.h). Stress and pressure
+   * are means over the elements that meet at a node. Collective; throws
+   * FileError.
    */
   template <int dim>
   void
@@ -22,13 +21,9 @@ namespace limber
                          const SolidModel<dim>  &model,
                          const SolidMotion<dim> &motion);
 
-  /** Times (s) and paths of all files of a reference, ascending. */
-  std::vector<std::pair<double, std::string>>
-  reference_field_files(const std::string &folder);
-
   /**
    * Displacement and velocity of the nodes of @p model, whose mesh has to be
-   * that of the reference. Throws FileError where it is not. Collective.
+   * that of the reference. Throws FileError where it is not. Every rank reads.
    */
   template <int dim>
   void
