@@ -17,7 +17,8 @@ namespace limber
     constexpr double       infinite = std::numeric_limits<double>::infinity();
     constexpr unsigned int most_iterations = 25;
     // of a load step, before Newton's method is given up
-    constexpr double smallest_part = 1. / 256;
+    constexpr double       smallest_part = 1. / 256;
+    constexpr unsigned int most_halvings = 8; // of a time step, likewise
     // A kept tangent has to reduce the residual to this share at least.
     constexpr double good_reduction        = 0.1;
     constexpr double share_of_longest_step = 0.8;
@@ -216,9 +217,10 @@ namespace limber
 
   template <int dim>
   void
-  ReferenceSolver<dim>::renew_tangent(const double mass_factor)
+  ReferenceSolver<dim>::renew_tangent(const double       mass_factor,
+                                      const NodalVector *former)
   {
-    model.assemble(state.displacement, mass_factor, *matrix);
+    model.assemble(state.displacement, mass_factor, *matrix, former);
     linear_solver.set_matrix(*matrix);
     matrix_mass_factor = mass_factor;
     ++state.factorisations;
@@ -233,16 +235,17 @@ namespace limber
                               const double mass_factor,
                               const bool   keep_tangent)
   {
-    NodalVector correction = model.make_vector();
-    double      former     = infinite;
-    rest                   = unbalance(time, mass_factor);
+    NodalVector correction = model.make_vector(), before = correction;
+    double      former = infinite;
+    rest               = unbalance(time, mass_factor);
     for (unsigned int k = 0; k < most_iterations && std::isfinite(rest); ++k)
       {
         if (rest <= model.problem.reference.tolerance)
           return true;
         if (!keep_tangent || !matrix_serves(mass_factor) ||
             rest > good_reduction * former)
-          renew_tangent(mass_factor);
+          renew_tangent(mass_factor, k > 0 ? &before : nullptr);
+        before = state.displacement;
         linear_solver.solve(correction, unbalanced);
         ++state.newton_steps;
 
@@ -350,9 +353,31 @@ namespace limber
 
 
 
+  // A step that Newton's method does not manage is taken in halves.
   template <int dim>
   void
-  ReferenceSolver<dim>::newmark_step(const double step)
+  ReferenceSolver<dim>::newmark_step(const double       step,
+                                     const unsigned int halved)
+  {
+    const SolidMotion<dim> start = state;
+    if (try_newmark_step(step))
+      return close_step(start.displacement, step);
+    const auto newton_steps = state.newton_steps,
+               tangents     = state.factorisations;
+    state                   = start;
+    state.newton_steps      = newton_steps;
+    state.factorisations    = tangents;
+    if (halved == most_halvings)
+      fail(state.time + step, "Time step");
+    newmark_step(step / 2, halved + 1);
+    newmark_step(step / 2, halved + 1);
+  }
+
+
+
+  template <int dim>
+  bool
+  ReferenceSolver<dim>::try_newmark_step(const double step)
   {
     const double      time                = state.time + step;
     const double      factor              = 4 / (step * step);
@@ -378,7 +403,7 @@ namespace limber
     model.replace_held(predicted, held_predicted);
 
     if (!solve(time, factor, true))
-      fail(time, "Time step");
+      return false;
 
     NodalVector held_velocity = state.velocity;
     state.velocity            = former_velocity;
@@ -387,6 +412,7 @@ namespace limber
                        step / 2,
                        state.acceleration);
     model.replace_held(state.velocity, held_velocity);
+    return true;
   }
 
 
@@ -432,13 +458,22 @@ namespace limber
   void
   ReferenceSolver<dim>::advance(const double step)
   {
+    if (method == ReferenceMethod::implicit_steps)
+      return newmark_step(step, 0);
     const NodalVector former = state.displacement;
     if (method == ReferenceMethod::quasi_static)
       load_step(step);
-    else if (method == ReferenceMethod::implicit_steps)
-      newmark_step(step);
     else
       explicit_step(step);
+    close_step(former, step);
+  }
+
+
+
+  template <int dim>
+  void
+  ReferenceSolver<dim>::close_step(const NodalVector &former, const double step)
+  {
     state.displacement.update_ghost_values();
     state.velocity.update_ghost_values();
     account(former, step);

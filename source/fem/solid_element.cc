@@ -161,7 +161,8 @@ namespace limber
       compute(const Values               &values,
               const std::vector<double>  &u,
               dealii::Vector<double>     &forces,
-              dealii::FullMatrix<double> *tangent) const override
+              dealii::FullMatrix<double> *tangent,
+              const std::vector<double>  *former) const override
       {
         const unsigned int            n = u.size();
         const FieldProjection<dim>    projection(values, n_modes);
@@ -182,6 +183,10 @@ namespace limber
             conjugate.push_back(slope_of_energy(states.back(), ratio[q]));
           }
         conjugate = projection.project(conjugate);
+        const std::vector<double> in_tangent =
+          Law::finite_strain && tangent != nullptr && former != nullptr ?
+            extrapolate(values, projection, *former, u) :
+            conjugate;
 
         forces = 0;
         if (tangent != nullptr)
@@ -207,8 +212,13 @@ namespace limber
                     dV * projection.modes(q, m) * J * gradient[i][c];
               }
             if (tangent != nullptr)
-              add_tangent(
-                values, q, dV, states[q], s, mean, gradient, *tangent);
+              add_tangent(values,
+                          dV,
+                          states[q],
+                          s,
+                          in_tangent[q] * J,
+                          gradient,
+                          *tangent);
             if (tangent != nullptr && projection.n_modes == 0)
               {
                 const double k =
@@ -292,6 +302,35 @@ namespace limber
         return result;
       }
 
+      /** p at u to first order, from the state at other displacements. */
+      std::vector<double>
+      extrapolate(const Values               &values,
+                  const FieldProjection<dim> &projection,
+                  const std::vector<double>  &former,
+                  const std::vector<double>  &u) const
+      {
+        std::vector<Deformation<dim>> deformations;
+        deform(values, former, deformations);
+        const auto ratio = projection.project(ratios(deformations));
+
+        std::vector<double> growth(ratio.size());
+        for (unsigned int q = 0; q < growth.size(); ++q)
+          for (unsigned int i = 0; i < u.size(); ++i)
+            growth[q] += deformations[q].J * (u[i] - former[i]) *
+                         (values.shape_grad(i, q) *
+                          deformations[q].inverse)[component(values, i)];
+        growth = projection.project(growth);
+
+        std::vector<double> result;
+        for (unsigned int q = 0; q < ratio.size(); ++q)
+          result.push_back(
+            slope_of_energy(law.template at_deformation<dim>(
+                              deformations[q].gradient, ratio[q]),
+                            ratio[q]) +
+            law.volumetric_stiffness(ratio[q]) * growth[q]);
+        return projection.project(result);
+      }
+
       /** dU/dJ: minus the Cauchy pressure; small strain does not know it. */
       static double
       slope_of_energy(const typename Law::template State<dim, double> &state,
@@ -320,7 +359,6 @@ namespace limber
 
       void
       add_tangent(const Values                                    &values,
-                  const unsigned int                               q,
                   const double                                     dV,
                   const typename Law::template State<dim, double> &state,
                   const dealii::Tensor<2, dim>                    &s,
@@ -328,7 +366,6 @@ namespace limber
                   const std::vector<Tensor>                       &gradient,
                   dealii::FullMatrix<double> &tangent) const
       {
-        (void)q;
         const unsigned int n = gradient.size();
         for (unsigned int j = 0; j < n; ++j)
           {

@@ -460,23 +460,29 @@ namespace limber
   bool
   SolidModel<dim>::assemble(const NodalVector &displacement,
                             const double       mass_factor,
-                            Matrix            &matrix) const
+                            Matrix            &matrix,
+                            const NodalVector *former) const
   {
     matrix                       = 0;
     const unsigned int         n = fe.dofs_per_cell;
     dealii::FEValues<dim>      values(fe, quadrature, update_flags);
     dealii::Vector<double>     on_cell(n);
     dealii::FullMatrix<double> tangent(n, n);
+    std::vector<double>        former_values;
     std::vector<dealii::types::global_dof_index> dofs(n);
     bool                                         good = true;
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           values.reinit(cell);
-          good = good && element->compute(values,
-                                          values_of(cell, displacement),
-                                          on_cell,
-                                          &tangent);
+          if (former != nullptr)
+            former_values = values_of(cell, *former);
+          good = good &&
+                 element->compute(values,
+                                  values_of(cell, displacement),
+                                  on_cell,
+                                  &tangent,
+                                  former != nullptr ? &former_values : nullptr);
           if (!good)
             break;
           if (mass_factor != 0)

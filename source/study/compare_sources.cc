@@ -185,9 +185,13 @@ namespace limber
       /** Twice as many as a plane needs, and their like beyond it. */
       static constexpr unsigned int n_neighbours = dim == 2 ? 8 : 16;
 
+      // Square of the distance, in mean ones, at which a point lies there
+      static constexpr double interpolating = 1e-8;
+
       /**
        * Of the values at the neighbours in that of the plane at @p place, for
-       * least squares weighed by 1 / (1 + (distance / mean distance)^2).
+       * least squares weighed by the inverse square of the distance: a point
+       * that lies there has its own value.
        */
       static std::vector<double>
       weights_at(const dealii::Point<dim>              &place,
@@ -206,7 +210,7 @@ namespace limber
         for (unsigned int k = 0; k < n; ++k)
           {
             const auto from = (places[near[k]] - place) / mean;
-            share[k]        = 1 / (1 + from.norm_square());
+            share[k]        = 1 / (interpolating + from.norm_square());
             rows(k, 0)      = 1;
             for (unsigned int d = 0; d < dim; ++d)
               rows(k, d + 1) = from[d];
@@ -216,7 +220,7 @@ namespace limber
           }
         // points in one line say nothing across it: a plane without slope
         for (unsigned int i = 1; i <= dim; ++i)
-          normal(i, i) += 1e-10;
+          normal(i, i) += 1e-10 * normal(0, 0);
         normal.gauss_jordan();
         std::vector<double> result(n);
         for (unsigned int k = 0; k < n; ++k)

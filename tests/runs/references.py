@@ -94,9 +94,10 @@ def comparison(folder):
     expect(error("coarse") < 0.02, "four cells over the depth: 2 %")
     expect(error("fine") < 0.5 * error("coarse"), "twice as many: half of it")
     expect(error("runs") < 0.02, "coarse against fine run: 2 %")
-    expect(error("itself") < 1e-6, "a run against itself: interpolation only")
+    expect(max(error("itself"), error("itself", "stress")) < 1e-6,
+           "a run against itself: interpolation only")
     expect(error("elements") < 1e-12, "elements against themselves")
-    expect(error("elements", "stress") < 0.02, "nodal stress against that within")
+    expect(error("elements", "stress") < 0.04, "nodal stress against that within")
     tip = errors["coarse"]["observables"]["tip"]["relative_l2"]
     expect(tip < 0.03, f"tip over time: {tip:.2g}")
 
@@ -109,11 +110,12 @@ def exact(folder):
     limber("reference", MANUFACTURED, "--output-directory", folder / "fem",
            changes=(*changes, "Reference/Elements over depth=16",
                     "Reference/Time step=0.01"))
-    for name, limit in (("run", 2e-3), ("fem", 2e-4)):
+    # velocities of points are noisier, as FLIP never smoothes them
+    for name, limits in (("run", (3e-3, 3e-2)), ("fem", (2e-4, 3e-4))):
         limber("compare", folder / name, "exact")
         fields = json.loads((folder / name / "comparison.json")
                             .read_text())["fields"]
-        for field in ("displacement", "velocity"):
+        for field, limit in zip(("displacement", "velocity"), limits):
             error = fields[field]["relative_l2"]
             expect(error < limit, f"{name}, {field}: {error:.2g}")
         expect(fields["pressure"]["relative_l2"] is None,

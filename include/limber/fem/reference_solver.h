@@ -94,7 +94,9 @@ namespace limber
     void
     explicit_step(const double step);
     void
-    newmark_step(const double step);
+    newmark_step(const double step, const unsigned int halved);
+    bool
+    try_newmark_step(const double step);
     void
     load_step(const double step);
     bool
@@ -108,7 +110,9 @@ namespace limber
     double
     unbalance(const double time, const double mass_factor);
     void
-    renew_tangent(const double mass_factor);
+    renew_tangent(const double mass_factor, const NodalVector *former);
+    void
+    close_step(const NodalVector &former, const double step);
     void
     account(const NodalVector &former, const double step);
     dealii::Tensor<1, dim>

@@ -53,12 +53,19 @@ namespace limber
      * the element is turned inside out; the results are then of no use. All
      * in the numbering of the degrees of freedom of a cell; @p values has
      * shape gradients, places and weights of the initial configuration.
+     *
+     * With @p former displacements, those of the iterate before, p in the
+     * tangent is the one that they and their linearisation lead to, instead of
+     * the one at @p u. Near incompressibility the two differ by much, and
+     * Newton's method converges from further away (mixed integration points:
+     * Magisano, Leonetti and Garcea, Int. J. Numer. Methods Eng. 2017).
      */
     virtual bool
     compute(const Values               &values,
             const std::vector<double>  &u,
             dealii::Vector<double>     &forces,
-            dealii::FullMatrix<double> *tangent) const = 0;
+            dealii::FullMatrix<double> *tangent,
+            const std::vector<double>  *former = nullptr) const = 0;
 
     /**
      * The states at the points of @p places, given the fields of the element,

@@ -116,12 +116,14 @@ namespace limber
 
     /**
      * Stiffness + @p mass_factor M, one on the diagonal of held components;
-     * false where an element is turned inside out.
+     * false where an element is turned inside out. @p former: as that of
+     * SolidElement::compute().
      */
     bool
     assemble(const NodalVector &displacement,
              const double       mass_factor,
-             Matrix            &matrix) const;
+             Matrix            &matrix,
+             const NodalVector *former = nullptr) const;
 
     /** A matrix with the right pattern. */
     void
