@@ -94,29 +94,45 @@ namespace limber
         return;
       }
 
+    // accelerations: those of held components are known
     unbalance(0, 0);
-    model.clear_held(unbalanced);
+    NodalVector  ignored = model.make_vector(), held = model.make_vector();
+    const double moment =
+      1e-6 * model.smallest_edge / model.element->pressure_wave_speed;
+    model.prescribe(0, state.displacement, moment, ignored, ignored, held);
     if (method == ReferenceMethod::explicit_steps)
       {
         LumpedMass{model.nodal_masses()}.vmult(state.acceleration, unbalanced);
+        state.acceleration += held;
+        support += model.held_inertia(held);
         step_limit =
           request.time_step > 0 ? request.time_step : explicit_step_limit(60);
       }
     else
       {
+        model.mass_matrix().vmult(inertia, held);
+        unbalanced -= inertia;
+        model.clear_held(unbalanced);
         dealii::SolverControl control(1000, 1e-12 * unbalanced.l2_norm());
         dealii::SolverCG<NodalVector>(control).solve(FreeMass<dim>{model},
                                                      state.acceleration,
                                                      unbalanced,
                                                      LumpedMass{
                                                        model.nodal_masses()});
+        state.acceleration += held;
+        model.mass_matrix().vmult(inertia, state.acceleration);
+        held = 0;
+        model.replace_held(held, inertia);
+        support += held;
+        inertia    = 0;
         step_limit = request.time_step > 0 ?
                        request.time_step :
                        model.smallest_edge / model.element->shear_wave_speed;
       }
     state.acceleration.update_ghost_values();
-    former_load    = load;
-    former_support = support;
+    former_load      = load;
+    former_support   = support;
+    state.side_force = model.sum_over_sides(support);
   }
 
 
@@ -435,6 +451,7 @@ namespace limber
                     state.displacement,
                     state.velocity,
                     state.acceleration);
+    inertia           = model.held_inertia(state.acceleration);
     const double rest = unbalance(time, 0);
     if (!std::isfinite(rest) || !std::isfinite(state.velocity.linfty_norm()))
       throw ComputationError(

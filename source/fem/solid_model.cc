@@ -397,6 +397,19 @@ namespace limber
 
 
   template <int dim>
+  NodalVector
+  SolidModel<dim>::held_inertia(const NodalVector &acceleration) const
+  {
+    NodalVector result = make_vector();
+    for (const Held &h : held)
+      if (result.in_local_range(h.dof))
+        result[h.dof] = lumped[h.dof] * acceleration[h.dof];
+    return result;
+  }
+
+
+
+  template <int dim>
   std::array<dealii::Tensor<1, dim>, 2 * dim>
   SolidModel<dim>::sum_over_sides(const NodalVector &forces) const
   {

@@ -110,6 +110,10 @@ namespace limber
     void
     replace_held(NodalVector &vector, const NodalVector &from) const;
 
+    /** Nodal masses times accelerations, of held components only, N. */
+    NodalVector
+    held_inertia(const NodalVector &acceleration) const;
+
     /** The forces in the held components, summed by side of the box. */
     std::array<dealii::Tensor<1, dim>, 2 * dim>
     sum_over_sides(const NodalVector &forces) const;
