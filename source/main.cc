@@ -6,9 +6,11 @@
 #include <limber/output/run_folder.h>
 #include <limber/problem/read_problem.h>
 #include <limber/simulation/command_line.h>
+#include <limber/simulation/reference_run.h>
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
 #include <limber/study/commands.h>
+#include <limber/study/compare.h>
 
 #include <iostream>
 #include <sstream>
@@ -16,16 +18,6 @@
 namespace
 {
   using namespace limber;
-
-  std::string
-  as_text(const PrintStyle style, const SceneFile &scene)
-  {
-    std::ostringstream text;
-    print_parameters(text, style, &scene);
-    return text.str();
-  }
-
-
 
   template <int dim>
   int
@@ -50,12 +42,7 @@ namespace
       simulation.resume();
     else
       prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
-    write_run_texts(folder,
-                    {scene.original_text(),
-                     scene.original_name() == "original.json",
-                     as_text(PrintStyle::prm, scene),
-                     as_text(PrintStyle::json, scene)},
-                    MPI_COMM_WORLD);
+    write_run_texts(folder, run_texts(scene), MPI_COMM_WORLD);
     console.open_log(folder + "/log.txt", command.resume);
     catch_signals();
     return simulation.run();
@@ -83,11 +70,21 @@ namespace
         console.show(usage());
         return int(ExitCode::wrong_input);
       }
+    else if (command.frequencies)
+      throw InputError(
+        "The option '--frequencies' on the command line belongs to the finite "
+        "element reference. Usually the word before it was forgotten. Write "
+        "'limber reference --frequencies 3 " +
+        command.scene + "'.");
     else
       {
         const SceneFile scene(command.scene, command.overrides);
         if (command.print_parameters)
-          console.show(as_text(*command.print_parameters, scene));
+          {
+            std::ostringstream text;
+            print_parameters(text, *command.print_parameters, &scene);
+            console.show(text.str());
+          }
         else
           {
             console.say(banner(run_info()));
@@ -125,6 +122,10 @@ main(int argc, char *argv[])
   try
     {
       Console console(first, std::cout);
+      if (argc > 1 && std::string(argv[1]) == "reference")
+        return run_reference(parse_command_line(argc - 1, argv + 1), console);
+      if (argc > 1 && std::string(argv[1]) == "compare")
+        return run_compare({argv + 2, argv + argc}, console);
       return execute(parse_command_line(argc, argv), console);
     }
   catch (const Failure &failure)

@@ -33,39 +33,6 @@ namespace limber
 
 
 
-    const char *
-    unit_of(const ObservableKind kind)
-    {
-      switch (kind)
-        {
-          case ObservableKind::displacement:
-          case ObservableKind::position:
-          case ObservableKind::extreme_coordinate:
-          case ObservableKind::centre_of_mass:
-            return "m";
-          case ObservableKind::velocity:
-            return "m/s";
-          case ObservableKind::stress:
-          case ObservableKind::pressure:
-            return "Pa";
-          case ObservableKind::kinetic_energy:
-          case ObservableKind::strain_energy:
-          case ObservableKind::total_energy:
-            return "J";
-          case ObservableKind::momentum:
-            return "kg m/s";
-          case ObservableKind::volume_ratio:
-            return "";
-          case ObservableKind::frequency:
-            return "Hz";
-          case ObservableKind::reaction_force:
-            return "N";
-        }
-      return "";
-    }
-
-
-
     template <int dim>
     bool
     is_within(const PointView<dim>  &points,
@@ -104,6 +71,39 @@ namespace limber
       return largest + 0.5 * spacing;
     }
   } // namespace
+
+
+
+  std::string
+  unit_of(const ObservableKind kind)
+  {
+    switch (kind)
+      {
+        case ObservableKind::displacement:
+        case ObservableKind::position:
+        case ObservableKind::extreme_coordinate:
+        case ObservableKind::centre_of_mass:
+          return "m";
+        case ObservableKind::velocity:
+          return "m/s";
+        case ObservableKind::stress:
+        case ObservableKind::pressure:
+          return "Pa";
+        case ObservableKind::kinetic_energy:
+        case ObservableKind::strain_energy:
+        case ObservableKind::total_energy:
+          return "J";
+        case ObservableKind::momentum:
+          return "kg m/s";
+        case ObservableKind::volume_ratio:
+          return "";
+        case ObservableKind::frequency:
+          return "Hz";
+        case ObservableKind::reaction_force:
+          return "N";
+      }
+    return "";
+  }
 
 
 

@@ -4,6 +4,7 @@
 #include <limber/output/run_folder.h>
 
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 #include <vector>
 
@@ -48,7 +49,7 @@ namespace limber
 
 
 
-    /** "points_00012.vtu" is a piece of the series "points". */
+    /** "points_00012.vtu" is a piece of the series "points"; so is ".h5". */
     bool
     is_piece(const std::string &file, const std::string &series)
     {
@@ -57,7 +58,8 @@ namespace limber
       return file.compare(0, start.size(), start) == 0 &&
              dot != std::string::npos && dot > start.size() &&
              file.find_first_not_of("0123456789", start.size()) == dot &&
-             (file.substr(dot) == ".vtu" || file.substr(dot) == ".vtu.part");
+             (file.substr(dot) == ".vtu" || file.substr(dot) == ".vtu.part" ||
+              file.substr(dot) == ".h5");
     }
 
 
@@ -87,6 +89,7 @@ namespace limber
     {
       remove_pieces(folder, "points");
       remove_pieces(folder, "grid");
+      remove_pieces(folder, "nodes");
       std::filesystem::remove_all(folder / "checkpoint");
       // The names by which a run is known go last: what is left after an
       // interruption is still a run folder.
@@ -96,6 +99,9 @@ namespace limber
                                      "parameters.json",
                                      "summary.json",
                                      "statistics",
+                                     "frequencies",
+                                     "comparison",
+                                     "comparison.json",
                                      "parameters.prm",
                                      "original.json",
                                      "original.prm"})
@@ -166,6 +172,22 @@ namespace limber
                      const MPI_Comm     communicator)
   {
     on_first_rank(communicator, [&]() { make_ready(folder, replace); });
+  }
+
+
+
+  RunTexts
+  run_texts(const SceneFile &scene)
+  {
+    const auto printed = [&](const PrintStyle style) {
+      std::ostringstream text;
+      print_parameters(text, style, &scene);
+      return text.str();
+    };
+    return {scene.original_text(),
+            scene.original_name() == "original.json",
+            printed(PrintStyle::prm),
+            printed(PrintStyle::json)};
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/output/files.h>
 #include <limber/output/pictures.h>
+#include <limber/output/point_arrays.h>
 #include <limber/output/writer.h>
 
 #include <cstdio>
@@ -13,11 +14,13 @@ namespace limber
   {
     /** "points/points_00012.vtu", as the series names it. */
     std::string
-    piece_name(const std::string &series, const std::size_t number)
+    piece_name(const std::string &series,
+               const std::size_t  number,
+               const std::string &ending = ".vtu")
     {
       char digits[24];
       std::snprintf(digits, sizeof(digits), "%05zu", number);
-      return series + "/" + series + "_" + digits + ".vtu";
+      return series + "/" + series + "_" + digits + ending;
     }
 
 
@@ -55,7 +58,12 @@ namespace limber
       std::size_t     number = pieces.size();
       while (std::filesystem::remove(folder + "/" + piece_name(series, number),
                                      error))
-        ++number;
+        {
+          std::filesystem::remove(folder + "/" +
+                                    piece_name(series, number, ".h5"),
+                                  error);
+          ++number;
+        }
       const std::string path = folder + "/" + series + ".pvd";
       if (!pieces.empty())
         write_series(path, pieces);
@@ -95,6 +103,10 @@ namespace limber
                 picture.fields,
                 state.time,
                 communicator);
+      if (state.problem.output.point_arrays)
+        write_point_arrays(folder + "/" + piece_name("points", number, ".h5"),
+                           to_arrays(picture, state.time),
+                           communicator);
     }
     const Picture<dim, dim> picture = draw_grid(state);
     write_vtu(folder + "/" + grid,

@@ -4,6 +4,8 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
+#include <algorithm>
+
 namespace limber
 {
   void
@@ -127,6 +129,13 @@ namespace limber
                        "in compression, stress in tension (Cauchy). They are "
                        "those that act after the locking treatment; 'point "
                        "pressure' and 'point stress' are those before it.");
+    parameters.declare("Point arrays",
+                       "false",
+                       admissible::flag(),
+                       "Whether an HDF5 file is written beside each picture "
+                       "of the points, for 'limber compare' and programs of "
+                       "your own. Displacement, velocity, pressure, stress and "
+                       "mass are then fields of the picture as well.");
     parameters.declare("Statistics interval",
                        "1",
                        admissible::positive_integer("10"),
@@ -165,6 +174,19 @@ namespace limber
           output.fields.clear();
           break;
         }
+    output.point_arrays = section.flag("Point arrays");
+    if (output.point_arrays && output.time_interval == 0)
+      throw InputError("The entry 'Point arrays' is true in " +
+                       section.where("Point arrays") +
+                       ", but there are no times to write them at. Usually "
+                       "'Time interval' was forgotten. Set 'Output/Time "
+                       "interval = 0.1', for instance.");
+    if (output.point_arrays)
+      for (const char *const field :
+           {"displacement", "velocity", "pressure", "stress", "mass"})
+        if (std::find(output.fields.begin(), output.fields.end(), field) ==
+            output.fields.end())
+          output.fields.push_back(field);
     return output;
   }
 

@@ -49,7 +49,10 @@ namespace limber
       std::vector<std::string> result;
       for (const auto &[name, value] : parameters.entries())
         if (name != "End time" && name != "End step" &&
-            name.rfind("Output/", 0) != 0 && name.rfind("Checkpoint/", 0) != 0)
+            name.rfind("Output/", 0) != 0 &&
+            name.rfind("Checkpoint/", 0) != 0 &&
+            name.rfind("Reference/", 0) != 0 &&
+            name.rfind("Exact solution/", 0) != 0)
           result.push_back(name + " = " + value);
       return result;
     }
@@ -82,6 +85,8 @@ namespace limber
     choose_stress_update(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
+    problem.reference  = read_reference(root.subsection("Reference"));
+    read_exact_solution(root.subsection("Exact solution"), problem);
     read_observables(root, problem);
     read_checks(root, problem);
     problem.fixed_entries = fixed_entries(scene.parameters());

@@ -151,6 +151,8 @@ namespace limber
       declare_method(parameters);
       declare_output(parameters);
       declare_checkpoint(parameters);
+      declare_reference(parameters, dim);
+      declare_exact_solution(parameters, dim);
       declare_observables(parameters, dim, names.observables);
       declare_checks(parameters, names.checks);
     }

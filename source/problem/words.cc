@@ -118,6 +118,41 @@ namespace limber
 
 
 
+  const Words<ReferenceElement> &
+  reference_element_words()
+  {
+    static const Words<ReferenceElement> words = {
+      {"Q1", ReferenceElement::q1, "bilinear or trilinear"},
+      {"Q2", ReferenceElement::q2, "biquadratic or triquadratic"},
+      {"Q1-P0-P0",
+       ReferenceElement::q1_p0_p0,
+       "Q1 with constant pressure and volume ratio"},
+      {"Q2-P1-P1",
+       ReferenceElement::q2_p1_p1,
+       "Q2 with linear pressure and volume ratio"}};
+    return words;
+  }
+
+
+
+  const Words<ReferenceMethod> &
+  reference_method_words()
+  {
+    static const Words<ReferenceMethod> words = {
+      {"quasi-static",
+       ReferenceMethod::quasi_static,
+       "equilibrium, the loads of the end time in equal steps"},
+      {"implicit",
+       ReferenceMethod::implicit_steps,
+       "Newmark's method, constant mean acceleration"},
+      {"explicit",
+       ReferenceMethod::explicit_steps,
+       "central differences, lumped mass"}};
+    return words;
+  }
+
+
+
   const Words<Projection> &
   locking_words()
   {

@@ -17,7 +17,8 @@ namespace limber
                                                     "--list",
                                                     "--set",
                                                     "--output-directory",
-                                                    "--resume"};
+                                                    "--resume",
+                                                    "--frequencies"};
 
     const std::map<std::string, PrintStyle> print_styles = {
       {"prm", PrintStyle::prm},
@@ -147,6 +148,8 @@ namespace limber
         else if (option == "--set")
           result.overrides.push_back(
             arguments.take_value(option, "\"End time=2\""));
+        else if (option == "--frequencies")
+          result.frequencies = arguments.take_value(option, "3");
         else if (option == "--output-directory")
           {
             result.output_directory =
@@ -168,6 +171,9 @@ namespace limber
   {
     return R"(limber [options] scene.prm
 mpirun -np 4 limber [options] scene.prm
+limber reference [options] scene.prm    the scene in finite elements
+limber compare RUN OTHER                fields and observables of a run folder
+                                        against a reference, a run or 'exact'
 
 The scene is a .prm or .json file; '--' reads prm from standard input.
 
@@ -181,6 +187,8 @@ The scene is a .prm or .json file; '--' reads prm from standard input.
   --set "Section/Name=value"            change an entry; may be repeated
   --output-directory path               the run folder, same as Output/Directory
   --resume                              go on from the checkpoint of the folder
+  --frequencies n                       of 'reference': natural frequencies of
+                                        the body at rest, no motion
 
 Exit codes: 0 finished, 1 wrong input, 2 computation failed, 3 file error,
 4 a check was missed, 128 + n stopped by signal n.

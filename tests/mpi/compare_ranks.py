@@ -25,13 +25,14 @@ TOLERANCE = 1e-10
 
 
 def run(arguments, ranks, folder):
-    command = ["mpirun", "-np", str(ranks), arguments.limber, arguments.scene,
+    command = ["mpirun", "-np", str(ranks), arguments.limber,
+               *arguments.word, arguments.scene,
                "--output-directory", str(folder)]
     for setting in arguments.set:
         command += ["--set", setting]
     result = subprocess.run(command, env={**os.environ, **ENVIRONMENT},
                             capture_output=True, text=True)
-    if result.returncode != 0:
+    if result.returncode != arguments.expect_code:
         sys.exit(f"{ranks} ranks: exit code {result.returncode}\n"
                  + result.stdout + result.stderr)
     names, rows = [], []
@@ -60,6 +61,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--limber", required=True)
     parser.add_argument("--scene", required=True)
+    parser.add_argument("--expect-code", type=int, default=0,
+                        help="4 where the checks are of a longer run")
+    parser.add_argument("--word", action="append", default=[],
+                        help="stands before the scene, as 'reference'")
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 3, 4])
     parser.add_argument("--set", action="append", default=[])
     arguments = parser.parse_args()

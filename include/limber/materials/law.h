@@ -39,6 +39,12 @@ namespace limber
 
 
 
+  /** By rows: a deformation gradient, a symmetric velocity gradient. */
+  template <int dim>
+  using SquareMatrix = std::array<std::array<double, dim>, dim>;
+
+
+
   /** Deviatoric, symmetric: xx, yy, xy (2d) or xx, yy, xy, yz, zx (3d). */
   template <int dim, class Number>
   using Deviator = std::array<Number, dim == 2 ? 3 : 5>;
@@ -139,7 +145,19 @@ namespace limber
    *  - update(): new stress and history after a motion;
    *  - initialise(): the state at rest under a given pressure;
    *  - volume_ratio(), strain_energy(), volumetric_energy(),
-   *    wave_speed_squared() of a state; dynamic_viscosity().
+   *    wave_speed_squared() of a state; dynamic_viscosity();
+   *  - is_elastic, whether the stress follows from the deformation alone.
+   *
+   * An elastic law has besides
+   *  - finite_strain: whether the measure of volume is J = det F and forces
+   *    act on the deformed body; otherwise J = 1 + tr(F - 1) and the geometry
+   *    is that at the start;
+   *  - at_deformation(F, J): the state that F leads to from rest, with the
+   *    volume ratio J in its volumetric part;
+   *  - volumetric_stiffness(J) = d^2 U / dJ^2 of the volumetric energy U;
+   *  - deviatoric_tangent(state, e): by how much the Kirchhoff deviator grows
+   *    in a frame that moves with the material (its Oldroyd rate), for the
+   *    symmetric velocity gradient e; rows and columns within the dimensions.
    */
   template <class Law>
   struct CheckLaw

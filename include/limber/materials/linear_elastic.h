@@ -33,6 +33,8 @@ namespace limber
     static constexpr bool uses_spin      = false;
     static constexpr bool dissipates     = false;
     static constexpr int  volumetric     = -1;
+    static constexpr bool is_elastic     = true;
+    static constexpr bool finite_strain  = false;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 0>;
@@ -72,6 +74,44 @@ namespace limber
       for (unsigned int k = 0; k < strain.size(); ++k)
         state.deviator[k] += 2. * shear_modulus * strain[k];
       return {};
+    }
+
+    /** The strain is sym(F) - 1. */
+    template <int dim>
+    State<dim, double>
+    at_deformation(const SquareMatrix<dim> &F, const double J) const
+    {
+      SquareMatrix<dim> displacement_gradient = F;
+      for (int d = 0; d < dim; ++d)
+        displacement_gradient[d][d] -= 1;
+      State<dim, double> state;
+      state.pressure = -bulk_modulus * (J - 1);
+      state.deviator = symmetric_deviator<dim, double>(displacement_gradient);
+      for (double &component : state.deviator)
+        component *= 2 * shear_modulus;
+      return state;
+    }
+
+    double
+    volumetric_stiffness(const double) const
+    {
+      return bulk_modulus;
+    }
+
+    /** 2 G dev(e) */
+    template <int dim>
+    SquareMatrix<dim>
+    deviatoric_tangent(const State<dim, double> &,
+                       const SquareMatrix<dim> &e) const
+    {
+      double trace = 0;
+      for (int d = 0; d < dim; ++d)
+        trace += e[d][d];
+      SquareMatrix<dim> rate;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          rate[i][j] = 2 * shear_modulus * (e[i][j] - (i == j) * trace / 3);
+      return rate;
     }
 
     template <int dim>

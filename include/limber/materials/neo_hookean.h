@@ -40,6 +40,8 @@ namespace limber
     static constexpr bool uses_spin      = true;
     static constexpr bool dissipates     = false;
     static constexpr int  volumetric     = 0;
+    static constexpr bool is_elastic     = true;
+    static constexpr bool finite_strain  = true;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, n_history<dim>>;
@@ -122,6 +124,73 @@ namespace limber
       state.history[0] *= determinant + (motion.volumetric - motion.trace());
       set_stress<dim>(state);
       return {};
+    }
+
+    /** be = det(F)^(-2/3) F F^T, whatever J is. */
+    template <int dim>
+    State<dim, double>
+    at_deformation(const SquareMatrix<dim> &F, const double J) const
+    {
+      const auto entry = [&](const int i, const int j) {
+        double result = 0;
+        for (int k = 0; k < dim; ++k)
+          result += F[i][k] * F[j][k];
+        return result;
+      };
+      double determinant = F[0][0] * F[1][1] - F[0][1] * F[1][0];
+      if constexpr (dim == 3)
+        determinant = F[2][2] * determinant +
+                      F[2][1] * (F[0][2] * F[1][0] - F[0][0] * F[1][2]) +
+                      F[2][0] * (F[0][1] * F[1][2] - F[0][2] * F[1][1]);
+      const double       scale = std::pow(determinant, -2. / 3.);
+      State<dim, double> state;
+      state.history[0] = J;
+      state.history[1] = scale * entry(0, 0);
+      state.history[2] = scale * entry(1, 1);
+      state.history[3] = scale * entry(0, 1);
+      if constexpr (dim == 3)
+        {
+          state.history[4] = scale * entry(1, 2);
+          state.history[5] = scale * entry(2, 0);
+        }
+      set_stress<dim>(state);
+      return state;
+    }
+
+    double
+    volumetric_stiffness(const double J) const
+    {
+      return 0.5 * bulk_modulus * (1 + 1 / (J * J));
+    }
+
+    /**
+     * 2/3 G tr(be) dev(e) - 2/3 (s tr(e) + (s : e) 1), s = dev(tau): Simo and
+     * Hughes, 9.2, with the deviator s of the law.
+     */
+    template <int dim>
+    SquareMatrix<dim>
+    deviatoric_tangent(const State<dim, double> &state,
+                       const SquareMatrix<dim>  &e) const
+    {
+      const auto   be = isochoric_strain<dim>(state);
+      const double twice_shear =
+        2. / 3. * shear_modulus * (be[0][0] + be[1][1] + be[2][2]);
+      const double mean  = (be[0][0] + be[1][1] + be[2][2]) / 3;
+      double       trace = 0, power = 0; // power: s : e
+      for (int i = 0; i < dim; ++i)
+        {
+          trace += e[i][i];
+          for (int j = 0; j < dim; ++j)
+            power += shear_modulus * (be[i][j] - (i == j) * mean) * e[i][j];
+        }
+      SquareMatrix<dim> rate;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          rate[i][j] = twice_shear * (e[i][j] - (i == j) * trace / 3) -
+                       2. / 3. *
+                         (shear_modulus * (be[i][j] - (i == j) * mean) * trace +
+                          (i == j) * power);
+      return rate;
     }
 
     template <int dim>

@@ -59,6 +59,7 @@ namespace limber
     static constexpr bool uses_spin      = false;
     static constexpr bool dissipates     = true;
     static constexpr int  volumetric     = 0;
+    static constexpr bool is_elastic     = false;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 1>;

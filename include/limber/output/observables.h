@@ -11,6 +11,12 @@
 
 namespace limber
 {
+  /** SI, for instance "m"; forces in two dimensions are per metre. */
+  std::string
+  unit_of(const ObservableKind kind);
+
+
+
   /** What observables remember between two rows; plain, for checkpoints. */
   template <int dim>
   struct ObservablesState
@@ -50,7 +56,6 @@ namespace limber
     std::vector<std::string>
     names() const;
 
-    /** SI, for instance "m"; forces in two dimensions are per metre. */
     std::vector<std::string>
     units() const;
 

@@ -4,6 +4,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <limber/problem/read_problem.h>
+
 #include <string>
 
 namespace limber
@@ -30,6 +32,10 @@ namespace limber
   prepare_run_folder(const std::string &folder,
                      const bool         replace,
                      MPI_Comm           communicator);
+
+  /** Those of a scene. */
+  RunTexts
+  run_texts(const SceneFile &scene);
 
   /** Write the texts into the folder; collective likewise. */
   void

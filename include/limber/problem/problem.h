@@ -156,9 +156,10 @@ namespace limber
   struct OutputRequest
   {
     std::string              directory     = "output";
-    bool                     replace       = false;   // an existing run folder
-    double                   time_interval = 0;       // s; 0: statistics only
-    std::vector<std::string> fields;                  // names of point fields
+    bool                     replace       = false; // an existing run folder
+    double                   time_interval = 0;     // s; 0: statistics only
+    std::vector<std::string> fields;                // names of point fields
+    bool                     point_arrays = false;  // HDF5 beside the pictures
     unsigned int             statistics_interval = 1; // steps
     double                   progress_interval   = 5; // s of wall time
   };
@@ -168,6 +169,36 @@ namespace limber
     double       interval        = 3600; // s of wall time; 0: none
     unsigned int steps           = 0;    // between checkpoints; 0: none
     double       wall_time_limit = 0;    // s; 0: none
+  };
+
+  enum class ReferenceElement
+  {
+    q1,
+    q2,
+    q1_p0_p0, // displacement, pressure, volume ratio
+    q2_p1_p1
+  };
+
+  enum class ReferenceMethod
+  {
+    quasi_static,   // load steps without inertia
+    implicit_steps, // Newmark's method
+    explicit_steps  // central differences
+  };
+
+  /** How the finite element reference of the scene is computed. */
+  struct ReferenceRequest
+  {
+    ReferenceElement          element    = ReferenceElement::q2_p1_p1;
+    ReferenceMethod           method     = ReferenceMethod::implicit_steps;
+    unsigned int              over_depth = 4; // elements
+    std::vector<unsigned int> elements;       // along each direction, or empty
+    std::string               mesh_file;      // empty: a mesh of our own
+    unsigned int              refinements = 0;
+    double                    time_step   = 0; // s; 0: from the wave speed
+    unsigned int              load_steps  = 1;
+    double                    tolerance   = 1e-8; // residual over forces
+    unsigned int              frequencies = 0;    // how many; 0: solve in time
   };
 
   enum class ObservableKind
@@ -206,6 +237,14 @@ namespace limber
     unsigned int side = 0;   // reaction force
   };
 
+  /** Formulas of initial place and time; those not given are empty. */
+  template <int dim>
+  struct ExactSolution
+  {
+    Formula<dim> displacement, velocity; // dim components, m, m/s
+    Formula<dim> pressure;               // 1 component, Pa
+  };
+
   struct Check
   {
     std::string           name;
@@ -227,6 +266,8 @@ namespace limber
     Method                         method;
     OutputRequest                  output;
     CheckpointRequest              checkpoint;
+    ReferenceRequest               reference;
+    ExactSolution<dim>             exact;
     std::vector<Observable<dim>>   observables;
     std::vector<Check>             checks;
     std::vector<std::string> notes; // what the reader decided, for the log

@@ -168,6 +168,22 @@ namespace limber
   CheckpointRequest
   read_checkpoint(const Section &section);
 
+  // Finite element reference, exact solution (source/problem/read_reference.cc)
+
+  void
+  declare_reference(Parameters &parameters, const unsigned int dim);
+
+  ReferenceRequest
+  read_reference(const Section &section);
+
+  void
+  declare_exact_solution(Parameters &parameters, const unsigned int dim);
+
+  /** Needs the grid. */
+  template <int dim>
+  void
+  read_exact_solution(const Section &section, Problem<dim> &problem);
+
   // Observables and checks (source/problem/read_observables.cc)
 
   void

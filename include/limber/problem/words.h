@@ -72,6 +72,12 @@ namespace limber
   const Words<Placement> &
   placement_words();
 
+  const Words<ReferenceElement> &
+  reference_element_words();
+
+  const Words<ReferenceMethod> &
+  reference_method_words();
+
   const Words<Projection> &
   locking_words();
 

@@ -21,6 +21,7 @@ namespace limber
     std::optional<PrintStyle>  print_parameters;
     std::optional<std::string> list; // topic of --list
     std::optional<std::string> output_directory;
+    std::optional<std::string> frequencies; // how many, for 'reference'
 
     // "Section/Name=value", in order; --output-directory is among them.
     std::vector<std::string> overrides;

@@ -495,3 +495,120 @@ TYPED_TEST(EveryLaw, DeviatoricStrainIsTheWholeDeviatoricHistory)
             EXPECT_NEAR(s, 0, 1e-15 * law.shear_modulus);
         }
 }
+
+
+
+// An elastic law gives the same at a deformation as after the motion there.
+TYPED_TEST(EveryLaw, StateAtADeformationIsWhereMotionsLead)
+{
+  constexpr int dim = TestFixture::dim;
+  using Law         = typename TestFixture::Law;
+  if constexpr (Law::is_elastic)
+    for (const auto &law : samples<Law>())
+      for (int k = 0; k < 5; ++k)
+        {
+          // F = exp(A) in the end; small strain knows symmetric A only
+          auto A =
+            this->random.template matrix<dim>(Law::finite_strain ? 0.3 : 1e-6);
+          if (!Law::finite_strain)
+            for (int i = 0; i < dim; ++i)
+              for (int j = 0; j < i; ++j)
+                A[i][j] = A[j][i];
+          constexpr int n_steps = 1000;
+          auto          state   = law.template initialise<dim>(0);
+          Matrix<dim>   F{}, power{};
+          for (int d = 0; d < dim; ++d)
+            F[d][d] = power[d][d] = 1;
+          for (int n = 0; n < n_steps; ++n)
+            state = this->moved(law, state, this->times(1. / n_steps, A));
+          for (int order = 1; order < 20; ++order)
+            {
+              Matrix<dim> next{};
+              for (int i = 0; i < dim; ++i)
+                for (int j = 0; j < dim; ++j)
+                  for (int l = 0; l < dim; ++l)
+                    next[i][j] += power[i][l] * A[l][j] / order;
+              power = next;
+              for (int i = 0; i < dim; ++i)
+                for (int j = 0; j < dim; ++j)
+                  F[i][j] += power[i][j];
+            }
+          double trace = 0;
+          for (int d = 0; d < dim; ++d)
+            trace += A[d][d];
+          const double J = Law::finite_strain ? std::exp(trace) : 1 + trace;
+          const auto   direct = law.template at_deformation<dim>(F, J);
+          const double scale =
+            this->stiffness(law) * (Law::finite_strain ? 1e-5 : 1e-11);
+          EXPECT_NEAR(direct.pressure, state.pressure, scale);
+          for (unsigned int c = 0; c < direct.deviator.size(); ++c)
+            EXPECT_NEAR(direct.deviator[c], state.deviator[c], scale);
+        }
+}
+
+
+
+// The tangents of an elastic law against differences of its stress.
+TYPED_TEST(EveryLaw, TangentsAreDerivatives)
+{
+  constexpr int dim = TestFixture::dim;
+  using Law         = typename TestFixture::Law;
+  if constexpr (Law::is_elastic)
+    for (const auto &law : samples<Law>())
+      for (int k = 0; k < 20; ++k)
+        {
+          auto F = this->random.template matrix<dim>(0.3);
+          for (int d = 0; d < dim; ++d)
+            F[d][d] += 1;
+          const auto   L           = this->random.template matrix<dim>();
+          const double h           = 1e-6;
+          const auto   deviator_at = [&](const double t) {
+            auto moved = F;
+            for (int i = 0; i < dim; ++i)
+              for (int j = 0; j < dim; ++j)
+                for (int l = 0; l < dim; ++l)
+                  moved[i][j] +=
+                    t * L[i][l] *
+                    (Law::finite_strain ? F[l][j] : double(l == j));
+            auto state     = law.template at_deformation<dim>(moved, 1.1);
+            state.pressure = 0;
+            return kirchhoff_stress_of<dim>(state);
+          };
+          const auto  ahead = deviator_at(h), behind = deviator_at(-h);
+          const auto  s = deviator_at(0);
+          Matrix<dim> e{};
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              e[i][j] = (L[i][j] + L[j][i]) / 2;
+          const auto rate = law.template deviatoric_tangent<dim>(
+            law.template at_deformation<dim>(F, 1.1), e);
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              {
+                double expected = rate[i][j];
+                if (Law::finite_strain)
+                  for (int l = 0; l < dim; ++l)
+                    expected += L[i][l] * s[l][j] + s[i][l] * L[j][l];
+                EXPECT_NEAR((ahead[i][j] - behind[i][j]) / (2 * h),
+                            expected,
+                            1e-7 * this->stiffness(law));
+              }
+
+          // dU/dJ and its slope; small strain has U in terms of pressure
+          const double J     = 1 + this->random(-0.2, 0.2);
+          const auto   slope = [&](const double ratio) {
+            const auto state = law.template at_deformation<dim>(F, ratio);
+            return -state.pressure / (Law::finite_strain ? ratio : 1);
+          };
+          const auto energy = [&](const double ratio) {
+            auto state = law.template at_deformation<dim>(F, ratio);
+            return law.volumetric_energy(this->volumetric(state));
+          };
+          EXPECT_NEAR((energy(J + h) - energy(J - h)) / (2 * h),
+                      slope(J),
+                      1e-7 * this->stiffness(law));
+          EXPECT_NEAR((slope(J + h) - slope(J - h)) / (2 * h),
+                      law.volumetric_stiffness(J),
+                      1e-6 * this->stiffness(law));
+        }
+}

@@ -359,7 +359,19 @@ namespace
     {"CheckWithoutReference", {"Check swing/Reference="}, {"'Reference'"}},
     {"FieldsBesideNone",
      {"Output/Fields=none, velocity"},
-     {"'none'", "'Fields'"}}};
+     {"'none'", "'Fields'"}},
+    {"PointArraysWithoutTimes",
+     {"Output/Point arrays=true"},
+     {"'Point arrays'", "Time interval"}},
+    {"ReferenceOfUnknownElement",
+     {"Reference/Element=Q2-P1-P0"},
+     {"Q2-P1-P0", "Q2-P1-P1"}},
+    {"ReferenceWithMeshAndElements",
+     {"Reference/Mesh file=a.msh", "Reference/Elements=8, 8"},
+     {"mesh file", "'Elements'", "'Refinements'"}},
+    {"ExactSolutionOfOneComponent",
+     {"Exact solution/Displacement=x"},
+     {"'Displacement'", "2"}}};
 
 
 

@@ -63,6 +63,7 @@ TEST(CommandLine, StandardInputAndStyles)
   EXPECT_EQ(parse_words({"--print-parameters", "json"}).print_parameters,
             PrintStyle::json);
   EXPECT_EQ(parse_words({"--list=laws"}).list, "laws");
+  EXPECT_EQ(parse_words({"--frequencies", "3"}).frequencies, "3");
   EXPECT_TRUE(parse_words({}).scene.empty());
 }
 

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_linear_solver_h
+#define limber_fem_linear_solver_h
+
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <memory>
+#include <vector>
+
+namespace dealii
+{
+  namespace TrilinosWrappers
+  {
+    class SparseMatrix;
+  }
+} // namespace dealii
+
+namespace limber
+{
+  using NodalVector = dealii::LinearAlgebra::distributed::Vector<double>;
+
+
+
+  /**
+   * Solves with a symmetric positive definite matrix of elasticity, again and
+   * again with the same one: small systems by factorisation (Amesos), large
+   * ones by conjugate gradients with algebraic multigrid (ML), which is told
+   * the rigid motions of the body.
+   */
+  class LinearSolver
+  {
+  public:
+    /**
+     * @p rigid_motions: values of each motion on the locally owned degrees
+     * of freedom, one motion after the other; @p dim: components of a node.
+     */
+    LinearSolver(const bool                 direct,
+                 const unsigned int         dim,
+                 const std::vector<double> &rigid_motions);
+
+    ~LinearSolver();
+
+    /** The matrix has to live until the next call. */
+    void
+    set_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix);
+
+    /** Throws ComputationError where the iteration does not converge. */
+    void
+    solve(NodalVector &solution, const NodalVector &right_side);
+
+    const bool direct;
+
+  private:
+    struct Methods;
+
+    const unsigned int        dim;
+    const std::vector<double> rigid_motions;
+    std::unique_ptr<Methods>  methods;
+  };
+} // namespace limber
+
+#endif

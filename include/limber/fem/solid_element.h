@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_solid_element_h
+#define limber_fem_solid_element_h
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <deal.II/lac/full_matrix.h>
+#include <deal.II/lac/vector.h>
+
+#include <limber/problem/problem.h>
+
+#include <memory>
+#include <vector>
+
+namespace limber
+{
+  /** What the material of an element is in at some place. */
+  struct MaterialState
+  {
+    double                        volume_ratio = 1;  // J, of the element's kind
+    double                        pressure     = 0;  // Cauchy, Pa
+    dealii::SymmetricTensor<2, 3> stress;            // Cauchy, Pa
+    double                        strain_energy = 0; // per start volume, J/m^3
+  };
+
+
+
+  /**
+   * A total Lagrangian element of an elastic solid, of one field (Q1, Q2) or
+   * three: displacement u, volume ratio j and its conjugate p, the latter two
+   * polynomials within the element and eliminated there (Simo, Taylor and
+   * Pister 1985),
+   *
+   *   Pi = int W_dev(F) + U(j) + p (J(F) - j) dV.
+   *
+   * Stationarity makes j the L2 projection of J(F), and p that of U'(j). So
+   * the element without the two fields is the one whose projection is the
+   * identity, and both are computed by the same lines. theory/reference.md.
+   */
+  template <int dim>
+  class SolidElement
+  {
+  public:
+    using Values = dealii::FEValues<dim>;
+
+    virtual ~SolidElement() = default;
+
+    /**
+     * Forces by which an element resists the displacements @p u of its nodes,
+     * N, and, where @p tangent is not null, their derivative, N/m. False where
+     * the element is turned inside out; the results are then of no use. All
+     * in the numbering of the degrees of freedom of a cell; @p values has
+     * shape gradients, places and weights of the initial configuration.
+     *
+     * With @p former displacements, those of the iterate before, p in the
+     * tangent is the one that they and their linearisation lead to, instead of
+     * the one at @p u. Near incompressibility the two differ by much, and
+     * Newton's method converges from further away (mixed integration points:
+     * Magisano, Leonetti and Garcea, Int. J. Numer. Methods Eng. 2017).
+     */
+    virtual bool
+    compute(const Values               &values,
+            const std::vector<double>  &u,
+            dealii::Vector<double>     &forces,
+            dealii::FullMatrix<double> *tangent,
+            const std::vector<double>  *former = nullptr) const = 0;
+
+    /**
+     * The states at the points of @p places, given the fields of the element,
+     * which follow from the points of @p values. Both may be the same.
+     */
+    virtual std::vector<MaterialState>
+    states(const Values              &values,
+           const Values              &places,
+           const std::vector<double> &u) const = 0;
+
+    /** rho, kg/m^3, and wave speeds at rest, m/s. */
+    double density = 0, pressure_wave_speed = 0, shear_wave_speed = 0;
+  };
+
+
+
+  /**
+   * The element of a scene. Throws InputError where the law of the body has
+   * no stress that follows from the deformation alone, as liquids.
+   */
+  template <int dim>
+  std::unique_ptr<const SolidElement<dim>>
+  make_solid_element(const Body<dim> &body, const ReferenceElement kind);
+} // namespace limber
+
+#endif

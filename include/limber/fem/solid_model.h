@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_solid_model_h
+#define limber_fem_solid_model_h
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <deal.II/dofs/dof_handler.h>
+
+#include <deal.II/fe/fe_system.h>
+
+#include <deal.II/lac/affine_constraints.h>
+
+#include <limber/fem/fitted_mesh.h>
+#include <limber/fem/linear_solver.h>
+#include <limber/fem/solid_element.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace limber
+{
+  /** What a sweep over the elements sums up besides forces. */
+  struct StrainTotals
+  {
+    double strain_energy   = 0; // J
+    double smallest_volume = 1; // of all J at quadrature points
+    double largest_volume  = 1;
+  };
+
+
+
+  /** Displacement, velocity and state of the material at a place. */
+  template <int dim>
+  struct PlaceSample
+  {
+    bool                   inside = false;
+    dealii::Tensor<1, dim> displacement, velocity; // m, m/s
+    MaterialState          material;
+  };
+
+
+
+  /**
+   * The body of a scene in finite elements: mesh, degrees of freedom, masses,
+   * forces and their derivative, and which nodes the sides of the box hold.
+   * Nodal vectors have the displacements of all nodes of this rank's elements
+   * (ghosted); forces are complete for those it owns. Member functions are
+   * collective unless they return what is known already.
+   */
+  template <int dim>
+  class SolidModel
+  {
+  public:
+    using Matrix = dealii::TrilinosWrappers::SparseMatrix;
+
+    /** Throws InputError for what the reference cannot do. */
+    SolidModel(const Problem<dim> &problem, MPI_Comm communicator);
+
+    /** With a mesh of one's own. */
+    SolidModel(const Problem<dim> &problem, std::unique_ptr<Mesh<dim>> mesh);
+
+    ~SolidModel();
+
+    NodalVector
+    make_vector() const;
+
+    /** Initial velocity, m/s; zero where the sides prescribe another one. */
+    NodalVector
+    initial_velocity() const;
+
+    /** N; false where an element is turned inside out. */
+    bool
+    internal_forces(const NodalVector &displacement, NodalVector &forces) const;
+
+    /** Weight of the masses, N, constant. */
+    const NodalVector &
+    gravity() const
+    {
+      return weight;
+    }
+
+    /** Body force formulas, at the present places, and loads on faces, N. */
+    void
+    loads(const NodalVector &displacement,
+          const double       time,
+          NodalVector       &forces) const;
+
+    /** Whether there are any but gravity. */
+    bool
+    has_loads() const
+    {
+      return problem.loads.body_force || !problem.loads.faces.empty();
+    }
+
+    /** Set displacements, velocities, accelerations of held nodes. */
+    void
+    prescribe(const double       former_time,
+              const NodalVector &former_displacement,
+              const double       time,
+              NodalVector       &displacement,
+              NodalVector       &velocity,
+              NodalVector       &acceleration) const;
+
+    /** Set the components of held nodes to zero. */
+    void
+    clear_held(NodalVector &vector) const;
+
+    /** Take the held components from another vector. */
+    void
+    replace_held(NodalVector &vector, const NodalVector &from) const;
+
+    /** Nodal masses times accelerations, of held components only, N. */
+    NodalVector
+    held_inertia(const NodalVector &acceleration) const;
+
+    /** The forces in the held components, summed by side of the box. */
+    std::array<dealii::Tensor<1, dim>, 2 * dim>
+    sum_over_sides(const NodalVector &forces) const;
+
+    /**
+     * Stiffness + @p mass_factor M, one on the diagonal of held components;
+     * false where an element is turned inside out. @p former: as that of
+     * SolidElement::compute().
+     */
+    bool
+    assemble(const NodalVector &displacement,
+             const double       mass_factor,
+             Matrix            &matrix,
+             const NodalVector *former = nullptr) const;
+
+    /** A matrix with the right pattern. */
+    void
+    reinit(Matrix &matrix) const;
+
+    /** Consistent, kg; all components, also held ones. */
+    const Matrix &
+    mass_matrix() const
+    {
+      return *masses;
+    }
+
+    /** Sums of its rows, kg. */
+    const NodalVector &
+    nodal_masses() const
+    {
+      return lumped;
+    }
+
+    StrainTotals
+    strain_totals(const NodalVector &displacement) const;
+
+    /** Means over the elements that meet at a place of the initial body. */
+    PlaceSample<dim>
+    sample(const dealii::Point<dim> &place,
+           const NodalVector        &displacement,
+           const NodalVector        &velocity) const;
+
+    /**
+     * The same at many places, in their order, each in one element that holds
+     * it. For one rank.
+     */
+    std::vector<PlaceSample<dim>>
+    sample(const std::vector<dealii::Point<dim>> &places,
+           const NodalVector                     &displacement,
+           const NodalVector                     &velocity) const;
+
+    /** States of the owned nodes: means over the elements that meet there. */
+    std::vector<MaterialState>
+    nodal_states(const NodalVector &displacement) const;
+
+    /** Values of the rigid motions, as LinearSolver wants them. */
+    std::vector<double>
+    rigid_motions() const;
+
+    /** Call with place and degrees of freedom of each node of this rank. */
+    template <class Function>
+    void
+    for_each_owned_node(const Function &function) const
+    {
+      for (const auto &node : nodes)
+        function(node.first, node.second);
+    }
+
+    /** Ranks may hold the degrees of freedom of a node in any order. */
+    using NodeDofs = std::array<dealii::types::global_dof_index,
+                                static_cast<std::size_t>(dim)>;
+
+    const Problem<dim>                            &problem;
+    const MPI_Comm                                 communicator;
+    const std::unique_ptr<Mesh<dim>>               mesh;
+    const unsigned int                             degree;
+    const std::unique_ptr<const SolidElement<dim>> element;
+    const dealii::FESystem<dim>                    fe;
+    const dealii::QGauss<dim>                      quadrature;
+    dealii::DoFHandler<dim>                        dof_handler;
+    double                                         smallest_edge = 0; // m
+
+  private:
+    struct Held
+    {
+      dealii::types::global_dof_index dof;
+      unsigned int                    side, component;
+      dealii::Point<dim>              place;
+    };
+
+    void
+    check_scene() const;
+    void
+    number();
+    void
+    find_held();
+    void
+    assemble_masses();
+    double
+    prescribed_velocity(const Held &held, const double time) const;
+    void
+    fill_samples(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const std::vector<dealii::Point<dim>>                        &unit_places,
+      const NodalVector             &displacement,
+      const NodalVector             &velocity,
+      std::vector<PlaceSample<dim>> &samples) const;
+    std::vector<double>
+    values_of(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const NodalVector &vector) const;
+
+    dealii::IndexSet                                     relevant;
+    dealii::AffineConstraints<double>                    held_constraints, none;
+    std::vector<Held>                                    held;
+    std::vector<std::pair<dealii::Point<dim>, NodeDofs>> nodes; // owned
+    std::unique_ptr<Matrix>                              masses;
+    NodalVector                                          lumped, weight;
+  };
+
+
+
+  /** Up to here a factorisation is quicker than the iteration. */
+  template <int dim>
+  bool
+  is_small(const SolidModel<dim> &model)
+  {
+    return model.dof_handler.n_dofs() <= (dim == 2 ? 60000 : 12000);
+  }
+} // namespace limber
+
+#endif

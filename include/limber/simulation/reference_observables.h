@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_simulation_reference_observables_h
+#define limber_simulation_reference_observables_h
+
+#include <limber/fem/reference_solver.h>
+#include <limber/output/frequency.h>
+#include <limber/output/statistics.h>
+
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /** Sums over the body and how well energy is conserved; as Totals. */
+  template <int dim>
+  struct ReferenceTotals
+  {
+    double                 mass = 0;                 // kg
+    dealii::Tensor<1, dim> momentum;                 // kg m/s
+    dealii::Tensor<1, dim> mass_moment;              // kg m
+    double                 kinetic_energy       = 0; // J
+    double                 gravitational_energy = 0; // -m g.x, J
+    StrainTotals           strain;
+    double                 energy_drift  = 0; // gain over the scale of energy
+    double                 largest_speed = 0; // m/s
+  };
+
+
+
+  /**
+   * The rows of the statistics of a reference: what those of a run have as
+   * far as it makes sense, and the observables of the scene. A material point
+   * of an observable is the very place that the scene names or, outside the
+   * body, the nearest node. Every member function is collective.
+   */
+  template <int dim>
+  class ReferenceObservables
+  {
+  public:
+    ReferenceObservables(const SolidModel<dim>      &model,
+                         const ReferenceSolver<dim> &solver);
+
+    std::vector<Column>
+    columns() const;
+
+    std::vector<std::string>
+    names() const;
+
+    /** Energies and drift count on from row to row. */
+    ReferenceTotals<dim>
+    totals();
+
+    /** The observables; frequencies count on one call per row. */
+    std::vector<double>
+    observe(const ReferenceTotals<dim> &totals);
+
+    std::vector<double>
+    row(const ReferenceTotals<dim> &totals,
+        const std::vector<double>  &observed) const;
+
+  private:
+    dealii::Point<dim>
+    place_in_body(const dealii::Point<dim> &place) const;
+    double
+    extreme(const Observable<dim> &observable) const;
+
+    const SolidModel<dim>          &model;
+    const ReferenceSolver<dim>     &solver;
+    const Problem<dim>             &problem;
+    std::vector<dealii::Point<dim>> places;    // per observable
+    std::vector<ZeroCrossings>      crossings; // per observable
+    bool                            has_start       = false;
+    double                          energy_at_start = 0, gravity_at_start = 0;
+    double                          energy_scale = 0; // J
+  };
+} // namespace limber
+
+#endif

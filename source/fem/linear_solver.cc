@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_solver.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <limber/base/exceptions.h>
+#include <limber/fem/linear_solver.h>
+
+#include <Teuchos_ParameterList.hpp>
+#include <ml_MultiLevelPreconditioner.h>
+
+namespace limber
+{
+  namespace
+  {
+    constexpr unsigned int most_iterations = 2000;
+    constexpr double       accuracy        = 1e-10; // relative residual
+  }                                                 // namespace
+
+
+
+  struct LinearSolver::Methods
+  {
+    dealii::SolverControl                                   control;
+    std::unique_ptr<dealii::TrilinosWrappers::SolverDirect> factors;
+    dealii::TrilinosWrappers::PreconditionAMG               multigrid;
+    const dealii::TrilinosWrappers::SparseMatrix           *matrix = nullptr;
+  };
+
+
+
+  LinearSolver::LinearSolver(const bool                 direct,
+                             const unsigned int         dim,
+                             const std::vector<double> &rigid_motions)
+    : direct(direct)
+    , dim(dim)
+    , rigid_motions(rigid_motions)
+    , methods(std::make_unique<Methods>())
+  {}
+
+
+
+  LinearSolver::~LinearSolver() = default;
+
+
+
+  void
+  LinearSolver::set_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix)
+  {
+    methods->matrix = &matrix;
+    if (direct)
+      {
+        using Direct = dealii::TrilinosWrappers::SolverDirect;
+        // MUMPS works on all ranks; on one, KLU starts quicker.
+        const bool alone = dealii::Utilities::MPI::n_mpi_processes(
+                             matrix.get_mpi_communicator()) == 1;
+        methods->factors = std::make_unique<Direct>(
+          methods->control,
+          Direct::AdditionalData(false, alone ? "Amesos_Klu" : "Amesos_Mumps"));
+        methods->factors->initialize(matrix);
+        return;
+      }
+
+    Teuchos::ParameterList settings;
+    ML_Epetra::SetDefaults("SA", settings);
+    settings.set("ML output", 0);
+    settings.set("smoother: type", "Chebyshev");
+    settings.set("smoother: sweeps", 2);
+    settings.set("coarse: type", "Amesos-KLU");
+    settings.set("PDE equations", int(dim));
+    settings.set("null space: type", "pre-computed");
+    settings.set("null space: dimension", dim == 2 ? 3 : 6);
+    settings.set("null space: vectors",
+                 const_cast<double *>(rigid_motions.data()));
+    methods->multigrid.initialize(matrix, settings);
+  }
+
+
+
+  void
+  LinearSolver::solve(NodalVector &solution, const NodalVector &right_side)
+  {
+    if (direct)
+      {
+        methods->factors->solve(solution, right_side);
+        return;
+      }
+    const double          size = right_side.l2_norm();
+    dealii::SolverControl control(most_iterations, accuracy * size);
+    solution = 0;
+    if (size == 0)
+      return;
+    try
+      {
+        dealii::SolverCG<NodalVector>(control).solve(*methods->matrix,
+                                                     solution,
+                                                     right_side,
+                                                     methods->multigrid);
+      }
+    catch (const dealii::SolverControl::NoConvergence &failure)
+      {
+        throw ComputationError(
+          "The conjugate gradients of the finite element reference stopped "
+          "after " +
+          std::to_string(failure.last_step) + " steps at the residual " +
+          std::to_string(failure.last_residual / size) +
+          " of its start. Usually the body has lost its stability or "
+          "Poisson's ratio is too close to 0.5. Set 'Reference/Load steps' or "
+          "'Reference/Time step' finer, or take 'Element = Q1-P0-P0'.");
+      }
+  }
+} // namespace limber

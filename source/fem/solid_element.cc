@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/fem/solid_element.h>
+#include <limber/materials/law_list.h>
+
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    /** Deformation at one point, and what the variation of J needs. */
+    template <int dim>
+    struct Deformation
+    {
+      SquareMatrix<dim>      gradient{}; // F
+      dealii::Tensor<2, dim> inverse;    // F^-1, or 1 where the strain is small
+      double                 J = 1;
+    };
+
+
+
+    template <int dim>
+    Deformation<dim>
+    deformation(const dealii::FEValues<dim> &values,
+                const unsigned int           q,
+                const std::vector<double>   &u,
+                const bool                   finite_strain)
+    {
+      dealii::Tensor<2, dim> F  = dealii::unit_symmetric_tensor<dim>();
+      const auto            &fe = values.get_fe();
+      for (unsigned int i = 0; i < u.size(); ++i)
+        F[fe.system_to_component_index(i).first] +=
+          u[i] * values.shape_grad(i, q);
+
+      Deformation<dim> result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result.gradient[i][j] = F[i][j];
+      if (finite_strain)
+        {
+          result.J = determinant(F);
+          if (result.J > 0)
+            result.inverse = invert(F);
+        }
+      else
+        {
+          result.J       = 1 + trace(F) - dim;
+          result.inverse = dealii::unit_symmetric_tensor<dim>();
+        }
+      return result;
+    }
+
+
+
+    /**
+     * L2 projection within an element onto 1 or 1, X, Y (, Z); with no modes
+     * the identity on the quadrature points.
+     */
+    template <int dim>
+    class FieldProjection
+    {
+    public:
+      FieldProjection(const dealii::FEValues<dim> &values,
+                      const unsigned int           n_modes)
+        : n_modes(n_modes)
+        , weights(values.get_JxW_values())
+      {
+        if (n_modes == 0)
+          return;
+        double volume = 0;
+        for (unsigned int q = 0; q < weights.size(); ++q)
+          {
+            centre += weights[q] * values.quadrature_point(q);
+            volume += weights[q];
+          }
+        centre /= volume;
+        scale = std::pow(volume, -1. / dim);
+        modes = modes_at(values);
+        inverse_mass.reinit(n_modes, n_modes);
+        for (unsigned int q = 0; q < weights.size(); ++q)
+          for (unsigned int m = 0; m < n_modes; ++m)
+            for (unsigned int n = 0; n < n_modes; ++n)
+              inverse_mass(m, n) += weights[q] * modes(q, m) * modes(q, n);
+        inverse_mass.gauss_jordan();
+      }
+
+      dealii::FullMatrix<double>
+      modes_at(const dealii::FEValues<dim> &places) const
+      {
+        dealii::FullMatrix<double> result(places.n_quadrature_points, n_modes);
+        for (const unsigned int q : places.quadrature_point_indices())
+          for (unsigned int m = 0; m < n_modes; ++m)
+            result(q, m) =
+              m == 0 ?
+                1 :
+                scale * (places.quadrature_point(q)[m - 1] - centre[m - 1]);
+        return result;
+      }
+
+      /** Coefficients of a field given at the quadrature points. */
+      std::vector<double>
+      coefficients(const std::vector<double> &field) const
+      {
+        std::vector<double> moments(n_modes), result(n_modes);
+        for (unsigned int q = 0; q < weights.size(); ++q)
+          for (unsigned int m = 0; m < n_modes; ++m)
+            moments[m] += weights[q] * modes(q, m) * field[q];
+        for (unsigned int m = 0; m < n_modes; ++m)
+          for (unsigned int n = 0; n < n_modes; ++n)
+            result[m] += inverse_mass(m, n) * moments[n];
+        return result;
+      }
+
+      static std::vector<double>
+      evaluate(const dealii::FullMatrix<double> &modes,
+               const std::vector<double>        &coefficients)
+      {
+        std::vector<double> result(modes.m());
+        for (unsigned int q = 0; q < modes.m(); ++q)
+          for (unsigned int m = 0; m < modes.n(); ++m)
+            result[q] += modes(q, m) * coefficients[m];
+        return result;
+      }
+
+      std::vector<double>
+      project(const std::vector<double> &field) const
+      {
+        return n_modes == 0 ? field : evaluate(modes, coefficients(field));
+      }
+
+      const unsigned int         n_modes;
+      const std::vector<double> &weights;
+      dealii::FullMatrix<double> modes, inverse_mass;
+
+    private:
+      dealii::Point<dim> centre;
+      double             scale = 1;
+    };
+
+
+
+    template <int dim, class Law>
+    class LawElement : public SolidElement<dim>
+    {
+      using Values = typename SolidElement<dim>::Values;
+      using Tensor = dealii::Tensor<1, dim>;
+
+    public:
+      LawElement(const Law &law, const unsigned int n_modes)
+        : law(law)
+        , n_modes(n_modes)
+      {
+        this->density             = law.density;
+        this->pressure_wave_speed = std::sqrt(
+          (law.bulk_modulus + 4. / 3. * law.shear_modulus) / law.density);
+        this->shear_wave_speed = std::sqrt(law.shear_modulus / law.density);
+      }
+
+      bool
+      compute(const Values               &values,
+              const std::vector<double>  &u,
+              dealii::Vector<double>     &forces,
+              dealii::FullMatrix<double> *tangent,
+              const std::vector<double>  *former) const override
+      {
+        const unsigned int            n = u.size();
+        const FieldProjection<dim>    projection(values, n_modes);
+        std::vector<Deformation<dim>> deformations;
+        if (!deform(values, u, deformations))
+          return false;
+
+        const auto          ratio = projection.project(ratios(deformations));
+        std::vector<double> conjugate;
+        std::vector<typename Law::template State<dim, double>> states;
+        for (unsigned int q = 0; q < ratio.size(); ++q)
+          {
+            if (Law::finite_strain && !(ratio[q] > 0))
+              return false;
+            states.push_back(
+              law.template at_deformation<dim>(deformations[q].gradient,
+                                               ratio[q]));
+            conjugate.push_back(slope_of_energy(states.back(), ratio[q]));
+          }
+        conjugate = projection.project(conjugate);
+        const std::vector<double> in_tangent =
+          Law::finite_strain && tangent != nullptr && former != nullptr ?
+            extrapolate(values, projection, *former, u) :
+            conjugate;
+
+        forces = 0;
+        if (tangent != nullptr)
+          *tangent = 0;
+        dealii::FullMatrix<double> volume_moments(projection.n_modes, n);
+        std::vector<Tensor>        gradient(n); // of the deformed body
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            const double dV = projection.weights[q];
+            for (unsigned int i = 0; i < n; ++i)
+              gradient[i] = values.shape_grad(i, q) * deformations[q].inverse;
+
+            const auto   s    = deviator(states[q]);
+            const double J    = Law::finite_strain ? deformations[q].J : 1;
+            const double mean = conjugate[q] * J; // -J p
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                const unsigned int c = component(values, i);
+                forces[i] +=
+                  dV * ((s * gradient[i])[c] + mean * gradient[i][c]);
+                for (unsigned int m = 0; m < projection.n_modes; ++m)
+                  volume_moments(m, i) +=
+                    dV * projection.modes(q, m) * J * gradient[i][c];
+              }
+            if (tangent != nullptr)
+              add_tangent(values,
+                          dV,
+                          states[q],
+                          s,
+                          in_tangent[q] * J,
+                          gradient,
+                          *tangent);
+            if (tangent != nullptr && projection.n_modes == 0)
+              {
+                const double k =
+                  dV * law.volumetric_stiffness(ratio[q]) * J * J;
+                for (unsigned int i = 0; i < n; ++i)
+                  for (unsigned int j = 0; j < n; ++j)
+                    (*tangent)(i, j) += k * gradient[i][component(values, i)] *
+                                        gradient[j][component(values, j)];
+              }
+          }
+        if (tangent != nullptr && projection.n_modes > 0)
+          add_projected_tangent(projection, ratio, volume_moments, *tangent);
+        return true;
+      }
+
+      std::vector<MaterialState>
+      states(const Values              &values,
+             const Values              &places,
+             const std::vector<double> &u) const override
+      {
+        const FieldProjection<dim>    projection(values, n_modes);
+        std::vector<Deformation<dim>> own, there;
+        deform(values, u, own);
+        deform(places, u, there);
+        const std::vector<double> ratio =
+          n_modes == 0 ?
+            ratios(there) :
+            projection.evaluate(projection.modes_at(places),
+                                projection.coefficients(ratios(own)));
+
+        std::vector<MaterialState> result(ratio.size());
+        for (unsigned int q = 0; q < ratio.size(); ++q)
+          {
+            const auto state =
+              law.template at_deformation<dim>(there[q].gradient, ratio[q]);
+            MaterialState &r = result[q];
+            r.volume_ratio   = law.template volume_ratio<dim>(state);
+            r.pressure       = state.pressure / r.volume_ratio;
+            r.strain_energy  = law.template strain_energy<dim>(state);
+            const auto s     = deviator(state);
+            for (int i = 0; i < dim; ++i)
+              for (int j = 0; j <= i; ++j)
+                r.stress[i][j] = s[i][j] / r.volume_ratio;
+            if (dim == 2)
+              r.stress[2][2] = -(s[0][0] + s[1][1]) / r.volume_ratio;
+            for (int d = 0; d < 3; ++d)
+              r.stress[d][d] -= r.pressure;
+          }
+        return result;
+      }
+
+    private:
+      static unsigned int
+      component(const Values &values, const unsigned int i)
+      {
+        return values.get_fe().system_to_component_index(i).first;
+      }
+
+      /** False where the material is turned inside out. */
+      static bool
+      deform(const Values                  &values,
+             const std::vector<double>     &u,
+             std::vector<Deformation<dim>> &result)
+      {
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            result.push_back(
+              deformation<dim>(values, q, u, Law::finite_strain));
+            if (Law::finite_strain && !(result.back().J > 0))
+              return false;
+          }
+        return true;
+      }
+
+      static std::vector<double>
+      ratios(const std::vector<Deformation<dim>> &deformations)
+      {
+        std::vector<double> result;
+        for (const auto &d : deformations)
+          result.push_back(d.J);
+        return result;
+      }
+
+      /** p at u to first order, from the state at other displacements. */
+      std::vector<double>
+      extrapolate(const Values               &values,
+                  const FieldProjection<dim> &projection,
+                  const std::vector<double>  &former,
+                  const std::vector<double>  &u) const
+      {
+        std::vector<Deformation<dim>> deformations;
+        deform(values, former, deformations);
+        const auto ratio = projection.project(ratios(deformations));
+
+        std::vector<double> growth(ratio.size());
+        for (unsigned int q = 0; q < growth.size(); ++q)
+          for (unsigned int i = 0; i < u.size(); ++i)
+            growth[q] += deformations[q].J * (u[i] - former[i]) *
+                         (values.shape_grad(i, q) *
+                          deformations[q].inverse)[component(values, i)];
+        growth = projection.project(growth);
+
+        std::vector<double> result;
+        for (unsigned int q = 0; q < ratio.size(); ++q)
+          result.push_back(
+            slope_of_energy(law.template at_deformation<dim>(
+                              deformations[q].gradient, ratio[q]),
+                            ratio[q]) +
+            law.volumetric_stiffness(ratio[q]) * growth[q]);
+        return projection.project(result);
+      }
+
+      /** dU/dJ: minus the Cauchy pressure; small strain does not know it. */
+      static double
+      slope_of_energy(const typename Law::template State<dim, double> &state,
+                      const double                                     J)
+      {
+        return -state.pressure / (Law::finite_strain ? J : 1);
+      }
+
+      /** The part within the dimensions. */
+      static dealii::Tensor<2, dim>
+      deviator(const typename Law::template State<dim, double> &state)
+      {
+        const auto            &s = state.deviator;
+        dealii::Tensor<2, dim> result;
+        result[0][0] = s[0];
+        result[1][1] = s[1];
+        result[0][1] = result[1][0] = s[2];
+        if constexpr (dim == 3)
+          {
+            result[2][2] = -s[0] - s[1];
+            result[1][2] = result[2][1] = s[3];
+            result[2][0] = result[0][2] = s[4];
+          }
+        return result;
+      }
+
+      void
+      add_tangent(const Values                                    &values,
+                  const double                                     dV,
+                  const typename Law::template State<dim, double> &state,
+                  const dealii::Tensor<2, dim>                    &s,
+                  const double                                     mean,
+                  const std::vector<Tensor>                       &gradient,
+                  dealii::FullMatrix<double> &tangent) const
+      {
+        const unsigned int n = gradient.size();
+        for (unsigned int j = 0; j < n; ++j)
+          {
+            const unsigned int b = component(values, j);
+            SquareMatrix<dim>  e{};
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                e[b][d] += 0.5 * gradient[j][d];
+                e[d][b] += 0.5 * gradient[j][d];
+              }
+            const auto   rate = law.template deviatoric_tangent<dim>(state, e);
+            const Tensor stress_gradient = s * gradient[j];
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                const unsigned int a     = component(values, i);
+                double             value = 0;
+                for (unsigned int d = 0; d < dim; ++d)
+                  value += rate[a][d] * gradient[i][d];
+                if (Law::finite_strain)
+                  {
+                    value += mean * (gradient[i][a] * gradient[j][b] -
+                                     gradient[i][b] * gradient[j][a]);
+                    if (a == b)
+                      value += gradient[i] * stress_gradient;
+                  }
+                tangent(i, j) += dV * value;
+              }
+          }
+      }
+
+      /** B^T M^-1 H M^-1 B with B the moments of dJ and H those of U''. */
+      void
+      add_projected_tangent(const FieldProjection<dim>       &projection,
+                            const std::vector<double>        &ratio,
+                            const dealii::FullMatrix<double> &moments,
+                            dealii::FullMatrix<double>       &tangent) const
+      {
+        const unsigned int         n = n_modes;
+        dealii::FullMatrix<double> stiffness(n, n), left(n, n), middle(n, n);
+        for (unsigned int q = 0; q < ratio.size(); ++q)
+          for (unsigned int k = 0; k < n; ++k)
+            for (unsigned int l = 0; l < n; ++l)
+              stiffness(k, l) +=
+                projection.weights[q] * law.volumetric_stiffness(ratio[q]) *
+                projection.modes(q, k) * projection.modes(q, l);
+        projection.inverse_mass.mmult(left, stiffness);
+        left.mmult(middle, projection.inverse_mass);
+        tangent.triple_product(middle, moments, moments, true, false);
+      }
+
+      const Law          law;
+      const unsigned int n_modes;
+    };
+
+
+
+    template <int dim>
+    unsigned int
+    n_modes_of(const ReferenceElement kind)
+    {
+      switch (kind)
+        {
+          case ReferenceElement::q1_p0_p0:
+            return 1;
+          case ReferenceElement::q2_p1_p1:
+            return dim + 1;
+          default:
+            return 0;
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::unique_ptr<const SolidElement<dim>>
+  make_solid_element(const Body<dim> &body, const ReferenceElement kind)
+  {
+    std::unique_ptr<const SolidElement<dim>> result;
+    for_each_law([&](auto *const law) {
+      using Law = std::remove_pointer_t<decltype(law)>;
+      if constexpr (Law::is_elastic)
+        if (body.law == Law::name && result == nullptr)
+          {
+            std::array<double, Law::parameters.size()> values;
+            std::copy(body.material.begin(),
+                      body.material.end(),
+                      values.begin());
+            if (Law::accepts(values))
+              result =
+                std::make_unique<LawElement<dim, Law>>(Law(values),
+                                                       n_modes_of<dim>(kind));
+          }
+    });
+    if (result == nullptr)
+      throw InputError(
+        "The material '" + body.law + "' in section 'Body " + body.name +
+        "' has no finite element reference: elements that move with the "
+        "material do not last in a liquid. Compare with a finer run, or set "
+        "'Material = neo hookean'.");
+    return result;
+  }
+
+
+
+  template std::unique_ptr<const SolidElement<2>>
+  make_solid_element(const Body<2> &, const ReferenceElement);
+  template std::unique_ptr<const SolidElement<3>>
+  make_solid_element(const Body<3> &, const ReferenceElement);
+} // namespace limber

@@ -1,0 +1,163 @@
+#!/usr/bin/env python3
+"""Runs 'limber reference' and 'limber compare' and looks at what they find.
+
+    references.py --limber build/release/limber --case frequencies
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
+             "OMPI_MCA_pml": "ob1",
+             "OMPI_MCA_btl": "self,vader"}
+CANTILEVER = TOP / "prm/cantilever.prm"
+FREE_BEAM = TOP / "prm/verification/free_soft_beam.prm"
+MANUFACTURED = TOP / "prm/verification/manufactured_solution.prm"
+FAILED = []
+
+
+def limber(*words, changes=(), code=0):
+    """Runs the program, says what it said if the exit code is another."""
+    command = [PROGRAM, *map(str, words)]
+    for change in changes:
+        command += ["--set", change]
+    result = subprocess.run(command, env={**os.environ, **SINGLETON}, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if result.returncode != code:
+        print(result.stdout)
+        sys.exit(f"FAILED: exit code {result.returncode}, not {code}: "
+                 + " ".join(command))
+    return " ".join(result.stdout.split())
+
+
+def expect(condition, text):
+    print(("passed: " if condition else "FAILED: ") + text)
+    if not condition:
+        FAILED.append(text)
+
+
+def frequencies(folder):
+    """Plane-strain elasticity by fine Q2 meshes, to 0.1 %."""
+    nu = "Body beam/Neo hookean/Poisson's ratio="
+    for name, scene, poisson, first in (
+            ("clamped", CANTILEVER, "0.3", (0.082812, 0.48377, 1.03878)),
+            ("clamped, nu = 0.49", CANTILEVER, "0.49", (0.091135,)),
+            ("free", FREE_BEAM, "0.3", (3.3990,)),
+            ("free, nu = 0.45", FREE_BEAM, "0.45", (3.6006,)),
+            ("free, nu = 0.499", FREE_BEAM, "0.499", (3.6963,))):
+        run = folder / name
+        limber("reference", "--frequencies", 3, scene, "--output-directory",
+               run, changes=(nu + poisson, "Reference/Elements over depth=8"))
+        found = [float(line.split()[1])
+                 for line in (run / "frequencies").read_text().splitlines()
+                 if not line.startswith("#")]
+        for mode, (value, known) in enumerate(zip(found, first), start=1):
+            expect(abs(value / known - 1) < 1e-3,
+                   f"{name}, mode {mode}: {value:.6g} Hz, known {known} Hz")
+
+
+def comparison(folder):
+    """A run against elements, elements against finer ones, a finer run."""
+    common = ("End time=3", "Output/Time interval=1.5",
+              "Body beam/Neo hookean/Poisson's ratio=0.3")
+    reference, coarse, fine = folder / "fem", folder / "run", folder / "fine"
+    words = ("reference", CANTILEVER, "--output-directory", reference)
+    # The checks are of a longer run.
+    limber(*words, changes=common, code=4)
+    expect("in " + str(reference) + " already" in
+           limber(*words, changes=common, code=4), "a reference is used again")
+    limber(*words, changes=(*common, "Reference/Element=Q1"), code=1)
+    for run, cells in ((coarse, "36, 20"), (fine, "72, 40")):
+        limber(CANTILEVER, "--output-directory", run, code=4,
+               changes=(*common, "Output/Point arrays=true",
+                        "Grid/Cells=" + cells))
+
+    errors = {}
+    for name, run, other in (("coarse", coarse, reference),
+                             ("fine", fine, reference),
+                             ("runs", coarse, fine),
+                             ("itself", coarse, coarse),
+                             ("elements", reference, reference)):
+        limber("compare", run, other)
+        errors[name] = json.loads((run / "comparison.json").read_text())
+        print(name, json.dumps(errors[name]["fields"]))
+
+    def error(name, field="displacement"):
+        return errors[name]["fields"][field]["relative_l2"]
+
+    expect(error("coarse") < 0.02, "four cells over the depth: 2 %")
+    expect(error("fine") < 0.5 * error("coarse"), "twice as many: half of it")
+    expect(error("runs") < 0.02, "coarse against fine run: 2 %")
+    expect(max(error("itself"), error("itself", "stress")) < 1e-6,
+           "a run against itself: interpolation only")
+    expect(error("elements") < 1e-12, "elements against themselves")
+    expect(error("elements", "stress") < 0.04, "nodal stress against that within")
+    tip = errors["coarse"]["observables"]["tip"]["relative_l2"]
+    expect(tip < 0.03, f"tip over time: {tip:.2g}")
+
+
+def exact(folder):
+    """The manufactured solution: points and elements against its formula."""
+    changes = ("Output/Time interval=0.25",)
+    limber(MANUFACTURED, "--output-directory", folder / "run",
+           changes=(*changes, "Output/Point arrays=true"))
+    limber("reference", MANUFACTURED, "--output-directory", folder / "fem",
+           changes=(*changes, "Reference/Elements over depth=16",
+                    "Reference/Time step=0.01"))
+    # velocities of points are noisier, as FLIP never smoothes them
+    for name, limits in (("run", (3e-3, 3e-2)), ("fem", (2e-4, 3e-4))):
+        limber("compare", folder / name, "exact")
+        fields = json.loads((folder / name / "comparison.json")
+                            .read_text())["fields"]
+        for field, limit in zip(("displacement", "velocity"), limits):
+            error = fields[field]["relative_l2"]
+            expect(error < limit, f"{name}, {field}: {error:.2g}")
+        expect(fields["pressure"]["relative_l2"] is None,
+               "what the scene does not give is not compared")
+
+
+def refusals(folder):
+    """What references cannot do is said."""
+    water = TOP / "prm/dam_break.prm"
+    for words, changes, message in (
+            ((water,), (), "has no finite element reference"),
+            ((CANTILEVER,), ("Boundaries/left=friction",
+                             "Boundaries/Side left/Friction coefficient=0.3"),
+             "knows no friction"),
+            ((CANTILEVER,), ("Body beam/Shape=formula",
+                             "Body beam/Formula/Inside=1",
+                             "Body beam/Formula/Lower corner=0, 2",
+                             "Body beam/Formula/Upper corner=8, 3"),
+             "Mesh file"),
+            ((CANTILEVER,), ("Reference/Mesh file=nowhere.msh",),
+             "cannot be read")):
+        said = limber("reference", *words, "--output-directory",
+                      folder / "refused", changes=changes,
+                      code=3 if "nowhere" in str(changes) else 1)
+        expect(message in said, message)
+    expect("two" in limber("compare", folder, code=1), "compare wants two")
+    expect("limber reference" in
+           limber("--frequencies", 3, CANTILEVER, code=1),
+           "frequencies belong to references")
+
+
+def main():
+    global PROGRAM
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--limber", required=True)
+    parser.add_argument("--case", required=True)
+    arguments = parser.parse_args()
+    PROGRAM = arguments.limber
+    with tempfile.TemporaryDirectory(prefix="limber-") as folder:
+        globals()[arguments.case](Path(folder))
+    sys.exit(1 if FAILED else 0)
+
+
+if __name__ == "__main__":
+    main()
