@@ -213,7 +213,8 @@ def main():
     print("| --- " + "| --: " * 7 + "|")
     for treatment in (t for t in LIQUIDS if t in chosen):
         for chi in ("0",) if treatment == "none" else ("0", "0.05", "0.1"):
-            control = [f"Body water/Hourglass control={chi}"]
+            control = [f"Body water/Hourglass control={chi}",
+                       "Body water/Chequerboard control=0"]
             row = dam_break(runner, treatment, control)
             row += tank(runner, treatment, control)
             print("| " + " | ".join([treatment, chi, *row]) + " |",
