@@ -227,7 +227,7 @@ namespace limber
             samples[t].velocity[d] = record[T::velocity + d];
           }
         samples[t].volume_ratio = record[T::volume];
-        samples[t].pressure = record[T::pressure];
+        samples[t].pressure     = record[T::pressure];
         dealii::SymmetricTensor<2, 3> s;
         std::copy_n(record + T::deviator, 6, s.begin_raw());
         samples[t].stress =
