@@ -158,7 +158,7 @@ namespace limber
     const Diagnosis   suspected = look_for_cause(/*unstable=*/true);
     const std::string message   = std::string(failure.what()) + " " +
                                 in_words(suspected) + describe_last_state();
-    finish("unstable", message, name_of(failure.kind), suspected.mode);
+    finish("unstable", message, word_for(failure.kind), suspected.mode);
     throw ComputationError(message, failure.kind);
   }
 

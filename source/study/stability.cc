@@ -123,7 +123,7 @@ namespace limber
             energy_growth(folder, variant.name) <= request.growth)
           return true;
         outcome =
-          ended == "finished" ? name_of(FailureKind::growing_energy) : ended;
+          ended == "finished" ? word_for(FailureKind::growing_energy) : ended;
         return false;
       }
 

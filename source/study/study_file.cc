@@ -65,7 +65,7 @@ namespace limber
       static const Words<Runner> words = {
         {"points", Runner::points, "the material point method"},
         {"reference",
-         std::nullopt,
+         Runner::reference,
          "the finite elements of 'limber reference'"}};
       return words;
     }

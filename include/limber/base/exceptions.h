@@ -65,7 +65,7 @@ namespace limber
 
   /** "growing energy", ...; "failed" for other ones. */
   inline const char *
-  name_of(const FailureKind kind)
+  word_for(const FailureKind kind)
   {
     switch (kind)
       {

@@ -16,7 +16,7 @@ namespace limber
     // "finished", "check missed", "unstable", "stopped", "wall time"
     std::string verdict;
     std::string message; // why, where it did not finish
-    // of an unstable run, in a word or two: name_of(FailureKind)
+    // of an unstable run, in a word or two: word_for(FailureKind)
     std::string failure;
     std::string suspected; // what it has most likely fallen into, see Diagnosis
     unsigned long steps             = 0;
