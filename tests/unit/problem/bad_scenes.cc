@@ -376,7 +376,7 @@ namespace
 
 
   std::string
-  name_of(const testing::TestParamInfo<BadScene> &info)
+  name_of_scene(const testing::TestParamInfo<BadScene> &info)
   {
     return info.param.name;
   }
@@ -385,16 +385,16 @@ namespace
 INSTANTIATE_TEST_SUITE_P(Forms,
                          BadScenes,
                          testing::ValuesIn(bad_forms),
-                         name_of);
+                         name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Bodies,
                          BadScenes,
                          testing::ValuesIn(bad_bodies),
-                         name_of);
+                         name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Formulas,
                          BadScenes,
                          testing::ValuesIn(bad_formulas),
-                         name_of);
+                         name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Observables,
                          BadScenes,
                          testing::ValuesIn(bad_observables),
-                         name_of);
+                         name_of_scene);
