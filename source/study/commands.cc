@@ -138,12 +138,11 @@ signal n.
     std::vector<std::string>
     study_overrides(const CommandLine &line)
     {
+      const std::string        of_scenes = "Output/";
       std::vector<std::string> overrides;
       for (const std::string &setting : line.overrides)
-        overrides.push_back(line.output_directory &&
-                                setting ==
-                                  "Output/Directory=" + *line.output_directory ?
-                              "Directory=" + *line.output_directory :
+        overrides.push_back(setting.rfind(of_scenes + "Directory=", 0) == 0 ?
+                              setting.substr(of_scenes.size()) :
                               setting);
       return overrides;
     }
