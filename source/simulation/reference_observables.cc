@@ -17,7 +17,9 @@ namespace limber
       return kind == ObservableKind::displacement ||
              kind == ObservableKind::velocity ||
              kind == ObservableKind::position ||
-             kind == ObservableKind::stress || kind == ObservableKind::pressure;
+             kind == ObservableKind::stress ||
+             kind == ObservableKind::pressure ||
+             kind == ObservableKind::volume_ratio;
     }
   } // namespace
 
@@ -206,6 +208,9 @@ namespace limber
               break;
             case ObservableKind::pressure:
               value = sign * here.material.pressure;
+              break;
+            case ObservableKind::volume_ratio:
+              value = sign * here.material.volume_ratio;
               break;
             case ObservableKind::extreme_coordinate:
               value = extreme(observable);
