@@ -54,14 +54,9 @@ namespace limber
     std::optional<BlockCorners<dim>>
     corners_of(const Shape<dim> &shape)
     {
-      const auto box = dynamic_cast<const BoxShape<dim> *>(&shape);
-      if (box == nullptr)
-        return {};
-      BlockCorners<dim> corners;
-      for (unsigned int v = 0; v < corners.size(); ++v)
-        for (unsigned int d = 0; d < dim; ++d)
-          corners[v][d] = (v >> d) % 2 == 0 ? box->lower[d] : box->upper[d];
-      return corners;
+      const auto block = dynamic_cast<const BlockShape<dim> *>(&shape);
+      return block == nullptr ? std::nullopt :
+                                std::make_optional(block->vertices);
     }
 
 
@@ -204,11 +199,13 @@ namespace limber
         mesh = make_block_mesh<dim>(*corners, elements, communicator);
       }
     else
-      throw InputError("The body '" + body.name +
-                       "' is not a box, and no mesh is known that fits it. "
-                       "Make one of quadrilaterals or hexahedra, for instance "
-                       "with Gmsh, and name it in section 'Reference', entry "
-                       "'Mesh file'.");
+      throw InputError(
+        "The body '" + body.name +
+        "' is neither a box nor a block, and no mesh is known that fits "
+        "it. "
+        "Make one of quadrilaterals or hexahedra, for instance "
+        "with Gmsh, and name it in section 'Reference', entry "
+        "'Mesh file'.");
     refine(*mesh, request.refinements);
     return mesh;
   }

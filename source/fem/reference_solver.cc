@@ -19,6 +19,9 @@ namespace limber
     // of a load step, before Newton's method is given up
     constexpr double       smallest_part = 1. / 256;
     constexpr unsigned int most_halvings = 8; // of a time step, likewise
+    // alpha of Hilber, Hughes and Taylor (1977): the share of the forces of the
+    // step before. It damps what the step does not resolve, by 10 % a step.
+    constexpr double delay = 0.05;
     // A kept tangent has to reduce the residual to this share at least.
     constexpr double good_reduction        = 0.1;
     constexpr double share_of_longest_step = 0.8;
@@ -68,9 +71,10 @@ namespace limber
     state.displacement = state.acceleration = model.make_vector();
     internal = load = inertia = unbalanced = support = model.make_vector();
     former_load = former_support = predicted = model.make_vector();
-    state.velocity = method == ReferenceMethod::quasi_static ?
-                       model.make_vector() :
-                       model.initial_velocity();
+    net_force = former_net_force = model.make_vector();
+    state.velocity               = method == ReferenceMethod::quasi_static ?
+                                     model.make_vector() :
+                                     model.initial_velocity();
     if (method != ReferenceMethod::explicit_steps)
       model.reinit(*matrix);
     start();
@@ -132,6 +136,7 @@ namespace limber
     state.acceleration.update_ghost_values();
     former_load      = load;
     former_support   = support;
+    former_net_force = net_force;
     state.side_force = model.sum_over_sides(support);
   }
 
@@ -214,15 +219,26 @@ namespace limber
       {
         state.acceleration = state.displacement;
         state.acceleration -= predicted;
-        state.acceleration *= mass_factor;
+        state.acceleration *= (1 - delay) * mass_factor;
         model.mass_matrix().vmult(inertia, state.acceleration);
       }
     unbalanced -= internal;
-    unbalanced -= inertia;
-    support = unbalanced;
-    model.clear_held(unbalanced);
+    net_force = unbalanced;
+    support   = inertia;
     support -= unbalanced;
-    support *= -1;
+    NodalVector of_free = support;
+    model.clear_held(of_free);
+    support -= of_free;
+
+    // with a share of the forces of the step before, over that of the new ones
+    if (mass_factor != 0)
+      unbalanced.add(delay / (1 - delay),
+                     former_net_force,
+                     -1 / (1 - delay),
+                     inertia);
+    else
+      unbalanced -= inertia;
+    model.clear_held(unbalanced);
 
     const double scale =
       std::max({external, internal.l2_norm(), inertia.l2_norm()});
@@ -396,16 +412,21 @@ namespace limber
   ReferenceSolver<dim>::try_newmark_step(const double step)
   {
     const double      time                = state.time + step;
-    const double      factor              = 4 / (step * step);
+    const double      beta                = (1 + delay) * (1 + delay) / 4;
+    const double      gamma               = 0.5 + delay;
+    const double      factor              = 1 / (beta * step * step);
     const NodalVector former              = state.displacement;
     const NodalVector former_velocity     = state.velocity;
     const NodalVector former_acceleration = state.acceleration;
 
     predicted = state.displacement;
-    predicted.add(step, state.velocity, step * step / 4, state.acceleration);
+    predicted.add(step,
+                  state.velocity,
+                  (0.5 - beta) * step * step,
+                  state.acceleration);
     // begin with the acceleration of the step before
     state.displacement = predicted;
-    state.displacement.add(step * step / 4, state.acceleration);
+    state.displacement.add(1 / factor, state.acceleration);
     NodalVector held_acceleration = model.make_vector();
     model.prescribe(state.time,
                     former,
@@ -418,14 +439,14 @@ namespace limber
     held_predicted.add(-1 / factor, held_acceleration);
     model.replace_held(predicted, held_predicted);
 
-    if (!solve(time, factor, true))
+    if (!solve(time, factor / (1 - delay), true))
       return false;
 
     NodalVector held_velocity = state.velocity;
     state.velocity            = former_velocity;
-    state.velocity.add(step / 2,
+    state.velocity.add((1 - gamma) * step,
                        former_acceleration,
-                       step / 2,
+                       gamma * step,
                        state.acceleration);
     model.replace_held(state.velocity, held_velocity);
     return true;
@@ -502,7 +523,7 @@ namespace limber
 
 
   // Work and impulse of the forces that act from outside, by the trapezoidal
-  // rule: exact for Newmark's method in a linear body.
+  // rule: of second order.
   template <int dim>
   void
   ReferenceSolver<dim>::account(const NodalVector &former, const double step)
@@ -519,8 +540,9 @@ namespace limber
         state.side_impulse[s] += 0.5 * step * (force[s] + state.side_force[s]);
         state.side_force[s] = force[s];
       }
-    former_load    = load;
-    former_support = support;
+    former_load      = load;
+    former_support   = support;
+    former_net_force = net_force;
   }
 
 

@@ -151,6 +151,7 @@ namespace limber
         : law(law)
         , n_modes(n_modes)
       {
+        this->finite_strain       = Law::finite_strain;
         this->density             = law.density;
         this->pressure_wave_speed = std::sqrt(
           (law.bulk_modulus + 4. / 3. * law.shear_modulus) / law.density);

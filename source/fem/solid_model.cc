@@ -123,6 +123,13 @@ namespace limber
                        " bodies in its entry 'Bodies'; the finite element "
                        "reference knows one, and no contact. Make a scene for "
                        "each body, or compare with a finer run.");
+    if (problem.method.damping_rate > 0 &&
+        problem.reference.method != ReferenceMethod::quasi_static)
+      throw InputError("The scene damps all motion ('Method/Damping rate'), "
+                       "which the finite element reference does in "
+                       "equilibrium only. Usually the state of rest is wanted. "
+                       "Set 'Reference/Method = quasi-static', or 'Damping "
+                       "rate = 0'.");
   }
 
 
@@ -516,6 +523,34 @@ namespace limber
 
 
 
+  // Force per initial area: a pressure follows the present face.
+  template <int dim>
+  dealii::Tensor<1, dim>
+  SolidModel<dim>::face_traction(const FaceLoad<dim>             &load,
+                                 const dealii::FEFaceValues<dim> &faces,
+                                 const unsigned int               q,
+                                 const std::vector<double>       &u,
+                                 const double                     time) const
+  {
+    dealii::Point<dim> place = faces.quadrature_point(q);
+    if (!load.is_pressure)
+      return load.formula.vector(place, time);
+    if (!element->finite_strain)
+      return -load.formula.value(place, time) * faces.normal_vector(q);
+    dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
+    for (unsigned int i = 0; i < u.size(); ++i)
+      {
+        const unsigned int c = fe.system_to_component_index(i).first;
+        F[c] += u[i] * faces.shape_grad(i, q);
+        place[c] += u[i] * faces.shape_value(i, q);
+      }
+    // present area times normal: J F^-T N dA
+    return -load.formula.value(place, time) * determinant(F) *
+           (faces.normal_vector(q) * invert(F));
+  }
+
+
+
   template <int dim>
   void
   SolidModel<dim>::loads(const NodalVector &displacement,
@@ -559,13 +594,11 @@ namespace limber
                   cell->face(f)->boundary_id() == load.face)
                 {
                   faces.reinit(cell, f);
+                  const auto u = values_of(cell, displacement);
                   for (const unsigned int q : faces.quadrature_point_indices())
                     {
-                      const auto place = faces.quadrature_point(q);
-                      const dealii::Tensor<1, dim> traction =
-                        load.is_pressure ? -load.formula.value(place, time) *
-                                             faces.normal_vector(q) :
-                                           load.formula.vector(place, time);
+                      const auto traction =
+                        face_traction(load, faces, q, u, time);
                       for (unsigned int i = 0; i < fe.dofs_per_cell; ++i)
                         on_cell[i] +=
                           traction[fe.system_to_component_index(i).first] *

@@ -144,7 +144,7 @@ namespace limber
        "equilibrium, the loads of the end time in equal steps"},
       {"implicit",
        ReferenceMethod::implicit_steps,
-       "Newmark's method, constant mean acceleration"},
+       "Newmark's method with the damping of Hilber, Hughes and Taylor"},
       {"explicit",
        ReferenceMethod::explicit_steps,
        "central differences, lumped mass"}};

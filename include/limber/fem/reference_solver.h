@@ -31,8 +31,9 @@ namespace limber
 
   /**
    * Leads a SolidModel through time: by load steps in equilibrium, by
-   * Newmark's method with beta = 1/4, gamma = 1/2 (Newton's method in both,
-   * with the tangent kept as long as it serves), or by central differences.
+   * the method of Hilber, Hughes and Taylor (Newton's method in both, with the
+   * tangent kept as long as it serves in the latter), or by central
+   * differences.
    * Collective.
    */
   template <int dim>
@@ -130,6 +131,7 @@ namespace limber
     // support what the sides of the box give to held components.
     NodalVector internal, load, inertia, unbalanced, support;
     NodalVector former_load, former_support;
+    NodalVector net_force, former_net_force; // all but inertia
     NodalVector predicted;       // displacement without the new acceleration, m
     NodalVector mode;            // fastest, for the length of explicit steps
     double      load_factor = 1; // share of gravity and loads that acts

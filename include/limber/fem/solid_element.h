@@ -76,6 +76,9 @@ namespace limber
            const Values              &places,
            const std::vector<double> &u) const = 0;
 
+    /** Whether forces act on the deformed body. */
+    bool finite_strain = true;
+
     /** rho, kg/m^3, and wave speeds at rest, m/s. */
     double density = 0, pressure_wave_speed = 0, shear_wave_speed = 0;
   };

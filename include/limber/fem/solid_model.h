@@ -212,6 +212,12 @@ namespace limber
     find_held();
     void
     assemble_masses();
+    dealii::Tensor<1, dim>
+    face_traction(const FaceLoad<dim>             &load,
+                  const dealii::FEFaceValues<dim> &faces,
+                  const unsigned int               q,
+                  const std::vector<double>       &u,
+                  const double                     time) const;
     double
     prescribed_velocity(const Held &held, const double time) const;
     void
