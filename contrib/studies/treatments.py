@@ -204,21 +204,27 @@ def main():
     print("\n| Cook's membrane | tip, h = 2 m (m) | tip, h = 1 m (m) | "
           "rms of the pressure (Pa) |")
     print("| --- " + "| --: " * 3 + "|")
-    for treatment in TREATMENTS:
+    for treatment in chosen:
         print("| " + " | ".join([treatment, *cook(runner, treatment)]) + " |",
               flush=True)
 
-    print("\n| liquid | chi | Z(3) | H(3) | roughness at T = 1 / 2 / 3 (%) | "
-          "jumps (%) | tank, kinetic energy | tank, pressure error (%) |")
-    print("| --- " + "| --: " * 7 + "|")
+    print("\n| liquid | chi | chequerboard control | Z(3) | H(3) | "
+          "roughness at T = 1 / 2 / 3 (%) | jumps (%) | "
+          "tank, kinetic energy | tank, pressure error (%) |")
+    print("| --- " + "| --: " * 8 + "|")
     for treatment in (t for t in LIQUIDS if t in chosen):
-        for chi in ("0",) if treatment == "none" else ("0", "0.05", "0.1"):
+        controls = [("0", "0")]
+        if treatment != "none":
+            controls += [("0.05", "0"), ("0.1", "0")]
+        if treatment == "cell":
+            controls += [("0.1", "0.5")]
+        for chi, chequerboard in controls:
             control = [f"Body water/Hourglass control={chi}",
-                       "Body water/Chequerboard control=0"]
+                       f"Body water/Chequerboard control={chequerboard}"]
             row = dam_break(runner, treatment, control)
             row += tank(runner, treatment, control)
-            print("| " + " | ".join([treatment, chi, *row]) + " |",
-                  flush=True)
+            print("| " + " | ".join([treatment, chi, chequerboard, *row]) +
+                  " |", flush=True)
 
 
 if __name__ == "__main__":
