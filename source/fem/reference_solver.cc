@@ -280,6 +280,10 @@ namespace limber
         before = state.displacement;
         linear_solver.solve(correction, unbalanced);
         ++state.newton_steps;
+        // Where forces nearly vanish, round-off of large ones remains.
+        if (rest <= 1e-4 &&
+            correction.l2_norm() <= 1e-11 * state.displacement.l2_norm())
+          return true;
 
         former = rest;
         state.displacement += correction;

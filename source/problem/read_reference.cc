@@ -61,7 +61,8 @@ namespace limber
                        admissible::number_between(0, 1, "1e-8"),
                        "Residual force over the largest of internal, external "
                        "and inertial force at which Newton's method ends, no "
-                       "unit.");
+                       "unit; it also ends where it changes displacements by "
+                       "no more than 1e-11 of them.");
     parameters.declare("Frequencies",
                        "0",
                        admissible::non_negative_integer("3"),

@@ -22,8 +22,7 @@ TOP = Path(__file__).resolve().parents[2]
 ENVIRONMENT = {**os.environ,
                "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
-               "OMPI_MCA_rmaps_base_oversubscribe": "1",
-               "OMPI_MCA_hwloc_base_binding_policy": "none"}
+               "OMPI_MCA_hwloc_base_binding_policy": "core"}
 BIG_BOX = {"2d": ["Grid/Upper corner=4.96, 4.96", "Grid/Cells=496, 496"],
            "3d": ["Grid/Upper corner=5.3333333333, 2.6666666667, 2.6666666667",
                   "Grid/Cells=160, 80, 80"]}
