@@ -12,6 +12,7 @@
 #include <limber/study/commands.h>
 #include <limber/study/compare.h>
 
+#include <cstdlib>
 #include <iostream>
 #include <sstream>
 
@@ -113,6 +114,10 @@ main(int argc, char *argv[])
         return int(failure.code);
       }
 
+  // Ranks wait for many small messages. Open MPI lets the receiver fetch what
+  // is larger than 4 kB by a system call, which takes longer than two copies
+  // through shared memory (doc/developer/speed.md). Who sets it is obeyed.
+  setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;

@@ -322,6 +322,8 @@ namespace limber
       std::size_t(grid.n_cells()) * CellSums<dim>::stride;
     now.reinit(size);
     next.reinit(size);
+    turn_of.reinit(grid.n_cells());
+    turn = 1;
   }
 
 
@@ -330,19 +332,7 @@ namespace limber
   CellSums<dim>
   CellFields<dim>::view()
   {
-    return {now.data(), next.data()};
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::clear(const std::vector<std::uint32_t> &cells)
-  {
-    std::swap(now, next);
-    clear_next(cells);
-    std::swap(now, next);
-    clear_next(cells);
+    return {now.data(), next.data(), turn_of.data(), turn};
   }
 
 
@@ -351,6 +341,12 @@ namespace limber
   void
   CellFields<dim>::start_completion(const ExchangePlan &plan)
   {
+    // Ranks add to each other's sums whether they have gathered any or not.
+    const CellSums<dim> sums = view();
+    for (const auto &neighbour : plan.neighbours)
+      for (const auto *const cells : {&neighbour.send, &neighbour.receive})
+        for (const std::uint32_t cell : *cells)
+          sums.open(cell);
     exchange.start(plan, next.data(), 0, CellSums<dim>::stride);
   }
 
@@ -362,18 +358,7 @@ namespace limber
   {
     exchange.finish(next.data());
     std::swap(now, next);
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::clear_next(const std::vector<std::uint32_t> &cells)
-  {
-    for (const std::uint32_t cell : cells)
-      std::fill_n(next.data() + std::size_t(cell) * CellSums<dim>::stride,
-                  CellSums<dim>::stride,
-                  0.);
+    ++turn;
   }
 
 

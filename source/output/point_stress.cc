@@ -64,28 +64,24 @@ namespace limber
     const bool averages_deviator =
       averages_shear_in_cells(kind) && points.deviator[0] != nullptr;
     // Points may sit in ghost cells, and those of other ranks in cells here.
-    sums.clear(touched);
-    deviators.clear(touched);
-    touched                       = plan.received;
-    double *const          data   = sums.view().next;
-    double *const          s_data = deviators.view().next;
-    constexpr unsigned int stride = CellSums<dim>::stride;
-    static_assert(n_deviator<dim> <= stride);
+    const CellSums<dim> of_cells     = sums.view();
+    const CellSums<dim> of_deviators = deviators.view();
+    static_assert(n_deviator<dim> <= CellSums<dim>::stride);
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const std::uint32_t cell = points.cell[p];
         if (cell == invalid_cell)
           continue;
-        if (touched.empty() || touched.back() != cell)
-          touched.push_back(cell);
-        double *const record = data + std::size_t(cell) * stride;
+        double *const record = of_cells.open(cell);
         record[0] += points.mass[p];
         record[1] += points.mass[p] * volume_ratios[p];
         record[2] += points.mass[p] * points.pressure[p];
         if (averages_deviator)
-          for (unsigned int k = 0; k < n_deviator<dim>; ++k)
-            s_data[std::size_t(cell) * stride + k] +=
-              points.mass[p] * points.deviator[k][p];
+          {
+            double *const deviator = of_deviators.open(cell);
+            for (unsigned int k = 0; k < n_deviator<dim>; ++k)
+              deviator[k] += points.mass[p] * points.deviator[k][p];
+          }
       }
     sums.start_completion(plan);
     if (averages_deviator)

@@ -17,9 +17,9 @@ namespace limber
 {
   namespace
   {
-    // More points than this over the mean on one rank, and the mesh is
-    // partitioned anew; that costs about as much as 200 steps.
-    constexpr double admitted_imbalance = 1.2;
+    // The mesh is partitioned anew, which costs about as much as so many
+    // steps, when ranks have waited for that long for the one with most points.
+    constexpr double steps_to_balance = 200;
 
     // A step shorter than this share of the first one will never arrive.
     constexpr double smallest_step = 1e-6;
@@ -218,6 +218,7 @@ namespace limber
         write_pictures();
       }
     const double first_step = integrator.longest_step();
+    step_of_exchange        = state.step;
     while (state.time < problem.end_time &&
            (problem.end_step == 0 || state.step < problem.end_step))
       {
@@ -229,9 +230,8 @@ namespace limber
              state.step % problem.checkpoint.steps == 0))
           write_checkpoint();
 
-        if (integrator.reorganise() &&
-            integrator.imbalance() > admitted_imbalance)
-          rebalance();
+        if (integrator.reorganise())
+          rebalance_if_it_pays();
         if (!(integrator.longest_step() > smallest_step * first_step))
           refuse_step(first_step);
         const double step = next_step();
@@ -418,10 +418,16 @@ namespace limber
 
   template <int dim>
   void
-  Simulation<dim>::rebalance()
+  Simulation<dim>::rebalance_if_it_pays()
   {
+    steps_waited +=
+      (integrator.imbalance() - 1) * double(state.step - step_of_exchange);
+    step_of_exchange = state.step;
+    if (steps_waited < steps_to_balance)
+      return;
     balance(grid, bodies);
     integrator.reinit();
+    steps_waited = 0;
   }
 
 

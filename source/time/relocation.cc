@@ -87,11 +87,7 @@ namespace limber
         ((*body).*sums)->start_completion(nodes.cell_plan());
     for (auto &body : bodies)
       if (auto &own = (*body).*sums)
-        {
-          own->finish_completion();
-          own->clear_next(nodes.owned_occupied_cells());
-          own->clear_next(nodes.ghost_occupied_cells());
-        }
+        own->finish_completion();
   }
 
 
@@ -165,14 +161,7 @@ namespace limber
   ExplicitIntegrator<dim>::exchange_points()
   {
     for (auto &body : bodies)
-      {
-        if (body->cell_sums)
-          {
-            body->cell_sums->clear(nodes.owned_occupied_cells());
-            body->cell_sums->clear(nodes.ghost_occupied_cells());
-          }
-        body->points.synchronise();
-      }
+      body->points.synchronise();
     loads.exchange_pieces();
     travelled = 0;
     sort_points(/*agree=*/true);

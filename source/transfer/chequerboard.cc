@@ -31,11 +31,12 @@ namespace limber
   {
     for (const std::uint32_t cell : cells)
       {
-        const double *const record = sums.now + cell * CellSums<dim>::stride;
-        const double        mass   = record[CellSums<dim>::mass];
+        const double mass = sums.present_mass(cell);
         if (!(mass > 0))
           continue;
-        const double mean = record[CellSums<dim>::volumetric] / mass;
+        const double mean =
+          sums.now[cell * CellSums<dim>::stride + CellSums<dim>::volumetric] /
+          mass;
         for (int a = 0; a < 1 << dim; ++a)
           {
             double *const node = grid.nodes + grid.cells[cell].node[a];
@@ -63,9 +64,8 @@ namespace limber
     constexpr double all = 1 << dim;
     for (const std::uint32_t cell : cells)
       {
-        const double mass =
-          sums.now[cell * CellSums<dim>::stride + CellSums<dim>::mass];
-        shift[cell] = 0;
+        const double mass = sums.present_mass(cell);
+        shift[cell]       = 0;
         if (!(mass > 0))
           continue;
         for (int a = 0; a < 1 << dim; ++a)

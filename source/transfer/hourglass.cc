@@ -20,8 +20,7 @@ namespace limber
         *std::max_element(cell.inverse_edge.begin(), cell.inverse_edge.end());
       double result = 0;
       for (const auto &body : bodies)
-        result += body.speed * inverse_edge *
-                  body.sums.now[number * CellSums<dim>::stride];
+        result += body.speed * inverse_edge * body.sums.present_mass(number);
       return result;
     }
   } // namespace

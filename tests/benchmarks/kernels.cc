@@ -102,7 +102,6 @@ namespace
     {
       body.cell_sums->start_completion(nodes.cell_plan());
       body.cell_sums->finish_completion();
-      body.cell_sums->clear_next(cells);
     }
 
     /** Motion so slow that many repetitions leave the points where they are. */

@@ -122,6 +122,7 @@ namespace limber
         means.resize(n_nodes * NodalMeanLayout::stride);
         sums.resize(n_cells * CellSums<dim>::stride);
         next_sums.resize(sums.size());
+        turn_of_sums.resize(n_cells, turn);
       }
 
       GridView<dim>
@@ -141,8 +142,10 @@ namespace limber
       cell_sums()
       {
         CellSums<dim> result;
-        result.now  = sums.data();
-        result.next = next_sums.data();
+        result.now     = sums.data();
+        result.next    = next_sums.data();
+        result.turn_of = turn_of_sums.data();
+        result.turn    = turn + 1;
         return result;
       }
 
@@ -166,10 +169,14 @@ namespace limber
       void
       gather(const PointView<dim> &points)
       {
+        std::fill(turn_of_sums.begin(), turn_of_sums.end(), turn);
+        // what no point comes to overwrite
         std::fill(next_sums.begin(), next_sums.end(), 0.);
         gather_cell_sums<dim>(points, view(), cell_sums());
         sums = next_sums;
-        std::fill(next_sums.begin(), next_sums.end(), 0.);
+        // what points have to overwrite
+        std::fill(next_sums.begin(), next_sums.end(), 1e30);
+        std::fill(turn_of_sums.begin(), turn_of_sums.end(), turn);
       }
 
       Vector<dim>
@@ -225,6 +232,8 @@ namespace limber
       Vector<dim>                    lower, edge;
       std::vector<CellGeometry<dim>> cells;
       std::vector<double>            nodes, means, sums, next_sums;
+      std::vector<std::uint32_t>     turn_of_sums;
+      std::uint32_t                  turn = 1; // of the present sums
       std::vector<std::uint32_t>     bin_table, entered;
       std::vector<std::uint8_t>      occupied;
       BinView<dim>                   bins;

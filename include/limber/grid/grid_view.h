@@ -2,6 +2,7 @@
 #ifndef limber_grid_grid_view_h
 #define limber_grid_grid_view_h
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -102,7 +103,9 @@ namespace limber
    * times the volumetric variable.
    *
    * Whoever moves the points gathers the sums of their new places, so that
-   * those of the present places are complete when a step begins.
+   * those of the present places are complete when a step begins. Nobody sets
+   * records to zero in between: each cell knows the turn in which it got its
+   * last sums, and the first to come in a new turn overwrites what is old.
    */
   template <int dim>
   struct CellSums
@@ -111,8 +114,39 @@ namespace limber
     static constexpr unsigned int volumetric = (1 << dim) - 1;
     static constexpr unsigned int stride     = 1 << dim;
 
-    const double *now  = nullptr; // of the present places, complete
-    double       *next = nullptr; // of the places after the step
+    const double  *now     = nullptr; // of the present places, complete
+    double        *next    = nullptr; // of the places after the step
+    std::uint32_t *turn_of = nullptr; // last in which a cell got sums
+    std::uint32_t  turn    = 0;       // in which the next sums are gathered
+
+    /** Whether the next sums of a cell are what this turn has gathered. */
+    bool
+    is_open(const std::uint32_t cell) const
+    {
+      return turn_of[cell] == turn;
+    }
+
+    /** The next sums of a cell, to be added to. */
+    double *
+    open(const std::uint32_t cell) const
+    {
+      double *const record = next + std::size_t(cell) * stride;
+      if (!is_open(cell))
+        {
+          turn_of[cell] = turn;
+          std::fill_n(record, stride, 0.);
+        }
+      return record;
+    }
+
+    /** The present mass in a cell, before next sums are gathered. */
+    double
+    present_mass(const std::uint32_t cell) const
+    {
+      return turn_of[cell] + 1 == turn ?
+               now[std::size_t(cell) * stride + mass] :
+               0;
+    }
   };
 
 

@@ -197,30 +197,21 @@ namespace limber
       return now.data() + std::size_t(cell) * CellSums<dim>::stride;
     }
 
-    /** Set all sums of the given cells to zero. */
-    void
-    clear(const std::vector<std::uint32_t> &cells);
-
     /**
      * Complete the sums gathered since the last time with those of other
-     * ranks and make them the present ones. Between start and finish nothing
-     * must be gathered.
+     * ranks and make them the present ones; what was gathered before is
+     * forgotten. Between start and finish nothing must be gathered.
      */
     void
     start_completion(const ExchangePlan &plan);
     void
     finish_completion();
 
-    /**
-     * After a completion: set the next sums of the given cells to zero, which
-     * have to be all that this time or the last time had any.
-     */
-    void
-    clear_next(const std::vector<std::uint32_t> &cells);
-
   private:
     const BackgroundGrid<dim> &grid;
     LazyArray<double>          now, next;
+    LazyArray<std::uint32_t>   turn_of;
+    std::uint32_t              turn = 1;
     RecordExchange             exchange{CellSums<dim>::stride};
   };
 } // namespace limber

@@ -73,7 +73,7 @@ namespace limber
     using Number = PointPack<dim>;
 
     explicit CellGatherer(const CellSums<dim> &sums)
-      : next(sums.next)
+      : sums(sums)
     {}
 
     /** The points of a pack, all in that cell at natural places xi. */
@@ -83,14 +83,13 @@ namespace limber
         const Number                  &mass,
         const Number                  &volumetric) const
     {
-      std::array<Number, 1 << dim> products;
-      products[0] = mass;
-#pragma GCC unroll 8
-      for (int k = 1; k < (1 << dim) - 1; ++k)
-        products[k] = mass * monomial(xi, k);
-      products[CellSums<dim>::volumetric] = mass * volumetric;
-      double *const record                = next + cell * CellSums<dim>::stride;
-      store(load<Number>(record) + sums_over_lanes(products), record);
+      double *const record = sums.next + cell * CellSums<dim>::stride;
+      Number        total  = sums_over_lanes(products(xi, mass, volumetric));
+      if (sums.is_open(cell))
+        total += load<Number>(record);
+      else
+        sums.turn_of[cell] = sums.turn;
+      store(total, record);
     }
 
     /** The points [begin, end), wherever they are now. */
@@ -110,34 +109,31 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             xi[d] = (points.position[d][p] - geometry.origin[d]) *
                     geometry.inverse_edge[d];
-          double *const record = next + points.cell[p] * CellSums<dim>::stride;
-          const double  mass   = points.mass[p];
-          record[0] += mass;
-#pragma GCC unroll 8
-          for (int k = 1; k < (1 << dim) - 1; ++k)
-            record[k] += mass * monomial(xi, k);
-          record[CellSums<dim>::volumetric] += mass * points.volumetric[p];
+          double *const record = sums.open(points.cell[p]);
+          const auto added = products(xi, points.mass[p], points.volumetric[p]);
+          for (unsigned int k = 0; k < added.size(); ++k)
+            record[k] += added[k];
         }
     }
 
   private:
+    /** What points add to the slots, each from one with a factor less. */
     template <class T>
-    static T
-    monomial(const std::array<T, dim> &xi, const int k)
+    __attribute__((always_inline)) static std::array<T, 1 << dim>
+    products(const std::array<T, dim> &xi, const T &mass, const T &volumetric)
     {
-      T    result{};
-      bool first = true;
+      std::array<T, 1 << dim> result;
+      result[0] = mass;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
-        if (k >> d & 1)
-          {
-            result = first ? xi[d] : result * xi[d];
-            first  = false;
-          }
+#pragma GCC unroll 8
+        for (int k = 0; k < 1 << d; ++k)
+          result[k | 1 << d] = result[k] * xi[d];
+      result[CellSums<dim>::volumetric] = mass * volumetric;
       return result;
     }
 
-    double *const next;
+    const CellSums<dim> &sums;
   };
 } // namespace limber
 

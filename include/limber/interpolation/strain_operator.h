@@ -323,6 +323,9 @@ namespace limber
     forces() const
     {
       std::array<Nodes, dim> result{};
+      double                 total_pressure = 0;
+      if constexpr (mean_pressure && !pressure_in_lane)
+        total_pressure = sum(pressure);
       if constexpr (deviator || !mean_pressure)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
@@ -337,7 +340,14 @@ namespace limber
               for (int k = 3; k < 1 << dim; ++k)
                 if (k & (k - 1))
                   a[k] = hourglass[d][k];
-            const Nodes sums = sums_over_lanes(a);
+            if (pressure_in_lane && d == 0)
+              a[0] = pressure;
+            Nodes sums = sums_over_lanes(a);
+            if (pressure_in_lane && d == 0)
+              {
+                total_pressure = sums[0];
+                sums[0]        = 0;
+              }
             if constexpr (!averages_shear_in_cells(kind) &&
                           kind != Projection::assumed_strain)
               {
@@ -363,12 +373,10 @@ namespace limber
               }
           }
       if constexpr (mean_pressure)
-        {
-          const double total = sum(pressure);
 #pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-            result[d] -= (total * cell.inverse_edge[d]) * means.derivatives(d);
-        }
+        for (int d = 0; d < dim; ++d)
+          result[d] -=
+            (total_pressure * cell.inverse_edge[d]) * means.derivatives(d);
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         result[d] = -Linear<dim>::to_nodes(result[d]);
@@ -377,6 +385,10 @@ namespace limber
 
   private:
     static constexpr bool mean_pressure = averages_volume_in_cells(kind);
+    // No stress acts on c_0, so that its lane is free for the sum of the
+    // pressures. Pays with eight lanes only.
+    static constexpr bool pressure_in_lane =
+      mean_pressure && deviator && dim == 3;
     static constexpr bool normal_as_is =
       kind == Projection::cell_shear || kind == Projection::hybrid;
 

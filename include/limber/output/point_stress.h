@@ -103,15 +103,14 @@ namespace limber
     void
     sum_around_nodes();
 
-    const NodalFields<dim>    &nodes;
-    const ExchangePlan         plan;      // all cells that ranks share
-    CellFields<dim>            sums;      // mass, m J, m J p
-    CellFields<dim>            deviators; // of m J sigma, where averaged
-    NodalProjection<dim>       nodal;     // pressure
-    std::vector<std::uint32_t> touched;   // cells whose sums are not zero
-    PointView<dim>             points;
-    std::vector<double>        volume_ratios;
-    Projection                 kind = Projection::none;
+    const NodalFields<dim> &nodes;
+    const ExchangePlan      plan;      // all cells that ranks share
+    CellFields<dim>         sums;      // mass, m J, m J p
+    CellFields<dim>         deviators; // of m J sigma, where averaged
+    NodalProjection<dim>    nodal;     // pressure
+    PointView<dim>          points;
+    std::vector<double>     volume_ratios;
+    Projection              kind = Projection::none;
   };
 } // namespace limber
 

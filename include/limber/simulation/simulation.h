@@ -78,7 +78,7 @@ namespace limber
     void
     report_lost_points();
     void
-    rebalance();
+    rebalance_if_it_pays();
     void
     show_progress();
     void
@@ -117,6 +117,8 @@ namespace limber
     Totals<dim>         totals; // of the last row
     const unsigned long n_points_at_start;
     unsigned long       points_and_steps = 0; // sum of points over steps
+    unsigned long       step_of_exchange = 0; // of points between ranks
+    double              steps_waited     = 0; // of ranks for each other
     std::vector<double> targets;              // times to land on, ascending, s
     double              next_pictures = 0;    // s
     double              start_wall = 0, start_cpu = 0, output_cpu = 0;

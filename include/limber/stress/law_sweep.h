@@ -86,14 +86,14 @@ namespace limber
 
     void
     sum_deviators(const PointView<dim> &points,
-                  double *const         sums) const override
+                  const CellSums<dim>  &sums) const override
     {
       if constexpr (Law::keeps_deviator)
         for (std::size_t p = 0; p < points.size; ++p)
           {
             const auto e =
               law.template deviatoric_strain<dim>(state_of(points, p));
-            double *const record = sums + points.cell[p] * DeviatorSums::stride;
+            double *const record = sums.open(points.cell[p]);
             record[DeviatorSums::mass] += points.mass[p];
             for (unsigned int k = 0; k < e.size(); ++k)
               record[DeviatorSums::strain + k] += points.mass[p] * e[k];

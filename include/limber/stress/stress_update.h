@@ -68,11 +68,12 @@ namespace limber
            const StressSweep    &what) const = 0;
 
     /**
-     * Add to the records of the cells (DeviatorSums) the mass of the points
-     * and their deviatoric strain times mass. For laws that keep one.
+     * Add to the next records of the cells (DeviatorSums) the mass of the
+     * points and their deviatoric strain times mass. For laws that keep one.
      */
     virtual void
-    sum_deviators(const PointView<dim> &points, double *sums) const = 0;
+    sum_deviators(const PointView<dim> &points,
+                  const CellSums<dim>  &sums) const = 0;
 
     /**
      * Let the components that the treatment averages go @p share of the way

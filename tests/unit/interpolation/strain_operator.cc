@@ -234,7 +234,9 @@ TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
       volumetric += sum.volumetric;
       trace += sum.trace;
       if (!averages_around_nodes(TestFixture::kind))
-        EXPECT_NEAR(sum.volumetric, sum.trace, 1e-12);
+        {
+          EXPECT_NEAR(sum.volumetric, sum.trace, 1e-12);
+        }
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           EXPECT_NEAR(sum.projected[d][e], sum.plain[d][e], 1e-12);
