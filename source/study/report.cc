@@ -234,7 +234,7 @@ namespace limber
         {
           header += " " + measure.name + " |";
           rule += " --: |";
-          if (measure.reference || measure.source == MeasureSource::check)
+          if (measure.has_error())
             {
               header += " error |";
               rule += " --: |";
@@ -265,13 +265,11 @@ namespace limber
           for (std::size_t m = 0; m < study.measures.size(); ++m)
             {
               const Measure &measure = study.measures[m];
-              const bool     is_error =
-                measure.reference || measure.source == MeasureSource::check;
               text << " "
                    << (m < row.measured.size() ? brief(row.measured[m].value) :
                                                  row.outcome)
                    << " |";
-              if (is_error)
+              if (measure.has_error())
                 text << " "
                      << (m < row.measured.size() ?
                            brief(row.measured[m].error) :

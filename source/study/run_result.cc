@@ -253,6 +253,40 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** The relative L2 error that `limber compare` has left in a run folder. */
+    double
+    read_comparison(const Measure &measure, const std::string &folder)
+    {
+      const std::string path = folder + "/comparison.json";
+      Tree              tree;
+      try
+        {
+          boost::property_tree::read_json(path, tree);
+        }
+      catch (const boost::property_tree::json_parser_error &error)
+        {
+          throw FileError("The file " + in_quotes(path) +
+                          " cannot be read: " + error.message() +
+                          ". Usually the comparison was ended before its end. "
+                          "Go on with '--resume'.");
+        }
+      const std::string       &name = measure.of.front();
+      std::vector<std::string> known;
+      for (const char *const kind : {"fields", "observables"})
+        for (const auto &[compared, errors] : tree.get_child(kind))
+          {
+            if (compared == name)
+              return number_or_nan(member(errors, "relative_l2"));
+            known.push_back(compared);
+          }
+      refuse_name(measure, name, "field or observable", known);
+    }
+  } // namespace
+
+
+
   Measured
   take_measure(const Measure         &measure,
                const RecordedSummary &summary,
@@ -260,6 +294,12 @@ namespace limber
   {
     if (measure.source == MeasureSource::check)
       return worst_check(measure, summary);
+
+    if (measure.source == MeasureSource::comparison)
+      {
+        const double error = read_comparison(measure, folder);
+        return {error, error};
+      }
 
     Measured result;
     if (measure.source == MeasureSource::summary)

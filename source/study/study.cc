@@ -56,7 +56,7 @@ namespace limber
         {
           const Measure &measure = study.measures[m];
           text << ", " << measure.name << " " << row.measured[m].value;
-          if (measure.reference || measure.source == MeasureSource::check)
+          if (measure.has_error())
             text << " (error " << row.measured[m].error << ")";
         }
       const auto cost = row.costs.find(study.cost);
@@ -80,11 +80,17 @@ namespace limber
     if (call.validate)
       return int(ExitCode::success);
 
+    if (!runs.prepare_comparison())
+      return runs.interrupted();
     StudyReport report{study, {}, caption_of(call.command)};
     for (const Variant &variant : runs.variants())
       {
         const auto end = runs.run(variant);
         if (!end)
+          return runs.interrupted();
+        if (is_compared(study) &&
+            outcome_of(*end, variant.folder) == "finished" &&
+            !runs.compare(variant))
           return runs.interrupted();
         report.rows.push_back(row_from(study, variant, *end));
         runs.progress(variant, describe(study, report.rows.back()));

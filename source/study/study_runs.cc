@@ -4,6 +4,7 @@
 #include <limber/base/text.h>
 #include <limber/output/files.h>
 #include <limber/simulation/signals.h>
+#include <limber/study/run_result.h>
 #include <limber/study/study_runs.h>
 
 #include <csignal>
@@ -70,6 +71,7 @@ namespace limber
     , call(call)
     , console(console)
     , all(expand(study))
+    , standard(standard_of(study))
   {
     console.say(study.title + ": " + std::to_string(all.size()) +
                 " variants of " + study.scene);
@@ -100,6 +102,8 @@ namespace limber
     std::error_code error;
     if (!call.resume)
       fs::remove_all(runs, error);
+    if (!error && !call.resume && standard)
+      fs::remove_all(standard->folder, error);
     if (!error)
       fs::create_directories(runs, error);
     if (error)
@@ -119,9 +123,7 @@ namespace limber
       std::filesystem::last_write_time(this_program()).time_since_epoch();
     return "program " + run_info().revision + " " +
            std::to_string(built.count()) + "\nscene " + study.scene +
-           (study.methods[variant.method].runner == Runner::reference ?
-              " by reference" :
-              "") +
+           (variant.runner == Runner::reference ? " by reference" : "") +
            "\ntime limit " + to_text(study.time_limit) + "\n" +
            join(settings, "\n") + "\n" + variant.parameters;
   }
@@ -135,7 +137,6 @@ namespace limber
   {
     const std::string folder =
       variant.folder + (subfolder.empty() ? "" : "." + subfolder);
-    const Runner      runner  = study.methods[variant.method].runner;
     const std::string done    = folder + ".done";
     const std::string depends = dependencies(variant, settings);
     if (call.resume)
@@ -146,7 +147,7 @@ namespace limber
     std::filesystem::remove(done);
     std::filesystem::remove_all(folder);
     std::vector<std::string> command = {this_program()};
-    if (runner == Runner::reference)
+    if (variant.runner == Runner::reference)
       command.push_back("reference");
     command.push_back(study.scene);
     for (const auto *const list : {&variant.settings, &settings})
@@ -162,6 +163,61 @@ namespace limber
       return std::nullopt;
     write_whole_file(done, first_line(end) + depends);
     return end;
+  }
+
+
+
+  bool
+  StudyRuns::prepare_comparison()
+  {
+    if (!standard)
+      return true;
+    console.say("computing what the variants are compared with");
+    const auto end = run(*standard);
+    present        = 0;
+    if (!end)
+      return false;
+    const std::string outcome = outcome_of(*end, standard->folder);
+    if (outcome != "finished")
+      throw InputError("What the variants of " + study.path +
+                       " are to be compared with has not been computed: " +
+                       outcome + ". What it said is in " + standard->folder +
+                       ".log. Change 'Comparison/Settings'.");
+    return true;
+  }
+
+
+
+  bool
+  StudyRuns::compare(const Variant &variant)
+  {
+    namespace fs               = std::filesystem;
+    const std::string former   = variant.folder + "/comparison.json";
+    const auto        is_newer = [&](const std::string &than) {
+      return fs::last_write_time(former) >= fs::last_write_time(than);
+    };
+    if (call.resume && fs::exists(former) &&
+        is_newer(variant.folder + ".done") &&
+        (!standard || is_newer(standard->folder + ".done")))
+      return true;
+
+    const std::string log = variant.folder + ".comparison.log";
+    const ChildEnd    end = run_child({this_program(),
+                                       "compare",
+                                       variant.folder,
+                                    standard ? standard->folder : "exact"},
+                                   log,
+                                   study.time_limit);
+    if (caught_signal() != 0)
+      return false;
+    if (end.exit_code != 0)
+      throw InputError("The variant " + in_quotes(variant.name) + " of " +
+                       study.path +
+                       " cannot be compared. What was said is in " + log +
+                       ". Usually the scene does not write its points: "
+                       "'Output/Point arrays = true' and 'Output/Time "
+                       "interval' belong to 'Settings'.");
+    return true;
   }
 
 

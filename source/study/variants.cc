@@ -60,6 +60,7 @@ namespace limber
       Variant       variant{method, choices, "", "", study.settings, ""};
       const Choice &line = study.methods[method].choice;
       variant.name       = line.label;
+      variant.runner     = study.methods[method].runner;
       append(variant.settings, line.settings);
       for (std::size_t v = 0; v < choices.size(); ++v)
         {
@@ -118,6 +119,22 @@ namespace limber
         while (next(choices, study.variations));
       }
     return variants;
+  }
+
+
+
+  std::optional<Variant>
+  standard_of(const StudyFile &study)
+  {
+    if (!is_compared(study) || study.comparison.with == Standard::exact)
+      return std::nullopt;
+    Variant variant{
+      0, {}, "comparison", study.directory + "/comparison", study.settings, ""};
+    append(variant.settings, study.comparison.settings);
+    if (study.comparison.with == Standard::reference)
+      variant.runner = Runner::reference;
+    variant.parameters = check_scene(study, variant);
+    return variant;
   }
 
 

@@ -178,6 +178,62 @@ class Behaviour(unittest.TestCase):
         self.refused("no number greater than 0", "--for-error", "-1")
         self.refused("stands twice", cells="4, 4 | 4, 4")
 
+    def compare(self, settings, comparison, name="displacement"):
+        text = STUDY.format(title="A test", scene=ARGUMENTS.scene, extra=settings,
+                            cells="8, 8 | 16, 16")
+        text = text.replace("set Measures = displacement",
+                            "set Measures = displacement, field")
+        text = text.replace("set Methods = good, unstable",
+                            "set Methods = good").split(
+            "subsection Method")[0] + "subsection Variation" + text.split(
+            "subsection Variation")[1]
+        return self.run_study(self.write(text=text + f"""
+subsection Measure field
+  set Source = comparison
+  set Name   = {name}
+end
+subsection Comparison
+  {comparison}
+end
+"""), "--resume")
+
+    ARRAYS = ("set Settings = Output/Point arrays=true|"
+              "Output/Time interval=0.25")
+
+    def test_comparison_with_an_exact_solution(self):
+        code, said = self.compare(self.ARRAYS, "set With = exact")
+        self.assertEqual(code, 0, said)
+        coarse, fine = (float(row["field error"]) for row in self.rows())
+        self.assertGreater(coarse / fine, 3.2)  # second order
+        self.assertLess(fine, 0.02)
+        self.assertIn("field, error 0.5: cheapest is", said)
+        written = self.folder / "out/runs/good_16_16/comparison.json"
+        before = written.stat().st_mtime_ns
+        self.compare(self.ARRAYS, "set With = exact")
+        self.assertEqual(written.stat().st_mtime_ns, before)
+
+    def test_comparison_with_another_run(self):
+        code, said = self.compare(
+            self.ARRAYS, "set With = points\n"
+            "set Settings = Grid/Cells=16, 16")
+        self.assertEqual(code, 0, said)
+        coarse, same = (float(row["field error"]) for row in self.rows())
+        self.assertGreater(coarse, 0.01)
+        self.assertLess(same, 1e-6)
+
+    def test_comparison_that_cannot_be_made(self):
+        code, said = self.compare("", "set With = exact")
+        self.assertEqual(code, 1, said)
+        self.assertIn("Output/Point arrays", said)
+        code, said = self.compare(self.ARRAYS, "set With = exact", name="stres")
+        self.assertEqual(code, 1, said)
+        self.assertIn("Did you mean 'stress'?", said)
+        code, said = self.compare(
+            self.ARRAYS, "set With = points\n"
+            "set Settings = Method/Courant number=5|End time=50")
+        self.assertEqual(code, 1, said)
+        self.assertIn("'Comparison/Settings'", said)
+
     def test_measure_of_nothing(self):
         text = STUDY.format(title="A test", scene=ARGUMENTS.scene, extra="",
                             cells="4, 4").replace("set Name = u",

@@ -52,7 +52,8 @@ namespace limber
   {
     check,
     column,
-    summary
+    summary,
+    comparison // relative L2 error against what the study compares with
   };
 
   enum class Reduction
@@ -80,6 +81,28 @@ namespace limber
     // |value - reference| / scale is the error. Without reference: the value
     std::optional<double> reference;
     std::optional<double> scale; // empty: |reference|
+
+    /** Whether it is an error, not a mere number. */
+    bool
+    has_error() const
+    {
+      return reference || source == MeasureSource::check ||
+             source == MeasureSource::comparison;
+    }
+  };
+
+  /** What runs are compared with, at the same initial places and times. */
+  enum class Standard
+  {
+    reference, // the scene by finite elements
+    points,    // another run of the scene
+    exact      // the formulas of its section 'Exact solution'
+  };
+
+  struct ComparisonRequest
+  {
+    Standard                 with = Standard::reference;
+    std::vector<std::string> settings; // of the reference or the other run
   };
 
   enum class Cost
@@ -111,6 +134,7 @@ namespace limber
     std::vector<StudyMethod> methods;
     std::vector<Variation>   variations;
     std::vector<Measure>     measures;
+    ComparisonRequest        comparison; // for measures that ask for it
     std::vector<double>      error_levels;
     Cost                     cost       = Cost::cpu_seconds;
     double                   time_limit = 600; // s, wall time of one run
@@ -122,6 +146,10 @@ namespace limber
     BisectionRequest bisection;
     bool             is_short = false;
   };
+
+  /** Whether a measure asks for a comparison. */
+  bool
+  is_compared(const StudyFile &study);
 
   /** "CPU seconds", "wall seconds", "memory", "steps". */
   std::string

@@ -41,6 +41,21 @@ namespace limber
         const std::vector<std::string> &settings  = {},
         const std::string              &subfolder = "");
 
+    /**
+     * Run what variants are compared with, where the study asks for it; false
+     * if the user has interrupted it. Throws InputError if that run fails.
+     */
+    bool
+    prepare_comparison();
+
+    /**
+     * Compare a finished variant, whose run folder then has the errors; false
+     * if the user has interrupted it. Throws InputError where it cannot be
+     * compared.
+     */
+    bool
+    compare(const Variant &variant);
+
     /** A line about a variant that is done, and how long the rest takes. */
     void
     progress(const Variant &variant, const std::string &text);
@@ -58,12 +73,13 @@ namespace limber
     double
     seconds_left() const;
 
-    const StudyFile     &study;
-    const StudyCall     &call;
-    Console             &console;
-    std::vector<Variant> all;
-    std::vector<double>  seconds;     // wall time of the variants done; 0: kept
-    double               present = 0; // of the one that is being done
+    const StudyFile       &study;
+    const StudyCall       &call;
+    Console               &console;
+    std::vector<Variant>   all;
+    std::optional<Variant> standard; // what variants are compared with
+    std::vector<double>    seconds;  // wall time of the variants done; 0: kept
+    double                 present = 0; // of the one that is being done
   };
 } // namespace limber
 

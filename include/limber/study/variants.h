@@ -4,6 +4,7 @@
 
 #include <limber/study/study_file.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ namespace limber
     std::string              folder;     // of its run
     std::vector<std::string> settings;   // all of them, "Section/Name=value"
     std::string              parameters; // all entries as the run will use them
+    Runner                   runner = Runner::points;
   };
 
   /**
@@ -27,6 +29,13 @@ namespace limber
    */
   std::vector<Variant>
   expand(const StudyFile &study);
+
+  /**
+   * What the variants are compared with, where a measure asks for it and it
+   * has to be computed; checked likewise.
+   */
+  std::optional<Variant>
+  standard_of(const StudyFile &study);
 
   /** The number on the horizontal axis, where that is a variation. */
   double

@@ -105,6 +105,31 @@ TEST(StudyFile, AllParts)
   EXPECT_EQ(study.variations[1].choices[0].label, "a = 1, b = 2");
   EXPECT_EQ(study.measures[0].of.size(), 2u);
   EXPECT_EQ(study.measures[0].reference, 1);
+  EXPECT_FALSE(is_compared(study));
+}
+
+
+
+TEST(StudyFile, Comparison)
+{
+  const std::string text =
+    replaced("set Source = column\n      set Name = kinetic energy, strain "
+             "energy\n      set Reduction = last over first\n      set "
+             "Reference = 1",
+             "set Source = comparison\n set Name = velocity") +
+    R"(
+    subsection Comparison
+      set With = points
+      set Settings = Grid/Cells=72, 40
+      set Short settings = Grid/Cells=36, 20
+    end)";
+  const StudyFile study = read(text);
+  EXPECT_TRUE(is_compared(study));
+  EXPECT_TRUE(study.measures[0].has_error());
+  EXPECT_EQ(study.comparison.with, Standard::points);
+  EXPECT_EQ(study.comparison.settings.size(), 1u);
+  EXPECT_EQ(read(text, {}, true).comparison.settings.back(),
+            "Grid/Cells=36, 20");
 }
 
 
@@ -154,6 +179,7 @@ TEST(StudyFile, WrongInputIsRefused)
   refused("Reference = 1", "Reference = 0", "Set 'Scale'");
   refused("Reduction = last over first", "Reduction = last", "");
   refused("Source = column", "Source = check", "brings its own");
+  refused("Source = column", "Source = comparison", "relative to what");
   refused("set Short methods = cured", "set Short methods = curd", "", false);
   refused("set Short methods = cured",
           "set Short methods = curd",
