@@ -7,14 +7,13 @@
 #include <limber/problem/read_problem.h>
 #include <limber/study/compare.h>
 #include <limber/study/field_source.h>
+#include <limber/study/run_result.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <limits>
-#include <map>
 #include <sstream>
 
 namespace limber
@@ -126,37 +125,6 @@ namespace limber
 
 
 
-    /** Columns of a file `statistics` by name. */
-    std::map<std::string, std::vector<double>>
-    read_columns(const std::string &folder)
-    {
-      std::ifstream                              file(folder + "/statistics");
-      std::vector<std::string>                   names;
-      std::map<std::string, std::vector<double>> result;
-      std::string                                line;
-      while (std::getline(file, line))
-        if (line.compare(0, 2, "# ") == 0)
-          {
-            const auto colon   = line.find(": ");
-            const auto bracket = line.rfind(" [");
-            names.push_back(line.substr(colon + 2,
-                                        bracket == std::string::npos ?
-                                          bracket :
-                                          bracket - colon - 2));
-          }
-        else
-          {
-            std::istringstream words(line);
-            std::string        word;
-            for (const std::string &name : names)
-              if (words >> word)
-                result[name].push_back(std::strtod(word.c_str(), nullptr));
-          }
-      return result;
-    }
-
-
-
     /** By straight lines between rows; not a number outside. */
     double
     interpolate(const std::vector<double> &times,
@@ -184,7 +152,7 @@ namespace limber
                            const std::string  &run,
                            const std::string  &other)
     {
-      const auto own = read_columns(run), theirs = read_columns(other);
+      const Table own = read_statistics(run), theirs = read_statistics(other);
       std::vector<std::pair<std::string, Difference>> result;
       if (own.count("time") == 0 || theirs.count("time") == 0)
         return result;
