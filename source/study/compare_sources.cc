@@ -66,21 +66,23 @@ namespace limber
 
 
 
+    /** Fields from files at some times. */
     template <int dim>
-    class ReferenceSource : public FieldSource<dim>
+    class FileSource : public FieldSource<dim>
     {
     public:
-      explicit ReferenceSource(const std::string &folder)
+      FileSource(const std::string &folder,
+                 const std::string &series,
+                 const std::string &kind)
         : folder(folder)
-        , problem(read_problem<dim>(SceneFile(folder + "/parameters.prm")))
-        , model(problem, MPI_COMM_SELF)
-        , files(find_point_arrays(folder, "nodes"))
+        , files(find_point_arrays(folder, series))
+        , kind(kind)
       {}
 
       std::string
       description() const override
       {
-        return "finite elements in " + folder;
+        return kind + " in " + folder;
       }
 
       std::vector<double>
@@ -89,12 +91,32 @@ namespace limber
         return times_of(files);
       }
 
+    protected:
+      const std::string                                 folder;
+      const std::vector<std::pair<double, std::string>> files;
+
+    private:
+      const std::string kind;
+    };
+
+
+
+    template <int dim>
+    class ReferenceSource : public FileSource<dim>
+    {
+    public:
+      explicit ReferenceSource(const std::string &folder)
+        : FileSource<dim>(folder, "nodes", "finite elements")
+        , problem(read_problem<dim>(SceneFile(folder + "/parameters.prm")))
+        , model(problem, MPI_COMM_SELF)
+      {}
+
       PointArrays<dim>
       evaluate(const double                           time,
                const std::vector<dealii::Point<dim>> &places) override
       {
         NodalVector u = model.make_vector(), v = model.make_vector();
-        read_reference_fields(file_at(files, time), model, u, v);
+        read_reference_fields(file_at(this->files, time), model, u, v);
         const auto samples = model.sample(places, u, v);
         auto       result  = unknown_fields(time, places);
         for (std::size_t p = 0; p < places.size(); ++p)
@@ -112,40 +134,25 @@ namespace limber
       }
 
     private:
-      const std::string                                 folder;
-      const Problem<dim>                                problem;
-      const SolidModel<dim>                             model;
-      const std::vector<std::pair<double, std::string>> files;
+      const Problem<dim>    problem;
+      const SolidModel<dim> model;
     };
 
 
 
     template <int dim>
-    class RunSource : public FieldSource<dim>
+    class RunSource : public FileSource<dim>
     {
     public:
       explicit RunSource(const std::string &folder)
-        : folder(folder)
-        , files(find_point_arrays(folder, "points"))
+        : FileSource<dim>(folder, "points", "material points")
       {}
-
-      std::string
-      description() const override
-      {
-        return "material points in " + folder;
-      }
-
-      std::vector<double>
-      times() const override
-      {
-        return times_of(files);
-      }
 
       PointArrays<dim>
       evaluate(const double                           time,
                const std::vector<dealii::Point<dim>> &places) override
       {
-        const auto arrays = read_point_arrays<dim>(file_at(files, time));
+        const auto arrays = read_point_arrays<dim>(file_at(this->files, time));
         std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
         for (std::size_t p = 0; p < arrays.size(); ++p)
           entries.emplace_back(arrays.place[p], p);
@@ -228,9 +235,6 @@ namespace limber
             result[k] += share[k] * normal(0, j) * rows(k, j);
         return result;
       }
-
-      const std::string                                 folder;
-      const std::vector<std::pair<double, std::string>> files;
     };
 
 

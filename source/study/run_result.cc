@@ -39,6 +39,27 @@ namespace limber
 
 
 
+    /** Of a JSON file; @p remedy is the last sentence where it fails. */
+    Tree
+    read_tree(const std::string &path, const std::string &remedy)
+    {
+      Tree tree;
+      try
+        {
+          boost::property_tree::read_json(path, tree);
+        }
+      catch (const boost::property_tree::json_parser_error &error)
+        {
+          throw FileError("The file " + in_quotes(path) +
+                          " cannot be read: " + error.message() +
+                          ". Usually what writes it was ended before. " +
+                          remedy);
+        }
+      return tree;
+    }
+
+
+
     template <typename Map>
     std::vector<std::string>
     names_of(const Map &map)
@@ -186,19 +207,7 @@ namespace limber
   RecordedSummary
   read_summary(const std::string &folder)
   {
-    const std::string path = folder + "/summary.json";
-    Tree              tree;
-    try
-      {
-        boost::property_tree::read_json(path, tree);
-      }
-    catch (const boost::property_tree::json_parser_error &error)
-      {
-        throw FileError("The file " + in_quotes(path) +
-                        " cannot be read: " + error.message() +
-                        ". Usually the run was ended before it wrote its "
-                        "summary. Run it again.");
-      }
+    const Tree      tree = read_tree(folder + "/summary.json", "Run it again.");
     RecordedSummary summary;
     for (const auto &[name, value] : tree)
       if (value.empty())
@@ -259,19 +268,8 @@ namespace limber
     double
     read_comparison(const Measure &measure, const std::string &folder)
     {
-      const std::string path = folder + "/comparison.json";
-      Tree              tree;
-      try
-        {
-          boost::property_tree::read_json(path, tree);
-        }
-      catch (const boost::property_tree::json_parser_error &error)
-        {
-          throw FileError("The file " + in_quotes(path) +
-                          " cannot be read: " + error.message() +
-                          ". Usually the comparison was ended before its end. "
-                          "Go on with '--resume'.");
-        }
+      const Tree tree =
+        read_tree(folder + "/comparison.json", "Go on with '--resume'.");
       const std::string       &name = measure.of.front();
       std::vector<std::string> known;
       for (const char *const kind : {"fields", "observables"})

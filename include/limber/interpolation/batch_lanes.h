@@ -103,7 +103,7 @@ namespace limber
    * always inlined: the call would cost as much as a point.
    */
   template <int dim, class Work>
-  inline void
+  __attribute__((always_inline)) inline void
   for_each_pack(const CellBatch &batch, const Work &work)
   {
     constexpr std::size_t width = 1 << dim;
@@ -172,26 +172,6 @@ namespace limber
   template <int dim, unsigned int first, unsigned int n_components>
   class NodalCoefficients
   {
-  public:
-    NodalCoefficients(const CellGeometry<dim> &cell, const double *const nodes)
-    {
-      std::array<Lanes, 1 << dim> a;
-      for (int i = 0; i < 1 << dim; ++i)
-        a[i] = load<Lanes>(nodes + cell.node[i] + start);
-      Linear<dim>::to_monomials(a);
-      for (int i = 0; i < 1 << dim; ++i)
-        store(a[i], coefficients[i]);
-    }
-
-    /** Coefficients of one component, counted from the first slot. */
-    auto
-    component(const unsigned int c) const
-    {
-      return
-        [this, c](const int k) { return coefficients[k][c + first - start]; };
-    }
-
-  private:
     static constexpr unsigned int width =
       n_components <= 2 ? 2 : (n_components <= 4 ? 4 : 8);
     // Lanes beyond the wanted slots must not reach beyond the record.
@@ -202,7 +182,67 @@ namespace limber
     static_assert(first + n_components <= start + width);
     using Lanes = Pack<width>;
 
-    double coefficients[1 << dim][width];
+  public:
+    NodalCoefficients(const CellGeometry<dim> &cell, const double *const nodes)
+    {
+      std::array<Lanes, 1 << dim> a;
+      for (int i = 0; i < 1 << dim; ++i)
+        a[i] = load<Lanes>(nodes + cell.node[i] + start);
+      Linear<dim>::to_monomials(a);
+      for (int i = 0; i < 1 << dim; ++i)
+        store(a[i], &coefficients[i * width]);
+    }
+
+    /** Coefficients of one component, counted from the first slot. */
+    auto
+    component(const unsigned int c) const
+    {
+      return [this, c](const int k) {
+        return coefficients[k * width + c + first - start];
+      };
+    }
+
+    /** As many components as there are directions. */
+    class VectorField
+    {
+    public:
+      /** Component d is in lane first_lane + d, what else there is is not. */
+      using Components                = Pack<dim == 2 ? 2 : 4>;
+      static constexpr int first_lane = dim == 3 && first > start ? 1 : 0;
+
+      VectorField(const NodalCoefficients &nodal, const unsigned int begin)
+        : nodal(nodal)
+        , begin(begin)
+      {}
+
+      auto
+      operator()(const int d) const
+      {
+        return nodal.component(begin + d);
+      }
+
+      Components
+      components(const int k) const
+      {
+        return load<Components>(
+          &nodal.coefficients[k * width + begin + first - start - first_lane]);
+      }
+
+    private:
+      const NodalCoefficients &nodal;
+      const unsigned int       begin;
+    };
+
+    VectorField
+    field(const unsigned int begin) const
+    {
+      return VectorField(*this, begin);
+    }
+
+  private:
+    // Rows within lines of the cache: what has just been stored across two of
+    // them cannot be loaded before it is there.
+    alignas(64) std::array<double, width << dim> coefficients;
   };
 } // namespace limber
 

@@ -50,6 +50,25 @@ namespace limber
       return c(1 << d) + inverse_mass * sum;
     }
 
+    /** The same of all components of a vector field, as lanes, for each d. */
+    template <class VectorField>
+    auto
+    derivatives_of(const VectorField &c) const
+    {
+      std::array<typename VectorField::Components, dim> result;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          typename VectorField::Components sum{};
+#pragma GCC unroll 8
+          for (int k = 0; k < 1 << dim; ++k)
+            if (k >> d & 1 && k != 1 << d)
+              sum += c.components(k) * record[k ^ (1 << d)];
+          result[d] = c.components(1 << d) + inverse_mass * sum;
+        }
+      return result;
+    }
+
     /** Lane k: the same of monomial k. */
     Nodes
     derivatives(const int d) const

@@ -88,6 +88,15 @@ namespace limber
       return linear_monomials[d];
     }
 
+    /** Lane of the product of all coordinates: 1, others 0. */
+    static Nodes
+    last()
+    {
+      Nodes result{};
+      result[n_nodes - 1] = 1;
+      return result;
+    }
+
     /** Lanes of products of two or more coordinates: 1, others 0. */
     static Nodes
     bilinear()

@@ -48,10 +48,8 @@ namespace limber
   class StrainOperator
   {
   public:
-    /**
-     * @p velocity gives the coefficients of component d of the velocity as
-     * velocity(d)(k); @p nodal is S div v, 1/s.
-     */
+    /** @p velocity is a NodalCoefficients::VectorField; @p nodal is S div v,
+     * 1/s. */
     StrainOperator(const Coefficients         &velocity,
                    const CellGeometry<dim>    &cell,
                    const CellMeans<dim>       &means,
@@ -70,15 +68,17 @@ namespace limber
       else if constexpr (kind == Projection::cell)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
-          divergence += mean_derivative(d, d, means);
+          divergence += scale[d] * means.derivative(velocity(d), d);
       else
         {
+          const auto gradient = means.derivatives_of(velocity);
 #pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
 #pragma GCC unroll 8
             for (int e = 0; e <= d; ++e)
-              mean[d][e] = mean[e][d] = 0.5 * (mean_derivative(d, e, means) +
-                                               mean_derivative(e, d, means));
+              mean[d][e] = mean[e][d] =
+                0.5 * (scale[e] * gradient[e][lane + d] +
+                       scale[d] * gradient[d][lane + e]);
 #pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
             divergence += mean[d][d];
@@ -92,7 +92,7 @@ namespace limber
      * request without it where averages make that cheaper.
      */
     template <class Number, bool with_spin = true>
-    void
+    __attribute__((always_inline)) void
     evaluate(const std::array<Number, dim> &xi,
              MotionIncrement<dim, Number>  &motion) const
     {
@@ -140,66 +140,66 @@ namespace limber
     }
 
   private:
-    /** The mean of dt dv_d/dx_e. */
-    double
-    mean_derivative(const int d, const int e, const CellMeans<dim> &means) const
-    {
-      return scale[e] * means.derivative(velocity(d), e);
-    }
-
+    // Components as lanes: what is summed up here belongs to a cell, not to a
+    // point, and eight points a cell would have to pay for it one by one.
     void
     set_hourglass(const CellMeans<dim>   &means,
                   const StrainProjection &projection)
     {
+      Components scales{};
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          centroid[d] = means[1 << d];
-          linear[d]   = {};
+          centroid[d]      = means[1 << d];
+          scales[lane + d] = scale[d];
         }
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-        for (int e = 0; e < dim; ++e)
-          if (e != d)
-            {
-              const int k = 1 << d | 1 << e;
-              linear[d][e] +=
-                projection.own * scale[d] * at_centroid(d, k, means);
-              linear[d][d] +=
-                projection.mate * scale[e] * at_centroid(e, k, means);
-            }
-      if constexpr (dim == 3)
-#pragma GCC unroll 8
-        for (int d = 0; d < dim; ++d)
-          {
-            const int e = (d + 1) % 3, f = (d + 2) % 3;
-            product_mean[d] =
-              means[1 << e | 1 << f] - means[1 << e] * means[1 << f];
-#pragma GCC unroll 8
-            for (int g = 0; g < dim; ++g)
-              product[d][g] = (g == d ? projection.trilinear_own :
-                                        projection.trilinear_mate) *
-                              scale[g] * velocity(g)(7);
-            torsion[d] =
-              0.5 * (scale[f] * at_centroid(e, 1 << d | 1 << f, means) +
-                     scale[e] * at_centroid(f, 1 << d | 1 << e, means));
-          }
-    }
-
-    /**
-     * The coefficient of the bilinear mode k in component d, in monomials of
-     * deviations from the centroid: those of the cell have a corner of it as
-     * their origin, which would leave its mirror image with another strain.
-     */
-    double
-    at_centroid(const int d, const int k, const CellMeans<dim> &means) const
-    {
-      const auto c = velocity(d);
       if constexpr (dim == 2)
-        return c(k);
+        {
+          const Components c = scales * velocity.components(3);
+#pragma GCC unroll 8
+          for (int d = 0; d < dim; ++d)
+            {
+              linear[d][1 - d] = projection.own * c[lane + d];
+              linear[d][d]     = projection.mate * c[lane + 1 - d];
+            }
+        }
       else
-        return c(k) + c(7) * means[7 ^ k];
+        {
+          // The coefficients of the bilinear modes, f being the axis that is
+          // not in them, in monomials of deviations from the centroid: those
+          // of the cell have a corner of it as their origin, which would leave
+          // its mirror image with another strain.
+          const Components            trilinear = velocity.components(7);
+          std::array<Components, dim> bilinear, own, mate;
+#pragma GCC unroll 8
+          for (int f = 0; f < dim; ++f)
+            {
+              bilinear[f] =
+                velocity.components(7 ^ (1 << f)) + trilinear * centroid[f];
+              own[f]  = (projection.own * scales) * bilinear[f];
+              mate[f] = (projection.mate * scales) * bilinear[f];
+            }
+          const Components product_own =
+            (projection.trilinear_own * scales) * trilinear;
+          const Components product_mate =
+            (projection.trilinear_mate * scales) * trilinear;
+#pragma GCC unroll 8
+          for (int d = 0; d < dim; ++d)
+            {
+              const int e = (d + 1) % 3, f = (d + 2) % 3;
+              linear[d][d] = mate[f][lane + e] + mate[e][lane + f];
+              linear[d][e] = own[f][lane + d];
+              linear[d][f] = own[e][lane + d];
+              product_mean[d] =
+                means[1 << e | 1 << f] - centroid[e] * centroid[f];
+#pragma GCC unroll 8
+              for (int g = 0; g < dim; ++g)
+                product[d][g] =
+                  g == d ? product_own[lane + g] : product_mate[lane + g];
+              torsion[d] = 0.5 * (scale[f] * bilinear[e][lane + e] +
+                                  scale[e] * bilinear[f][lane + f]);
+            }
+        }
     }
 
     template <class Number>
@@ -219,6 +219,9 @@ namespace limber
                              product_mean[g]);
       return result;
     }
+
+    using Components          = typename Coefficients::Components;
+    static constexpr int lane = Coefficients::first_lane; // of component 0
 
     const Coefficients                      &velocity;
     const NodalMean<dim, kind>              &nodal;
@@ -322,8 +325,18 @@ namespace limber
     __attribute__((always_inline)) std::array<Nodes, dim>
     forces() const
     {
-      std::array<Nodes, dim> result{};
-      double                 total_pressure = 0;
+      std::array<Nodes, dim>                  result{};
+      double                                  total_pressure = 0;
+      [[maybe_unused]] std::array<Nodes, dim> slopes, of_trilinear;
+      if constexpr (averages_shear_in_cells(kind) ||
+                    kind == Projection::assumed_strain)
+#pragma GCC unroll 8
+        for (int e = 0; e < dim; ++e)
+          {
+            slopes[e] = cell.inverse_edge[e] * means.derivatives(e);
+            if constexpr (dim == 3)
+              of_trilinear[e] = Linear<dim>::last() * means[1 << e];
+          }
       if constexpr (mean_pressure && !pressure_in_lane)
         total_pressure = sum(pressure);
       if constexpr (deviator || !mean_pressure)
@@ -362,14 +375,16 @@ namespace limber
                 result[d] = Linear<dim>::bilinear() * sums;
                 // bilinear modes about the centroid hold part of c_7
                 if constexpr (kind == Projection::assumed_strain && dim == 3)
-                  result[d][7] += sums[3] * means[4] + sums[5] * means[2] +
-                                  sums[6] * means[1];
+#pragma GCC unroll 8
+                  for (int f = 0; f < dim; ++f)
+                    result[d] += Linear<dim>::across(sums, f) * of_trilinear[f];
 #pragma GCC unroll 8
                 for (int e = 0; e < dim; ++e)
-                  result[d] +=
-                    (sums[1 << e] * cell.inverse_edge[e]) *
-                    (normal_as_is && d == e ? Linear<dim>::linear(e) :
-                                              means.derivatives(e));
+                  if (normal_as_is && d == e)
+                    result[d] += (sums[1 << e] * cell.inverse_edge[e]) *
+                                 Linear<dim>::linear(e);
+                  else
+                    result[d] += sums[1 << e] * slopes[e];
               }
           }
       if constexpr (mean_pressure)

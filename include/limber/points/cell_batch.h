@@ -22,7 +22,7 @@ namespace limber
    * number of batches, which tells how far the order has decayed.
    */
   template <int dim, class Work>
-  inline std::size_t
+  __attribute__((always_inline)) inline std::size_t
   for_each_batch(const PointView<dim> &points, const Work &work)
   {
     std::size_t       n_batches = 0;

@@ -247,15 +247,14 @@ namespace limber
         const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
           cell, grid.nodes);
 
-        const auto velocity = [&](const int d) {
-          return nodal.component(strained + d);
-        };
+        const auto                    velocity = nodal.field(strained);
         const CellMeans<dim>          means(sums, batch.cell);
         [[maybe_unused]] const double shift =
           what.shift ? what.shift_share * what.shift[batch.cell] : 0;
         const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
-        const StrainOperator<dim, kind, decltype(velocity)> strain(
-          velocity, cell, means, divergence, strain_projection, what.step);
+        const StrainOperator<dim, kind, std::decay_t<decltype(velocity)>>
+          strain(
+            velocity, cell, means, divergence, strain_projection, what.step);
 
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {

@@ -44,11 +44,9 @@ namespace
           const auto &cell = grid.cells[points.cell[p]];
           const NodalCoefficients<dim, Layout::velocity, dim> velocities(
             cell, grid.nodes.data());
-          const auto velocity = [&](const int d) {
-            return velocities.component(d);
-          };
+          const auto                 velocity = velocities.field(0);
           const NodalMean<dim, kind> nodal(divergence, cell);
-          const StrainOperator<dim, kind, decltype(velocity)> B(
+          const StrainOperator<dim, kind, std::decay_t<decltype(velocity)>> B(
             velocity,
             cell,
             CellMeans<dim>(&sums, points.cell[p]),
@@ -310,17 +308,17 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
         view.now = moments.data();
         const NodalCoefficients<dim, Layout::velocity, dim> velocities(
           cell, records.data());
-        const auto velocity = [&](const int d) {
-          return velocities.component(d);
-        };
+        const auto                              velocity = velocities.field(0);
         const NodalMean<dim, TestFixture::kind> nodal(divergence.data(), cell);
-        const StrainOperator<dim, TestFixture::kind, decltype(velocity)> B(
-          velocity,
-          cell,
-          CellMeans<dim>(&view, 0),
-          nodal,
-          projection_of(TestFixture::kind),
-          1.);
+        const StrainOperator<dim,
+                             TestFixture::kind,
+                             std::decay_t<decltype(velocity)>>
+                                     B(velocity,
+            cell,
+            CellMeans<dim>(&view, 0),
+            nodal,
+            projection_of(TestFixture::kind),
+            1.);
         MotionIncrement<dim, double> result;
         B.template evaluate<double>(xi, result);
         return result;
