@@ -23,6 +23,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 COLOURS = plt.rcParams["axes.prop_cycle"].by_key()["color"]
+LINES = ["-", "--", ":"]  # one for each round of colours
 MARKERS = "osD^v<>pPXh8"
 
 
@@ -93,6 +94,7 @@ def draw_panel(axis, rows, measure, meta):
     for index, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
         style = {"color": COLOURS[index % len(COLOURS)],
+                 "linestyle": LINES[index // len(COLOURS) % len(LINES)],
                  "marker": MARKERS[index % len(MARKERS)], "markersize": 4,
                  "linewidth": 1}
         # where formulas are drawn, measured values stand alone, and can be
@@ -117,8 +119,6 @@ def draw_panel(axis, rows, measure, meta):
     if axis.get_yscale() == "log" and lower < 1e-10 * upper:
         axis.set_ylim(bottom=1e-10 * upper)  # what is zero up to round-off
     axis.grid(alpha=0.25)
-    if axis.get_legend_handles_labels()[0]:
-        axis.legend(fontsize=7)
 
 
 def main():
@@ -132,12 +132,17 @@ def main():
 
     measures = meta["measures"]
     figure, axes = plt.subplots(1, len(measures), squeeze=False,
-                                figsize=(1 + 6 * len(measures), 5.2),
+                                figsize=(2.5 + 6 * len(measures), 5.2),
                                 layout="constrained")
     for axis, measure in zip(axes[0], measures):
         draw_panel(axis, rows, measure, meta)
         if len(measures) > 1:
             axis.set_title(measure, fontsize=9)
+    handles, labels = max((axis.get_legend_handles_labels() for axis in axes[0]),
+                          key=lambda found: len(found[1]))
+    if handles:
+        axes[0][-1].legend(handles, labels, fontsize=7, loc="upper left",
+                           bbox_to_anchor=(1.01, 1))
     figure.suptitle(meta["title"])
     width = 100 * len(measures)
     figure.supxlabel("\n".join(textwrap.wrap(meta["caption"], width)),
