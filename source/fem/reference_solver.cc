@@ -5,6 +5,7 @@
 
 #include <limber/base/exceptions.h>
 #include <limber/fem/reference_solver.h>
+#include <limber/fem/solid_totals.h>
 
 #include <cmath>
 #include <limits>
@@ -537,7 +538,8 @@ namespace limber
     state.load_work += 0.5 * (moved * load + moved * former_load);
     state.boundary_work += 0.5 * (moved * support + moved * former_support);
     state.load_impulse +=
-      0.5 * step * (sum_components(load) + sum_components(former_load));
+      0.5 * step *
+      (sum_over_nodes(model, load) + sum_over_nodes(model, former_load));
     const auto force = model.sum_over_sides(support);
     for (unsigned int s = 0; s < 2 * dim; ++s)
       {
@@ -547,89 +549,6 @@ namespace limber
     former_load      = load;
     former_support   = support;
     former_net_force = net_force;
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ReferenceSolver<dim>::sum_components(const NodalVector &vector) const
-  {
-    dealii::Tensor<1, dim> result;
-    model.for_each_owned_node([&](const auto &, const auto &dofs) {
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] += vector[dofs[d]];
-    });
-    return dealii::Utilities::MPI::sum(result, model.communicator);
-  }
-
-
-
-  template <int dim>
-  double
-  ReferenceSolver<dim>::kinetic_energy() const
-  {
-    NodalVector momenta = model.make_vector();
-    if (method == ReferenceMethod::explicit_steps)
-      {
-        for (const auto i : momenta.locally_owned_elements())
-          momenta[i] = model.nodal_masses()[i] * state.velocity[i];
-      }
-    else
-      model.mass_matrix().vmult(momenta, state.velocity);
-    return 0.5 * (momenta * state.velocity);
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ReferenceSolver<dim>::momentum() const
-  {
-    NodalVector momenta = model.make_vector();
-    for (const auto i : momenta.locally_owned_elements())
-      momenta[i] = model.nodal_masses()[i] * state.velocity[i];
-    return sum_components(momenta);
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ReferenceSolver<dim>::mass_moment() const
-  {
-    dealii::Tensor<1, dim> result;
-    model.for_each_owned_node([&](const auto &place, const auto &dofs) {
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] += model.nodal_masses()[dofs[d]] *
-                     (place[d] + state.displacement[dofs[d]]);
-    });
-    return dealii::Utilities::MPI::sum(result, model.communicator);
-  }
-
-
-
-  template <int dim>
-  double
-  ReferenceSolver<dim>::mass() const
-  {
-    return sum_components(model.nodal_masses())[0];
-  }
-
-
-
-  template <int dim>
-  double
-  ReferenceSolver<dim>::largest_speed() const
-  {
-    double squared = 0;
-    model.for_each_owned_node([&](const auto &, const auto &dofs) {
-      double sum = 0;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum += state.velocity[dofs[d]] * state.velocity[dofs[d]];
-      squared = std::max(squared, sum);
-    });
-    return std::sqrt(dealii::Utilities::MPI::max(squared, model.communicator));
   }
 
 

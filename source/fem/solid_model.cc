@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
-
 #include <deal.II/dofs/dof_tools.h>
 
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_q1.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/sparsity_tools.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
-
-#include <deal.II/numerics/rtree.h>
 
 #include <limber/base/exceptions.h>
 #include <limber/fem/solid_model.h>
@@ -48,32 +43,6 @@ namespace limber
       constexpr const char *names[] = {
         "left", "right", "bottom", "top", "back", "front"};
       return names[side];
-    }
-
-
-
-    /** Whether a place lies in a cell, and where in it. */
-    template <int dim>
-    bool
-    find_in_cell(
-      const dealii::Mapping<dim>                                   &mapping,
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const dealii::Point<dim>                                     &place,
-      dealii::Point<dim>                                           &unit)
-    {
-      constexpr double tolerance = 1e-8; // of round-off between cells
-      try
-        {
-          unit = mapping.transform_real_to_unit_cell(cell, place);
-        }
-      catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &)
-        {
-          return false;
-        }
-      if (!dealii::GeometryInfo<dim>::is_inside_unit_cell(unit, tolerance))
-        return false;
-      unit = dealii::GeometryInfo<dim>::project_to_unit_cell(unit);
-      return true;
     }
   } // namespace
 
@@ -282,7 +251,7 @@ namespace limber
     weight = make_vector();
 
     const unsigned int         n = fe.dofs_per_cell;
-    dealii::FEValues<dim>      values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>      values(shape_values(quadrature));
     dealii::FullMatrix<double> matrix(n, n);
     dealii::Vector<double>     rows(n), forces(n);
     std::vector<dealii::types::global_dof_index> dofs(n);
@@ -432,6 +401,15 @@ namespace limber
 
 
   template <int dim>
+  dealii::FEValues<dim>
+  SolidModel<dim>::shape_values(const dealii::Quadrature<dim> &places) const
+  {
+    return dealii::FEValues<dim>(fe, places, update_flags);
+  }
+
+
+
+  template <int dim>
   std::vector<double>
   SolidModel<dim>::values_of(
     const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
@@ -453,7 +431,7 @@ namespace limber
                                    NodalVector       &forces) const
   {
     forces = 0;
-    dealii::FEValues<dim>  values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>  values(shape_values(quadrature));
     dealii::Vector<double> on_cell(fe.dofs_per_cell);
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
     bool                                         good = true;
@@ -485,7 +463,7 @@ namespace limber
   {
     matrix                       = 0;
     const unsigned int         n = fe.dofs_per_cell;
-    dealii::FEValues<dim>      values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>      values(shape_values(quadrature));
     dealii::Vector<double>     on_cell(n);
     dealii::FullMatrix<double> tangent(n, n);
     std::vector<double>        former_values;
@@ -561,7 +539,7 @@ namespace limber
     if (!has_loads())
       return;
     const dealii::QGauss<dim - 1> face_quadrature(degree + 1);
-    dealii::FEValues<dim>         values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>         values(shape_values(quadrature));
     dealii::FEFaceValues<dim>     faces(
       fe, face_quadrature, update_flags | dealii::update_normal_vectors);
     dealii::Vector<double>                       on_cell(fe.dofs_per_cell);
@@ -609,228 +587,6 @@ namespace limber
           none.distribute_local_to_global(on_cell, dofs, forces);
         }
     forces.compress(dealii::VectorOperation::add);
-  }
-
-
-
-  template <int dim>
-  StrainTotals
-  SolidModel<dim>::strain_totals(const NodalVector &displacement) const
-  {
-    StrainTotals          result;
-    dealii::FEValues<dim> values(fe, quadrature, update_flags);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          values.reinit(cell);
-          const auto states =
-            element->states(values, values, values_of(cell, displacement));
-          for (const unsigned int q : values.quadrature_point_indices())
-            {
-              result.strain_energy += values.JxW(q) * states[q].strain_energy;
-              result.smallest_volume =
-                std::min(result.smallest_volume, states[q].volume_ratio);
-              result.largest_volume =
-                std::max(result.largest_volume, states[q].volume_ratio);
-            }
-        }
-    using namespace dealii::Utilities::MPI;
-    result.strain_energy   = sum(result.strain_energy, communicator);
-    result.smallest_volume = min(result.smallest_volume, communicator);
-    result.largest_volume  = max(result.largest_volume, communicator);
-    return result;
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::fill_samples(
-    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-    const std::vector<dealii::Point<dim>>                        &unit_places,
-    const NodalVector                                            &displacement,
-    const NodalVector                                            &velocity,
-    std::vector<PlaceSample<dim>>                                &samples) const
-  {
-    dealii::FEValues<dim> values(fe, quadrature, update_flags);
-    dealii::FEValues<dim> places(fe,
-                                 dealii::Quadrature<dim>(unit_places),
-                                 update_flags);
-    values.reinit(cell);
-    places.reinit(cell);
-    const auto u      = values_of(cell, displacement);
-    const auto v      = values_of(cell, velocity);
-    const auto states = element->states(values, places, u);
-    samples.assign(unit_places.size(), PlaceSample<dim>());
-    for (unsigned int q = 0; q < unit_places.size(); ++q)
-      {
-        samples[q].inside   = true;
-        samples[q].material = states[q];
-        for (unsigned int i = 0; i < u.size(); ++i)
-          {
-            const unsigned int c = fe.system_to_component_index(i).first;
-            samples[q].displacement[c] += places.shape_value(i, q) * u[i];
-            samples[q].velocity[c] += places.shape_value(i, q) * v[i];
-          }
-      }
-  }
-
-
-
-  template <int dim>
-  PlaceSample<dim>
-  SolidModel<dim>::sample(const dealii::Point<dim> &place,
-                          const NodalVector        &displacement,
-                          const NodalVector        &velocity) const
-  {
-    constexpr unsigned int n_stress = 9;
-    // count, displacement, velocity, volume ratio, pressure, stress
-    std::vector<double>           sums(1 + 2 * dim + 2 + n_stress);
-    const dealii::MappingQ1<dim>  mapping;
-    std::vector<PlaceSample<dim>> here;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned() &&
-          cell->bounding_box().point_inside(place, 1e-6))
-        {
-          dealii::Point<dim> unit;
-          if (!find_in_cell<dim>(mapping, cell, place, unit))
-            continue;
-          fill_samples(cell, {unit}, displacement, velocity, here);
-          const PlaceSample<dim> &found = here.front();
-          sums[0] += 1;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              sums[1 + d] += found.displacement[d];
-              sums[1 + dim + d] += found.velocity[d];
-            }
-          sums[1 + 2 * dim] += found.material.volume_ratio;
-          sums[2 + 2 * dim] += found.material.pressure;
-          for (unsigned int k = 0; k < n_stress; ++k)
-            sums[3 + 2 * dim + k] += found.material.stress[k / 3][k % 3];
-        }
-    dealii::Utilities::MPI::sum(sums, communicator, sums);
-
-    PlaceSample<dim> result;
-    result.inside = sums[0] > 0;
-    if (!result.inside)
-      return result;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        result.displacement[d] = sums[1 + d] / sums[0];
-        result.velocity[d]     = sums[1 + dim + d] / sums[0];
-      }
-    result.material.volume_ratio = sums[1 + 2 * dim] / sums[0];
-    result.material.pressure     = sums[2 + 2 * dim] / sums[0];
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = 0; j <= i; ++j)
-        result.material.stress[i][j] = sums[3 + 2 * dim + 3 * i + j] / sums[0];
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<PlaceSample<dim>>
-  SolidModel<dim>::sample(const std::vector<dealii::Point<dim>> &places,
-                          const NodalVector                     &displacement,
-                          const NodalVector                     &velocity) const
-  {
-    // Places by what they lie in: the box of every cell asks for its own.
-    std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
-    for (std::size_t p = 0; p < places.size(); ++p)
-      entries.emplace_back(places[p], p);
-    const auto tree = dealii::pack_rtree(entries);
-
-    std::vector<PlaceSample<dim>>   result(places.size()), here;
-    const dealii::MappingQ1<dim>    mapping;
-    std::vector<dealii::Point<dim>> unit_places;
-    std::vector<std::size_t>        indices;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      {
-        unit_places.clear();
-        indices.clear();
-        dealii::BoundingBox<dim> box = cell->bounding_box();
-        box.extend(1e-6 * smallest_edge);
-        for (auto it = tree.qbegin(boost::geometry::index::intersects(box));
-             it != tree.qend();
-             ++it)
-          {
-            dealii::Point<dim> unit;
-            if (!result[it->second].inside &&
-                find_in_cell<dim>(mapping, cell, it->first, unit))
-              {
-                unit_places.push_back(unit);
-                indices.push_back(it->second);
-              }
-          }
-        if (indices.empty())
-          continue;
-        fill_samples(cell, unit_places, displacement, velocity, here);
-        for (std::size_t k = 0; k < indices.size(); ++k)
-          result[indices[k]] = here[k];
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<MaterialState>
-  SolidModel<dim>::nodal_states(const NodalVector &displacement) const
-  {
-    // count, volume ratio, pressure, six of stress: dim of them in a vector
-    constexpr unsigned int n_values = 9, n_vectors = (n_values + dim - 1) / dim;
-    std::vector<NodalVector>      sums(n_vectors, make_vector());
-    const dealii::Quadrature<dim> support(
-      fe.base_element(0).get_unit_support_points());
-    dealii::FEValues<dim> values(fe, quadrature, update_flags);
-    dealii::FEValues<dim> places(fe, support, update_flags);
-    std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          values.reinit(cell);
-          places.reinit(cell);
-          const auto states =
-            element->states(values, places, values_of(cell, displacement));
-          cell->get_dof_indices(dofs);
-          for (unsigned int n = 0; n < states.size(); ++n)
-            {
-              const auto                        &state = states[n];
-              const std::array<double, n_values> all   = {{1,
-                                                           state.volume_ratio,
-                                                           state.pressure,
-                                                           state.stress[0][0],
-                                                           state.stress[1][1],
-                                                           state.stress[2][2],
-                                                           state.stress[0][1],
-                                                           state.stress[1][2],
-                                                           state.stress[2][0]}};
-              for (unsigned int k = 0; k < n_values; ++k)
-                sums[k / dim](dofs[fe.component_to_system_index(k % dim, n)]) +=
-                  all[k];
-            }
-        }
-    for (NodalVector &sum : sums)
-      sum.compress(dealii::VectorOperation::add);
-
-    std::vector<MaterialState> result;
-    for (const auto &[place, of_node] : nodes)
-      {
-        const auto value = [&, d = of_node](const unsigned int k) {
-          return sums[k / dim][d[k % dim]] / sums[0][d[0]];
-        };
-        MaterialState state;
-        state.volume_ratio = value(1);
-        state.pressure     = value(2);
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            state.stress[d][d]           = value(3 + d);
-            state.stress[d][(d + 1) % 3] = value(6 + d);
-          }
-        result.push_back(state);
-      }
-    return result;
   }
 
 

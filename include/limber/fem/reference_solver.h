@@ -71,22 +71,6 @@ namespace limber
       return state;
     }
 
-    /** Kinetic energy, J: of lumped masses where steps are explicit. */
-    double
-    kinetic_energy() const;
-
-    /** kg m/s and, of the deformed body, kg m. */
-    dealii::Tensor<1, dim>
-    momentum() const;
-    dealii::Tensor<1, dim>
-    mass_moment() const;
-    double
-    mass() const;
-
-    /** Of the nodes, m/s. */
-    double
-    largest_speed() const;
-
   private:
     void
     start();
@@ -116,8 +100,6 @@ namespace limber
     close_step(const NodalVector &former, const double step);
     void
     account(const NodalVector &former, const double step);
-    dealii::Tensor<1, dim>
-    sum_components(const NodalVector &vector) const;
 
     const SolidModel<dim>                            &model;
     const ReferenceMethod                             method;

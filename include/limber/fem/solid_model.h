@@ -20,33 +20,12 @@
 
 namespace limber
 {
-  /** What a sweep over the elements sums up besides forces. */
-  struct StrainTotals
-  {
-    double strain_energy   = 0; // J
-    double smallest_volume = 1; // of all J at quadrature points
-    double largest_volume  = 1;
-  };
-
-
-
-  /** Displacement, velocity and state of the material at a place. */
-  template <int dim>
-  struct PlaceSample
-  {
-    bool                   inside = false;
-    dealii::Tensor<1, dim> displacement, velocity; // m, m/s
-    MaterialState          material;
-  };
-
-
-
   /**
    * The body of a scene in finite elements: mesh, degrees of freedom, masses,
    * forces and their derivative, and which nodes the sides of the box hold.
    * Nodal vectors have the displacements of all nodes of this rank's elements
    * (ghosted); forces are complete for those it owns. Member functions are
-   * collective unless they return what is known already.
+   * collective unless they return what is known already or ask for one cell.
    */
   template <int dim>
   class SolidModel
@@ -147,27 +126,15 @@ namespace limber
       return lumped;
     }
 
-    StrainTotals
-    strain_totals(const NodalVector &displacement) const;
+    /** Shape functions of a cell at @p places, as the element wants them. */
+    dealii::FEValues<dim>
+    shape_values(const dealii::Quadrature<dim> &places) const;
 
-    /** Means over the elements that meet at a place of the initial body. */
-    PlaceSample<dim>
-    sample(const dealii::Point<dim> &place,
-           const NodalVector        &displacement,
-           const NodalVector        &velocity) const;
-
-    /**
-     * The same at many places, in their order, each in one element that holds
-     * it. For one rank.
-     */
-    std::vector<PlaceSample<dim>>
-    sample(const std::vector<dealii::Point<dim>> &places,
-           const NodalVector                     &displacement,
-           const NodalVector                     &velocity) const;
-
-    /** States of the owned nodes: means over the elements that meet there. */
-    std::vector<MaterialState>
-    nodal_states(const NodalVector &displacement) const;
+    /** Components of @p vector in a cell, in the numbering of the cell. */
+    std::vector<double>
+    values_of(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const NodalVector &vector) const;
 
     /** Values of the rigid motions, as LinearSolver wants them. */
     std::vector<double>
@@ -220,17 +187,6 @@ namespace limber
                   const double                     time) const;
     double
     prescribed_velocity(const Held &held, const double time) const;
-    void
-    fill_samples(
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const std::vector<dealii::Point<dim>>                        &unit_places,
-      const NodalVector             &displacement,
-      const NodalVector             &velocity,
-      std::vector<PlaceSample<dim>> &samples) const;
-    std::vector<double>
-    values_of(
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const NodalVector &vector) const;
 
     dealii::IndexSet                                     relevant;
     dealii::AffineConstraints<double>                    held_constraints, none;

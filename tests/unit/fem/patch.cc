@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/fem/solid_samples.h>
+
 #include <gtest/gtest.h>
 #include <support/solid_scene.h>
 
@@ -92,7 +94,8 @@ namespace
         here[d]  = 0.3;
         there[d] = 0.9;
       }
-    const auto a = model.sample(here, u, u), b = model.sample(there, u, u);
+    const auto a = sample_at(model, here, u, u),
+               b = sample_at(model, there, u, u);
     ASSERT_TRUE(a.inside && b.inside);
     EXPECT_GT(a.material.stress.norm(), 0.1);
     EXPECT_NEAR((a.material.stress - b.material.stress).norm(), 0, 1e-8);
