@@ -40,7 +40,7 @@ namespace limber
       vmult(NodalVector &result, const NodalVector &vector) const
       {
         model.mass_matrix().vmult(result, vector);
-        model.clear_held(result);
+        model.held().clear(result);
       }
     };
 
@@ -104,12 +104,13 @@ namespace limber
     NodalVector  ignored = model.make_vector(), held = model.make_vector();
     const double moment =
       1e-6 * model.smallest_edge / model.element->pressure_wave_speed;
-    model.prescribe(0, state.displacement, moment, ignored, ignored, held);
+    model.held().prescribe(
+      0, state.displacement, moment, ignored, ignored, held);
     if (method == ReferenceMethod::explicit_steps)
       {
         LumpedMass{model.nodal_masses()}.vmult(state.acceleration, unbalanced);
         state.acceleration += held;
-        support += model.held_inertia(held);
+        support += model.held().inertia(model.nodal_masses(), held);
         step_limit =
           request.time_step > 0 ? request.time_step : explicit_step_limit(60);
       }
@@ -117,7 +118,7 @@ namespace limber
       {
         model.mass_matrix().vmult(inertia, held);
         unbalanced -= inertia;
-        model.clear_held(unbalanced);
+        model.held().clear(unbalanced);
         dealii::SolverControl control(1000, 1e-12 * unbalanced.l2_norm());
         dealii::SolverCG<NodalVector>(control).solve(FreeMass<dim>{model},
                                                      state.acceleration,
@@ -127,7 +128,7 @@ namespace limber
         state.acceleration += held;
         model.mass_matrix().vmult(inertia, state.acceleration);
         held = 0;
-        model.replace_held(held, inertia);
+        model.held().replace(held, inertia);
         support += held;
         inertia    = 0;
         step_limit = request.time_step > 0 ?
@@ -138,7 +139,7 @@ namespace limber
     former_load      = load;
     former_support   = support;
     former_net_force = net_force;
-    state.side_force = model.sum_over_sides(support);
+    state.side_force = model.held().sum_over_sides(support);
   }
 
 
@@ -160,7 +161,7 @@ namespace limber
           for (unsigned int d = 0; d < dim; ++d)
             mode[dofs[d]] = std::cos(3.1 * phase + 1.7 * d);
         });
-        model.clear_held(mode);
+        model.held().clear(mode);
       }
 
     const double size  = 1e-6 * model.smallest_edge;
@@ -181,7 +182,7 @@ namespace limber
           break;
         ahead -= behind;
         ahead *= 0.5;
-        model.clear_held(ahead);
+        model.held().clear(ahead);
         // Rayleigh's quotient in the metric of the lumped masses
         double mass = 0;
         for (const auto i : mode.locally_owned_elements())
@@ -228,7 +229,7 @@ namespace limber
     support   = inertia;
     support -= unbalanced;
     NodalVector of_free = support;
-    model.clear_held(of_free);
+    model.held().clear(of_free);
     support -= of_free;
 
     // with a share of the forces of the step before, over that of the new ones
@@ -239,7 +240,7 @@ namespace limber
                      inertia);
     else
       unbalanced -= inertia;
-    model.clear_held(unbalanced);
+    model.held().clear(unbalanced);
 
     const double scale =
       std::max({external, internal.l2_norm(), inertia.l2_norm()});
@@ -348,7 +349,7 @@ namespace limber
       return;
     ahead -= internal;
     ahead *= -1 / step;
-    model.clear_held(ahead);
+    model.held().clear(ahead);
     model.assemble(start, 0, *matrix);
     linear_solver.set_matrix(*matrix);
     matrix_mass_factor = 0;
@@ -372,7 +373,7 @@ namespace limber
         const NodalVector former = state.displacement;
         part                     = std::min(part, state.time + step - time);
         load_factor              = (time + part) / end;
-        model.prescribe(
+        model.held().prescribe(
           time, former, time + part, state.displacement, velocity, none);
         follow_held(former);
         if (solve(end, 0, false))
@@ -433,16 +434,16 @@ namespace limber
     state.displacement = predicted;
     state.displacement.add(1 / factor, state.acceleration);
     NodalVector held_acceleration = model.make_vector();
-    model.prescribe(state.time,
-                    former,
-                    time,
-                    state.displacement,
-                    state.velocity,
-                    held_acceleration);
+    model.held().prescribe(state.time,
+                           former,
+                           time,
+                           state.displacement,
+                           state.velocity,
+                           held_acceleration);
     // such that displacement and acceleration of held components agree
     NodalVector held_predicted = state.displacement;
     held_predicted.add(-1 / factor, held_acceleration);
-    model.replace_held(predicted, held_predicted);
+    model.held().replace(predicted, held_predicted);
 
     if (!solve(time, factor / (1 - delay), true))
       return false;
@@ -453,7 +454,7 @@ namespace limber
                        former_acceleration,
                        gamma * step,
                        state.acceleration);
-    model.replace_held(state.velocity, held_velocity);
+    model.held().replace(state.velocity, held_velocity);
     return true;
   }
 
@@ -471,13 +472,13 @@ namespace limber
     const NodalVector former = state.displacement;
     state.velocity.add(step / 2, state.acceleration);
     state.displacement.add(step, state.velocity);
-    model.prescribe(state.time,
-                    former,
-                    time,
-                    state.displacement,
-                    state.velocity,
-                    state.acceleration);
-    inertia           = model.held_inertia(state.acceleration);
+    model.held().prescribe(state.time,
+                           former,
+                           time,
+                           state.displacement,
+                           state.velocity,
+                           state.acceleration);
+    inertia = model.held().inertia(model.nodal_masses(), state.acceleration);
     const double rest = unbalance(time, 0);
     if (!std::isfinite(rest) || !std::isfinite(state.velocity.linfty_norm()))
       throw ComputationError(
@@ -488,11 +489,11 @@ namespace limber
         "'Method = implicit'.");
     NodalVector acceleration = model.make_vector();
     LumpedMass{model.nodal_masses()}.vmult(acceleration, unbalanced);
-    model.replace_held(acceleration, state.acceleration);
+    model.held().replace(acceleration, state.acceleration);
     NodalVector held_velocity = state.velocity;
     state.acceleration        = acceleration;
     state.velocity.add(step / 2, state.acceleration);
-    model.replace_held(state.velocity, held_velocity);
+    model.held().replace(state.velocity, held_velocity);
   }
 
 
@@ -540,7 +541,7 @@ namespace limber
     state.load_impulse +=
       0.5 * step *
       (sum_over_nodes(model, load) + sum_over_nodes(model, former_load));
-    const auto force = model.sum_over_sides(support);
+    const auto force = model.held().sum_over_sides(support);
     for (unsigned int s = 0; s < 2 * dim; ++s)
       {
         state.side_impulse[s] += 0.5 * step * (force[s] + state.side_force[s]);

@@ -11,7 +11,8 @@
 #include <limber/base/exceptions.h>
 #include <limber/fem/solid_model.h>
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 #include <map>
 
 namespace limber
@@ -22,9 +23,6 @@ namespace limber
       dealii::update_values | dealii::update_gradients |
       dealii::update_quadrature_points | dealii::update_JxW_values;
 
-    // Places closer than this, relative to the box, are one.
-    constexpr double same_place = 1e-9;
-
     unsigned int
     degree_of(const ReferenceElement kind)
     {
@@ -32,17 +30,6 @@ namespace limber
                  kind == ReferenceElement::q1_p0_p0 ?
                1 :
                2;
-    }
-
-
-
-    template <int dim>
-    const char *
-    side_name(const unsigned int side)
-    {
-      constexpr const char *names[] = {
-        "left", "right", "bottom", "top", "back", "front"};
-      return names[side];
     }
   } // namespace
 
@@ -71,7 +58,7 @@ namespace limber
   {
     check_scene();
     number();
-    find_held();
+    held_nodes = std::make_unique<const HeldNodes<dim>>(problem, dof_handler);
     assemble_masses();
   }
 
@@ -109,7 +96,6 @@ namespace limber
   {
     dof_handler.distribute_dofs(fe);
     relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
-    held_constraints.reinit(relevant);
     none.reinit(relevant);
     none.close();
 
@@ -141,75 +127,6 @@ namespace limber
     smallest_edge = dealii::Utilities::MPI::min(smallest_edge, communicator);
     for (const auto &[dof, node] : found)
       nodes.push_back(node);
-  }
-
-
-
-  // A node is held by every side of the box that one of the faces that it
-  // belongs to lies in.
-  template <int dim>
-  void
-  SolidModel<dim>::find_held()
-  {
-    const auto  &grid      = problem.grid;
-    const double tolerance = same_place * grid.lower.distance(grid.upper);
-    const dealii::Quadrature<dim> places(
-      fe.base_element(0).get_unit_support_points());
-    dealii::FEValues<dim> values(fe, places, dealii::update_quadrature_points);
-
-    std::map<dealii::types::global_dof_index, Held> found;
-    std::vector<dealii::types::global_dof_index>    dofs(fe.dofs_per_cell);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (!cell->is_artificial() && cell->at_boundary())
-        for (const unsigned int f : cell->face_indices())
-          for (unsigned int side = 0; side < 2 * dim; ++side)
-            {
-              const SideCondition condition = problem.sides[side].condition;
-              const unsigned int  normal    = side / 2;
-              const double        plane =
-                side % 2 == 0 ? grid.lower[normal] : grid.upper[normal];
-              const auto face = cell->face(f);
-              bool       in_plane =
-                face->at_boundary() && condition != SideCondition::free;
-              for (unsigned int v = 0; in_plane && v < face->n_vertices(); ++v)
-                in_plane =
-                  std::abs(face->vertex(v)[normal] - plane) < tolerance;
-              if (!in_plane)
-                continue;
-              if (condition == SideCondition::friction)
-                throw InputError(
-                  std::string("The body touches the side '") +
-                  side_name<dim>(side) +
-                  "', which is 'friction' in section 'Boundaries'; the finite "
-                  "element reference knows no friction. Set that side to slip "
-                  "or no slip.");
-              values.reinit(cell);
-              cell->get_dof_indices(dofs);
-              for (unsigned int i = 0; i < dofs.size(); ++i)
-                {
-                  const auto [component, node] =
-                    fe.system_to_component_index(i);
-                  if (fe.has_support_on_face(i, f) &&
-                      (condition != SideCondition::slip || component == normal))
-                    {
-                      // where two sides meet, the later one holds
-                      const Held entry{dofs[i],
-                                       side,
-                                       component,
-                                       values.quadrature_point(node)};
-                      const auto [place, is_new] =
-                        found.insert({dofs[i], entry});
-                      if (!is_new && place->second.side < side)
-                        place->second = entry;
-                    }
-                }
-            }
-    for (const auto &[key, value] : found)
-      {
-        held.push_back(value);
-        held_constraints.add_line(value.dof);
-      }
-    held_constraints.close();
   }
 
 
@@ -301,100 +218,8 @@ namespace limber
           for (unsigned int d = 0; d < dim; ++d)
             result[dofs[d]] = velocity[d];
         }
-    for (const Held &h : held)
-      if (result.in_local_range(h.dof))
-        result[h.dof] = prescribed_velocity(h, 0);
+    held().prescribe_velocity(0, result);
     result.update_ghost_values();
-    return result;
-  }
-
-
-
-  template <int dim>
-  double
-  SolidModel<dim>::prescribed_velocity(const Held  &held,
-                                       const double time) const
-  {
-    const Side<dim> &side = problem.sides[held.side];
-    return side.condition == SideCondition::velocity ?
-             side.velocity.value(held.place, time, held.component) :
-             0;
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::prescribe(const double       former_time,
-                             const NodalVector &former_displacement,
-                             const double       time,
-                             NodalVector       &displacement,
-                             NodalVector       &velocity,
-                             NodalVector       &acceleration) const
-  {
-    const double step = time - former_time;
-    for (const Held &h : held)
-      if (displacement.in_local_range(h.dof))
-        {
-          const double before = prescribed_velocity(h, former_time);
-          const double middle = prescribed_velocity(h, former_time + step / 2);
-          const double after  = prescribed_velocity(h, time);
-          // Simpson's rule, and a parabola through the three
-          displacement[h.dof] = former_displacement[h.dof] +
-                                step / 6 * (before + 4 * middle + after);
-          velocity[h.dof]     = after;
-          acceleration[h.dof] = (before - 4 * middle + 3 * after) / step;
-        }
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::clear_held(NodalVector &vector) const
-  {
-    for (const Held &h : held)
-      if (vector.in_local_range(h.dof))
-        vector[h.dof] = 0;
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::replace_held(NodalVector       &vector,
-                                const NodalVector &from) const
-  {
-    for (const Held &h : held)
-      if (vector.in_local_range(h.dof))
-        vector[h.dof] = from[h.dof];
-  }
-
-
-
-  template <int dim>
-  NodalVector
-  SolidModel<dim>::held_inertia(const NodalVector &acceleration) const
-  {
-    NodalVector result = make_vector();
-    for (const Held &h : held)
-      if (result.in_local_range(h.dof))
-        result[h.dof] = lumped[h.dof] * acceleration[h.dof];
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::array<dealii::Tensor<1, dim>, 2 * dim>
-  SolidModel<dim>::sum_over_sides(const NodalVector &forces) const
-  {
-    std::array<dealii::Tensor<1, dim>, 2 * dim> result;
-    for (const Held &h : held)
-      if (forces.in_local_range(h.dof))
-        result[h.side][h.component] += forces[h.dof];
-    for (auto &force : result)
-      force = dealii::Utilities::MPI::sum(force, communicator);
     return result;
   }
 
@@ -493,7 +318,9 @@ namespace limber
                                      values.JxW(q) * values.shape_value(i, q) *
                                      values.shape_value(j, q);
           cell->get_dof_indices(dofs);
-          held_constraints.distribute_local_to_global(tangent, dofs, matrix);
+          held().constraints().distribute_local_to_global(tangent,
+                                                          dofs,
+                                                          matrix);
         }
     matrix.compress(dealii::VectorOperation::add);
     return dealii::Utilities::MPI::min(int(good), communicator) != 0;

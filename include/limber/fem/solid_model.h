@@ -11,18 +11,20 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <limber/fem/fitted_mesh.h>
+#include <limber/fem/held_nodes.h>
 #include <limber/fem/linear_solver.h>
 #include <limber/fem/solid_element.h>
 
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace limber
 {
   /**
    * The body of a scene in finite elements: mesh, degrees of freedom, masses,
-   * forces and their derivative, and which nodes the sides of the box hold.
+   * forces and their derivative, and the nodes that the sides of the box hold.
    * Nodal vectors have the displacements of all nodes of this rank's elements
    * (ghosted); forces are complete for those it owns. Member functions are
    * collective unless they return what is known already or ask for one cell.
@@ -43,6 +45,13 @@ namespace limber
 
     NodalVector
     make_vector() const;
+
+    /** What the sides of the box hold. */
+    const HeldNodes<dim> &
+    held() const
+    {
+      return *held_nodes;
+    }
 
     /** Initial velocity, m/s; zero where the sides prescribe another one. */
     NodalVector
@@ -71,31 +80,6 @@ namespace limber
     {
       return problem.loads.body_force || !problem.loads.faces.empty();
     }
-
-    /** Set displacements, velocities, accelerations of held nodes. */
-    void
-    prescribe(const double       former_time,
-              const NodalVector &former_displacement,
-              const double       time,
-              NodalVector       &displacement,
-              NodalVector       &velocity,
-              NodalVector       &acceleration) const;
-
-    /** Set the components of held nodes to zero. */
-    void
-    clear_held(NodalVector &vector) const;
-
-    /** Take the held components from another vector. */
-    void
-    replace_held(NodalVector &vector, const NodalVector &from) const;
-
-    /** Nodal masses times accelerations, of held components only, N. */
-    NodalVector
-    held_inertia(const NodalVector &acceleration) const;
-
-    /** The forces in the held components, summed by side of the box. */
-    std::array<dealii::Tensor<1, dim>, 2 * dim>
-    sum_over_sides(const NodalVector &forces) const;
 
     /**
      * Stiffness + @p mass_factor M, one on the diagonal of held components;
@@ -164,19 +148,10 @@ namespace limber
     double                                         smallest_edge = 0; // m
 
   private:
-    struct Held
-    {
-      dealii::types::global_dof_index dof;
-      unsigned int                    side, component;
-      dealii::Point<dim>              place;
-    };
-
     void
     check_scene() const;
     void
     number();
-    void
-    find_held();
     void
     assemble_masses();
     dealii::Tensor<1, dim>
@@ -185,12 +160,10 @@ namespace limber
                   const unsigned int               q,
                   const std::vector<double>       &u,
                   const double                     time) const;
-    double
-    prescribed_velocity(const Held &held, const double time) const;
 
     dealii::IndexSet                                     relevant;
-    dealii::AffineConstraints<double>                    held_constraints, none;
-    std::vector<Held>                                    held;
+    dealii::AffineConstraints<double>                    none;
+    std::unique_ptr<const HeldNodes<dim>>                held_nodes;
     std::vector<std::pair<dealii::Point<dim>, NodeDofs>> nodes; // owned
     std::unique_ptr<Matrix>                              masses;
     NodalVector                                          lumped, weight;

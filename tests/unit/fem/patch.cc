@@ -127,8 +127,8 @@ namespace
         seed         = std::fmod(16807 * seed, 2147483647.);
         direction[i] = seed / 2147483647. - 0.5;
       }
-    model.clear_held(u);
-    model.clear_held(direction);
+    model.held().clear(u);
+    model.held().clear(direction);
     u.update_ghost_values();
 
     typename SolidModel<dim>::Matrix tangent;
@@ -147,8 +147,8 @@ namespace
     ASSERT_TRUE(model.internal_forces(u, behind));
     ahead -= behind;
     ahead *= 1 / (2 * h);
-    model.clear_held(ahead);
-    model.clear_held(product);
+    model.held().clear(ahead);
+    model.held().clear(product);
     const double size = product.l2_norm();
     product -= ahead;
     EXPECT_LT(product.l2_norm(), 1e-7 * size);
