@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
@@ -28,6 +27,7 @@ namespace limber
     constexpr double share_of_longest_step = 0.8;
     // Explicit steps between two looks at the longest stable one
     constexpr unsigned int steps_between_looks = 200;
+
 
 
     /** The mass matrix on the components that are not held. */
@@ -144,61 +144,23 @@ namespace limber
 
 
 
-  // The fastest motion of the present state, by the power method on M^-1 K,
-  // with K from differences of forces: two over its circular frequency.
+  // Two over the circular frequency of the fastest motion is the limit.
   template <int dim>
   double
   ReferenceSolver<dim>::explicit_step_limit(const unsigned int n_iterations)
   {
-    if (mode.size() == 0)
-      {
-        // As rough as can be, and the same on any number of ranks
-        mode = model.make_vector();
-        model.for_each_owned_node([&](const auto &place, const auto &dofs) {
-          double phase = 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            phase += (1 + d) * place[d] / model.smallest_edge;
-          for (unsigned int d = 0; d < dim; ++d)
-            mode[dofs[d]] = std::cos(3.1 * phase + 1.7 * d);
-        });
-        model.held().clear(mode);
-      }
-
-    const double size  = 1e-6 * model.smallest_edge;
-    NodalVector  ahead = model.make_vector(), behind = model.make_vector();
-    NodalVector  moved   = model.make_vector();
-    double       largest = 0; // eigenvalue
-    for (unsigned int k = 0; k < n_iterations; ++k)
-      {
-        mode *= size / mode.linfty_norm();
-        moved = state.displacement;
-        moved += mode;
-        moved.update_ghost_values();
-        bool good = model.internal_forces(moved, ahead);
-        moved.add(-2, mode);
-        moved.update_ghost_values();
-        good &= model.internal_forces(moved, behind);
-        if (!good)
-          break;
-        ahead -= behind;
-        ahead *= 0.5;
-        model.held().clear(ahead);
-        // Rayleigh's quotient in the metric of the lumped masses
-        double mass = 0;
-        for (const auto i : mode.locally_owned_elements())
-          mass += mode[i] * mode[i] * model.nodal_masses()[i];
-        mass    = dealii::Utilities::MPI::sum(mass, model.communicator);
-        largest = (mode * ahead) / mass;
-        LumpedMass{model.nodal_masses()}.vmult(mode, ahead);
-      }
-    if (!(largest > 0))
+    if (!fastest_mode)
+      fastest_mode.emplace(model);
+    const double frequency =
+      fastest_mode->circular_frequency(state.displacement, n_iterations);
+    if (!(frequency > 0))
       throw ComputationError(
         "The finite element reference finds no stable step at time " +
         std::to_string(state.time) +
         " s: the body resists no motion, or an element is turned inside out. "
         "Usually an earlier step was too long. Set 'Reference/Method = "
         "implicit'.");
-    return share_of_longest_step * 2 / std::sqrt(largest);
+    return share_of_longest_step * 2 / frequency;
   }
 
 

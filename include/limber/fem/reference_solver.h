@@ -2,9 +2,13 @@
 #ifndef limber_fem_reference_solver_h
 #define limber_fem_reference_solver_h
 
+#include <limber/fem/fastest_mode.h>
 #include <limber/fem/solid_model.h>
 
+#include <array>
 #include <memory>
+#include <optional>
+#include <string>
 
 namespace limber
 {
@@ -115,9 +119,10 @@ namespace limber
     NodalVector former_load, former_support;
     NodalVector net_force, former_net_force; // all but inertia
     NodalVector predicted;       // displacement without the new acceleration, m
-    NodalVector mode;            // fastest, for the length of explicit steps
     double      load_factor = 1; // share of gravity and loads that acts
     double      rest        = 0; // unbalanced share of the forces
+
+    std::optional<FastestMode<dim>> fastest_mode; // where explicit steps ask
   };
 } // namespace limber
 
