@@ -37,12 +37,12 @@ namespace limber
       {
         for (const auto i : from.locally_owned_elements())
           source[i] = from[i];
-        model.clear_held(source);
+        model.held().clear(source);
         if (solver != nullptr)
           solver->solve(result, source);
         else
           model.mass_matrix().vmult(result, source);
-        model.clear_held(result);
+        model.held().clear(result);
         for (const auto i : from.locally_owned_elements())
           to[i] = result[i];
         to.compress(dealii::VectorOperation::insert);

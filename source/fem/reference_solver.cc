@@ -1,32 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <limber/base/exceptions.h>
 #include <limber/fem/reference_solver.h>
+#include <limber/fem/solid_totals.h>
 
 #include <cmath>
-#include <limits>
-#include <sstream>
+#include <string>
 
+/**
+ * @file How a reference begins, its explicit steps, and what every step adds
+ * up. The steps that need Newton's method are in newton.cc.
+ */
 namespace limber
 {
   namespace
   {
-    constexpr double       infinite = std::numeric_limits<double>::infinity();
-    constexpr unsigned int most_iterations = 25;
-    // of a load step, before Newton's method is given up
-    constexpr double       smallest_part = 1. / 256;
-    constexpr unsigned int most_halvings = 8; // of a time step, likewise
-    // alpha of Hilber, Hughes and Taylor (1977): the share of the forces of the
-    // step before. It damps what the step does not resolve, by 10 % a step.
-    constexpr double delay = 0.05;
-    // A kept tangent has to reduce the residual to this share at least.
-    constexpr double good_reduction        = 0.1;
     constexpr double share_of_longest_step = 0.8;
     // Explicit steps between two looks at the longest stable one
     constexpr unsigned int steps_between_looks = 200;
+
 
 
     /** The mass matrix on the components that are not held. */
@@ -39,7 +33,7 @@ namespace limber
       vmult(NodalVector &result, const NodalVector &vector) const
       {
         model.mass_matrix().vmult(result, vector);
-        model.clear_held(result);
+        model.held().clear(result);
       }
     };
 
@@ -103,12 +97,13 @@ namespace limber
     NodalVector  ignored = model.make_vector(), held = model.make_vector();
     const double moment =
       1e-6 * model.smallest_edge / model.element->pressure_wave_speed;
-    model.prescribe(0, state.displacement, moment, ignored, ignored, held);
+    model.held().prescribe(
+      0, state.displacement, moment, ignored, ignored, held);
     if (method == ReferenceMethod::explicit_steps)
       {
         LumpedMass{model.nodal_masses()}.vmult(state.acceleration, unbalanced);
         state.acceleration += held;
-        support += model.held_inertia(held);
+        support += model.held().inertia(model.nodal_masses(), held);
         step_limit =
           request.time_step > 0 ? request.time_step : explicit_step_limit(60);
       }
@@ -116,7 +111,7 @@ namespace limber
       {
         model.mass_matrix().vmult(inertia, held);
         unbalanced -= inertia;
-        model.clear_held(unbalanced);
+        model.held().clear(unbalanced);
         dealii::SolverControl control(1000, 1e-12 * unbalanced.l2_norm());
         dealii::SolverCG<NodalVector>(control).solve(FreeMass<dim>{model},
                                                      state.acceleration,
@@ -126,7 +121,7 @@ namespace limber
         state.acceleration += held;
         model.mass_matrix().vmult(inertia, state.acceleration);
         held = 0;
-        model.replace_held(held, inertia);
+        model.held().replace(held, inertia);
         support += held;
         inertia    = 0;
         step_limit = request.time_step > 0 ?
@@ -137,323 +132,28 @@ namespace limber
     former_load      = load;
     former_support   = support;
     former_net_force = net_force;
-    state.side_force = model.sum_over_sides(support);
+    state.side_force = model.held().sum_over_sides(support);
   }
 
 
 
-  // The fastest motion of the present state, by the power method on M^-1 K,
-  // with K from differences of forces: two over its circular frequency.
+  // Two over the circular frequency of the fastest motion is the limit.
   template <int dim>
   double
   ReferenceSolver<dim>::explicit_step_limit(const unsigned int n_iterations)
   {
-    if (mode.size() == 0)
-      {
-        // As rough as can be, and the same on any number of ranks
-        mode = model.make_vector();
-        model.for_each_owned_node([&](const auto &place, const auto &dofs) {
-          double phase = 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            phase += (1 + d) * place[d] / model.smallest_edge;
-          for (unsigned int d = 0; d < dim; ++d)
-            mode[dofs[d]] = std::cos(3.1 * phase + 1.7 * d);
-        });
-        model.clear_held(mode);
-      }
-
-    const double size  = 1e-6 * model.smallest_edge;
-    NodalVector  ahead = model.make_vector(), behind = model.make_vector();
-    NodalVector  moved   = model.make_vector();
-    double       largest = 0; // eigenvalue
-    for (unsigned int k = 0; k < n_iterations; ++k)
-      {
-        mode *= size / mode.linfty_norm();
-        moved = state.displacement;
-        moved += mode;
-        moved.update_ghost_values();
-        bool good = model.internal_forces(moved, ahead);
-        moved.add(-2, mode);
-        moved.update_ghost_values();
-        good &= model.internal_forces(moved, behind);
-        if (!good)
-          break;
-        ahead -= behind;
-        ahead *= 0.5;
-        model.clear_held(ahead);
-        // Rayleigh's quotient in the metric of the lumped masses
-        double mass = 0;
-        for (const auto i : mode.locally_owned_elements())
-          mass += mode[i] * mode[i] * model.nodal_masses()[i];
-        mass    = dealii::Utilities::MPI::sum(mass, model.communicator);
-        largest = (mode * ahead) / mass;
-        LumpedMass{model.nodal_masses()}.vmult(mode, ahead);
-      }
-    if (!(largest > 0))
+    if (!fastest_mode)
+      fastest_mode.emplace(model);
+    const double frequency =
+      fastest_mode->circular_frequency(state.displacement, n_iterations);
+    if (!(frequency > 0))
       throw ComputationError(
         "The finite element reference finds no stable step at time " +
         std::to_string(state.time) +
         " s: the body resists no motion, or an element is turned inside out. "
         "Usually an earlier step was too long. Set 'Reference/Method = "
         "implicit'.");
-    return share_of_longest_step * 2 / std::sqrt(largest);
-  }
-
-
-
-  // Forces at the present displacement; what is left over relative to the
-  // largest of them, infinite where an element is turned inside out.
-  template <int dim>
-  double
-  ReferenceSolver<dim>::unbalance(const double time, const double mass_factor)
-  {
-    state.displacement.update_ghost_values();
-    if (!model.internal_forces(state.displacement, internal))
-      return infinite;
-    model.loads(state.displacement, time, load);
-    load *= load_factor;
-    unbalanced = load;
-    unbalanced.add(load_factor, model.gravity());
-    const double external = unbalanced.l2_norm();
-    if (mass_factor != 0)
-      {
-        state.acceleration = state.displacement;
-        state.acceleration -= predicted;
-        state.acceleration *= (1 - delay) * mass_factor;
-        model.mass_matrix().vmult(inertia, state.acceleration);
-      }
-    unbalanced -= internal;
-    net_force = unbalanced;
-    support   = inertia;
-    support -= unbalanced;
-    NodalVector of_free = support;
-    model.clear_held(of_free);
-    support -= of_free;
-
-    // with a share of the forces of the step before, over that of the new ones
-    if (mass_factor != 0)
-      unbalanced.add(delay / (1 - delay),
-                     former_net_force,
-                     -1 / (1 - delay),
-                     inertia);
-    else
-      unbalanced -= inertia;
-    model.clear_held(unbalanced);
-
-    const double scale =
-      std::max({external, internal.l2_norm(), inertia.l2_norm()});
-    return scale == 0 ? 0 : unbalanced.l2_norm() / scale;
-  }
-
-
-
-  template <int dim>
-  void
-  ReferenceSolver<dim>::renew_tangent(const double       mass_factor,
-                                      const NodalVector *former)
-  {
-    model.assemble(state.displacement, mass_factor, *matrix, former);
-    linear_solver.set_matrix(*matrix);
-    matrix_mass_factor = mass_factor;
-    ++state.factorisations;
-  }
-
-
-
-  // Newton's method from the present displacement; false where it fails.
-  template <int dim>
-  bool
-  ReferenceSolver<dim>::solve(const double time,
-                              const double mass_factor,
-                              const bool   keep_tangent)
-  {
-    NodalVector correction = model.make_vector(), before = correction;
-    double      former = infinite;
-    rest               = unbalance(time, mass_factor);
-    for (unsigned int k = 0; k < most_iterations && std::isfinite(rest); ++k)
-      {
-        if (rest <= model.problem.reference.tolerance)
-          return true;
-        if (!keep_tangent || !matrix_serves(mass_factor) ||
-            rest > good_reduction * former)
-          renew_tangent(mass_factor, k > 0 ? &before : nullptr);
-        before = state.displacement;
-        linear_solver.solve(correction, unbalanced);
-        ++state.newton_steps;
-        // Where forces nearly vanish, round-off of large ones remains.
-        if (rest <= 1e-4 &&
-            correction.l2_norm() <= 1e-11 * state.displacement.l2_norm())
-          return true;
-
-        former = rest;
-        state.displacement += correction;
-        rest = unbalance(time, mass_factor);
-        for (unsigned int half = 0; half < 8 && rest == infinite; ++half)
-          {
-            correction *= 0.5;
-            state.displacement -= correction;
-            rest = unbalance(time, mass_factor);
-          }
-      }
-    return rest <= model.problem.reference.tolerance;
-  }
-
-
-
-  template <int dim>
-  bool
-  ReferenceSolver<dim>::matrix_serves(const double mass_factor) const
-  {
-    return std::abs(matrix_mass_factor - mass_factor) <=
-           1e-6 * std::abs(mass_factor);
-  }
-
-
-
-  template <int dim>
-  void
-  ReferenceSolver<dim>::fail(const double time, const std::string &entry) const
-  {
-    std::ostringstream text;
-    text << "Newton's method of the finite element reference ends with " << rest
-         << " of the forces unbalanced at time " << time
-         << " s. Usually the step is too long, the body buckles, or the "
-            "tolerance is finer than round-off. Set 'Reference/"
-         << entry << "' finer, or 'Reference/Tolerance' above that number.";
-    throw ComputationError(text.str());
-  }
-
-
-
-  // What held nodes move is put on the others by the tangent at the start,
-  // so that no element is crushed before Newton's method begins.
-  template <int dim>
-  void
-  ReferenceSolver<dim>::follow_held(const NodalVector &former)
-  {
-    NodalVector direction = state.displacement;
-    direction -= former;
-    const double size = direction.linfty_norm();
-    if (size == 0)
-      return;
-    const double step  = 1e-6 * model.smallest_edge / size;
-    NodalVector  ahead = model.make_vector(), moved = former;
-    moved.add(step, direction);
-    moved.update_ghost_values();
-    NodalVector start = former;
-    start.update_ghost_values();
-    if (!model.internal_forces(moved, ahead) ||
-        !model.internal_forces(start, internal))
-      return;
-    ahead -= internal;
-    ahead *= -1 / step;
-    model.clear_held(ahead);
-    model.assemble(start, 0, *matrix);
-    linear_solver.set_matrix(*matrix);
-    matrix_mass_factor = 0;
-    ++state.factorisations;
-    linear_solver.solve(moved, ahead);
-    state.displacement += moved;
-  }
-
-
-
-  // A load step that Newton's method does not manage is taken in parts.
-  template <int dim>
-  void
-  ReferenceSolver<dim>::load_step(const double step)
-  {
-    const double end  = model.problem.end_time;
-    double       time = state.time, part = step;
-    NodalVector  velocity = model.make_vector(), none = velocity;
-    while (time < state.time + step * (1 - 1e-9))
-      {
-        const NodalVector former = state.displacement;
-        part                     = std::min(part, state.time + step - time);
-        load_factor              = (time + part) / end;
-        model.prescribe(
-          time, former, time + part, state.displacement, velocity, none);
-        follow_held(former);
-        if (solve(end, 0, false))
-          {
-            time += part;
-            part *= 2;
-            continue;
-          }
-        state.displacement = former;
-        part /= 2;
-        if (part < smallest_part * step)
-          fail(time, "Load steps");
-      }
-  }
-
-
-
-  // A step that Newton's method does not manage is taken in halves.
-  template <int dim>
-  void
-  ReferenceSolver<dim>::newmark_step(const double       step,
-                                     const unsigned int halved)
-  {
-    const SolidMotion<dim> start = state;
-    if (try_newmark_step(step))
-      return close_step(start.displacement, step);
-    const auto newton_steps = state.newton_steps,
-               tangents     = state.factorisations;
-    state                   = start;
-    state.newton_steps      = newton_steps;
-    state.factorisations    = tangents;
-    if (halved == most_halvings)
-      fail(state.time + step, "Time step");
-    newmark_step(step / 2, halved + 1);
-    newmark_step(step / 2, halved + 1);
-  }
-
-
-
-  template <int dim>
-  bool
-  ReferenceSolver<dim>::try_newmark_step(const double step)
-  {
-    const double      time                = state.time + step;
-    const double      beta                = (1 + delay) * (1 + delay) / 4;
-    const double      gamma               = 0.5 + delay;
-    const double      factor              = 1 / (beta * step * step);
-    const NodalVector former              = state.displacement;
-    const NodalVector former_velocity     = state.velocity;
-    const NodalVector former_acceleration = state.acceleration;
-
-    predicted = state.displacement;
-    predicted.add(step,
-                  state.velocity,
-                  (0.5 - beta) * step * step,
-                  state.acceleration);
-    // begin with the acceleration of the step before
-    state.displacement = predicted;
-    state.displacement.add(1 / factor, state.acceleration);
-    NodalVector held_acceleration = model.make_vector();
-    model.prescribe(state.time,
-                    former,
-                    time,
-                    state.displacement,
-                    state.velocity,
-                    held_acceleration);
-    // such that displacement and acceleration of held components agree
-    NodalVector held_predicted = state.displacement;
-    held_predicted.add(-1 / factor, held_acceleration);
-    model.replace_held(predicted, held_predicted);
-
-    if (!solve(time, factor / (1 - delay), true))
-      return false;
-
-    NodalVector held_velocity = state.velocity;
-    state.velocity            = former_velocity;
-    state.velocity.add((1 - gamma) * step,
-                       former_acceleration,
-                       gamma * step,
-                       state.acceleration);
-    model.replace_held(state.velocity, held_velocity);
-    return true;
+    return share_of_longest_step * 2 / frequency;
   }
 
 
@@ -470,13 +170,13 @@ namespace limber
     const NodalVector former = state.displacement;
     state.velocity.add(step / 2, state.acceleration);
     state.displacement.add(step, state.velocity);
-    model.prescribe(state.time,
-                    former,
-                    time,
-                    state.displacement,
-                    state.velocity,
-                    state.acceleration);
-    inertia           = model.held_inertia(state.acceleration);
+    model.held().prescribe(state.time,
+                           former,
+                           time,
+                           state.displacement,
+                           state.velocity,
+                           state.acceleration);
+    inertia = model.held().inertia(model.nodal_masses(), state.acceleration);
     const double rest = unbalance(time, 0);
     if (!std::isfinite(rest) || !std::isfinite(state.velocity.linfty_norm()))
       throw ComputationError(
@@ -487,11 +187,11 @@ namespace limber
         "'Method = implicit'.");
     NodalVector acceleration = model.make_vector();
     LumpedMass{model.nodal_masses()}.vmult(acceleration, unbalanced);
-    model.replace_held(acceleration, state.acceleration);
+    model.held().replace(acceleration, state.acceleration);
     NodalVector held_velocity = state.velocity;
     state.acceleration        = acceleration;
     state.velocity.add(step / 2, state.acceleration);
-    model.replace_held(state.velocity, held_velocity);
+    model.held().replace(state.velocity, held_velocity);
   }
 
 
@@ -537,8 +237,9 @@ namespace limber
     state.load_work += 0.5 * (moved * load + moved * former_load);
     state.boundary_work += 0.5 * (moved * support + moved * former_support);
     state.load_impulse +=
-      0.5 * step * (sum_components(load) + sum_components(former_load));
-    const auto force = model.sum_over_sides(support);
+      0.5 * step *
+      (sum_over_nodes(model, load) + sum_over_nodes(model, former_load));
+    const auto force = model.held().sum_over_sides(support);
     for (unsigned int s = 0; s < 2 * dim; ++s)
       {
         state.side_impulse[s] += 0.5 * step * (force[s] + state.side_force[s]);
@@ -547,89 +248,6 @@ namespace limber
     former_load      = load;
     former_support   = support;
     former_net_force = net_force;
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ReferenceSolver<dim>::sum_components(const NodalVector &vector) const
-  {
-    dealii::Tensor<1, dim> result;
-    model.for_each_owned_node([&](const auto &, const auto &dofs) {
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] += vector[dofs[d]];
-    });
-    return dealii::Utilities::MPI::sum(result, model.communicator);
-  }
-
-
-
-  template <int dim>
-  double
-  ReferenceSolver<dim>::kinetic_energy() const
-  {
-    NodalVector momenta = model.make_vector();
-    if (method == ReferenceMethod::explicit_steps)
-      {
-        for (const auto i : momenta.locally_owned_elements())
-          momenta[i] = model.nodal_masses()[i] * state.velocity[i];
-      }
-    else
-      model.mass_matrix().vmult(momenta, state.velocity);
-    return 0.5 * (momenta * state.velocity);
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ReferenceSolver<dim>::momentum() const
-  {
-    NodalVector momenta = model.make_vector();
-    for (const auto i : momenta.locally_owned_elements())
-      momenta[i] = model.nodal_masses()[i] * state.velocity[i];
-    return sum_components(momenta);
-  }
-
-
-
-  template <int dim>
-  dealii::Tensor<1, dim>
-  ReferenceSolver<dim>::mass_moment() const
-  {
-    dealii::Tensor<1, dim> result;
-    model.for_each_owned_node([&](const auto &place, const auto &dofs) {
-      for (unsigned int d = 0; d < dim; ++d)
-        result[d] += model.nodal_masses()[dofs[d]] *
-                     (place[d] + state.displacement[dofs[d]]);
-    });
-    return dealii::Utilities::MPI::sum(result, model.communicator);
-  }
-
-
-
-  template <int dim>
-  double
-  ReferenceSolver<dim>::mass() const
-  {
-    return sum_components(model.nodal_masses())[0];
-  }
-
-
-
-  template <int dim>
-  double
-  ReferenceSolver<dim>::largest_speed() const
-  {
-    double squared = 0;
-    model.for_each_owned_node([&](const auto &, const auto &dofs) {
-      double sum = 0;
-      for (unsigned int d = 0; d < dim; ++d)
-        sum += state.velocity[dofs[d]] * state.velocity[dofs[d]];
-      squared = std::max(squared, sum);
-    });
-    return std::sqrt(dealii::Utilities::MPI::max(squared, model.communicator));
   }
 
 

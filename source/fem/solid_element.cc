@@ -4,6 +4,7 @@
 #include <limber/materials/law_list.h>
 
 #include <cmath>
+#include <limits>
 
 namespace limber
 {
@@ -140,6 +141,19 @@ namespace limber
 
 
 
+    MaterialState
+    unknown_state()
+    {
+      constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+      MaterialState    state;
+      state.volume_ratio = state.pressure = state.strain_energy = nothing;
+      for (unsigned int k = 0; k < state.stress.n_independent_components; ++k)
+        state.stress.access_raw_entry(k) = nothing;
+      return state;
+    }
+
+
+
     template <int dim, class Law>
     class LawElement : public SolidElement<dim>
     {
@@ -253,6 +267,13 @@ namespace limber
         std::vector<MaterialState> result(ratio.size());
         for (unsigned int q = 0; q < ratio.size(); ++q)
           {
+            // The law has no answer where a corner is turned inside out; the
+            // quadrature points may be all right.
+            if (Law::finite_strain && !(there[q].J > 0 && ratio[q] > 0))
+              {
+                result[q] = unknown_state();
+                continue;
+              }
             const auto state =
               law.template at_deformation<dim>(there[q].gradient, ratio[q]);
             MaterialState &r = result[q];
@@ -278,20 +299,20 @@ namespace limber
         return values.get_fe().system_to_component_index(i).first;
       }
 
-      /** False where the material is turned inside out. */
+      /** All, and false if the material is turned inside out anywhere. */
       static bool
       deform(const Values                  &values,
              const std::vector<double>     &u,
              std::vector<Deformation<dim>> &result)
       {
+        bool admissible = true;
         for (const unsigned int q : values.quadrature_point_indices())
           {
             result.push_back(
               deformation<dim>(values, q, u, Law::finite_strain));
-            if (Law::finite_strain && !(result.back().J > 0))
-              return false;
+            admissible &= !Law::finite_strain || result.back().J > 0;
           }
-        return true;
+        return admissible;
       }
 
       static std::vector<double>

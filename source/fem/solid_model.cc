@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/quadrature_lib.h>
-
 #include <deal.II/dofs/dof_tools.h>
 
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/fe/mapping_q1.h>
 
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/sparsity_tools.h>
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
-#include <deal.II/numerics/rtree.h>
-
 #include <limber/base/exceptions.h>
 #include <limber/fem/solid_model.h>
 
-#include <cmath>
+#include <algorithm>
+#include <limits>
 #include <map>
 
 namespace limber
@@ -27,9 +23,6 @@ namespace limber
       dealii::update_values | dealii::update_gradients |
       dealii::update_quadrature_points | dealii::update_JxW_values;
 
-    // Places closer than this, relative to the box, are one.
-    constexpr double same_place = 1e-9;
-
     unsigned int
     degree_of(const ReferenceElement kind)
     {
@@ -37,43 +30,6 @@ namespace limber
                  kind == ReferenceElement::q1_p0_p0 ?
                1 :
                2;
-    }
-
-
-
-    template <int dim>
-    const char *
-    side_name(const unsigned int side)
-    {
-      constexpr const char *names[] = {
-        "left", "right", "bottom", "top", "back", "front"};
-      return names[side];
-    }
-
-
-
-    /** Whether a place lies in a cell, and where in it. */
-    template <int dim>
-    bool
-    find_in_cell(
-      const dealii::Mapping<dim>                                   &mapping,
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const dealii::Point<dim>                                     &place,
-      dealii::Point<dim>                                           &unit)
-    {
-      constexpr double tolerance = 1e-8; // of round-off between cells
-      try
-        {
-          unit = mapping.transform_real_to_unit_cell(cell, place);
-        }
-      catch (const typename dealii::Mapping<dim>::ExcTransformationFailed &)
-        {
-          return false;
-        }
-      if (!dealii::GeometryInfo<dim>::is_inside_unit_cell(unit, tolerance))
-        return false;
-      unit = dealii::GeometryInfo<dim>::project_to_unit_cell(unit);
-      return true;
     }
   } // namespace
 
@@ -102,7 +58,7 @@ namespace limber
   {
     check_scene();
     number();
-    find_held();
+    held_nodes = std::make_unique<const HeldNodes<dim>>(problem, dof_handler);
     assemble_masses();
   }
 
@@ -140,7 +96,6 @@ namespace limber
   {
     dof_handler.distribute_dofs(fe);
     relevant = dealii::DoFTools::extract_locally_relevant_dofs(dof_handler);
-    held_constraints.reinit(relevant);
     none.reinit(relevant);
     none.close();
 
@@ -172,75 +127,6 @@ namespace limber
     smallest_edge = dealii::Utilities::MPI::min(smallest_edge, communicator);
     for (const auto &[dof, node] : found)
       nodes.push_back(node);
-  }
-
-
-
-  // A node is held by every side of the box that one of the faces that it
-  // belongs to lies in.
-  template <int dim>
-  void
-  SolidModel<dim>::find_held()
-  {
-    const auto  &grid      = problem.grid;
-    const double tolerance = same_place * grid.lower.distance(grid.upper);
-    const dealii::Quadrature<dim> places(
-      fe.base_element(0).get_unit_support_points());
-    dealii::FEValues<dim> values(fe, places, dealii::update_quadrature_points);
-
-    std::map<dealii::types::global_dof_index, Held> found;
-    std::vector<dealii::types::global_dof_index>    dofs(fe.dofs_per_cell);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (!cell->is_artificial() && cell->at_boundary())
-        for (const unsigned int f : cell->face_indices())
-          for (unsigned int side = 0; side < 2 * dim; ++side)
-            {
-              const SideCondition condition = problem.sides[side].condition;
-              const unsigned int  normal    = side / 2;
-              const double        plane =
-                side % 2 == 0 ? grid.lower[normal] : grid.upper[normal];
-              const auto face = cell->face(f);
-              bool       in_plane =
-                face->at_boundary() && condition != SideCondition::free;
-              for (unsigned int v = 0; in_plane && v < face->n_vertices(); ++v)
-                in_plane =
-                  std::abs(face->vertex(v)[normal] - plane) < tolerance;
-              if (!in_plane)
-                continue;
-              if (condition == SideCondition::friction)
-                throw InputError(
-                  std::string("The body touches the side '") +
-                  side_name<dim>(side) +
-                  "', which is 'friction' in section 'Boundaries'; the finite "
-                  "element reference knows no friction. Set that side to slip "
-                  "or no slip.");
-              values.reinit(cell);
-              cell->get_dof_indices(dofs);
-              for (unsigned int i = 0; i < dofs.size(); ++i)
-                {
-                  const auto [component, node] =
-                    fe.system_to_component_index(i);
-                  if (fe.has_support_on_face(i, f) &&
-                      (condition != SideCondition::slip || component == normal))
-                    {
-                      // where two sides meet, the later one holds
-                      const Held entry{dofs[i],
-                                       side,
-                                       component,
-                                       values.quadrature_point(node)};
-                      const auto [place, is_new] =
-                        found.insert({dofs[i], entry});
-                      if (!is_new && place->second.side < side)
-                        place->second = entry;
-                    }
-                }
-            }
-    for (const auto &[key, value] : found)
-      {
-        held.push_back(value);
-        held_constraints.add_line(value.dof);
-      }
-    held_constraints.close();
   }
 
 
@@ -282,7 +168,7 @@ namespace limber
     weight = make_vector();
 
     const unsigned int         n = fe.dofs_per_cell;
-    dealii::FEValues<dim>      values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>      values(shape_values(quadrature));
     dealii::FullMatrix<double> matrix(n, n);
     dealii::Vector<double>     rows(n), forces(n);
     std::vector<dealii::types::global_dof_index> dofs(n);
@@ -332,9 +218,7 @@ namespace limber
           for (unsigned int d = 0; d < dim; ++d)
             result[dofs[d]] = velocity[d];
         }
-    for (const Held &h : held)
-      if (result.in_local_range(h.dof))
-        result[h.dof] = prescribed_velocity(h, 0);
+    held().prescribe_velocity(0, result);
     result.update_ghost_values();
     return result;
   }
@@ -342,91 +226,10 @@ namespace limber
 
 
   template <int dim>
-  double
-  SolidModel<dim>::prescribed_velocity(const Held  &held,
-                                       const double time) const
+  dealii::FEValues<dim>
+  SolidModel<dim>::shape_values(const dealii::Quadrature<dim> &places) const
   {
-    const Side<dim> &side = problem.sides[held.side];
-    return side.condition == SideCondition::velocity ?
-             side.velocity.value(held.place, time, held.component) :
-             0;
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::prescribe(const double       former_time,
-                             const NodalVector &former_displacement,
-                             const double       time,
-                             NodalVector       &displacement,
-                             NodalVector       &velocity,
-                             NodalVector       &acceleration) const
-  {
-    const double step = time - former_time;
-    for (const Held &h : held)
-      if (displacement.in_local_range(h.dof))
-        {
-          const double before = prescribed_velocity(h, former_time);
-          const double middle = prescribed_velocity(h, former_time + step / 2);
-          const double after  = prescribed_velocity(h, time);
-          // Simpson's rule, and a parabola through the three
-          displacement[h.dof] = former_displacement[h.dof] +
-                                step / 6 * (before + 4 * middle + after);
-          velocity[h.dof]     = after;
-          acceleration[h.dof] = (before - 4 * middle + 3 * after) / step;
-        }
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::clear_held(NodalVector &vector) const
-  {
-    for (const Held &h : held)
-      if (vector.in_local_range(h.dof))
-        vector[h.dof] = 0;
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::replace_held(NodalVector       &vector,
-                                const NodalVector &from) const
-  {
-    for (const Held &h : held)
-      if (vector.in_local_range(h.dof))
-        vector[h.dof] = from[h.dof];
-  }
-
-
-
-  template <int dim>
-  NodalVector
-  SolidModel<dim>::held_inertia(const NodalVector &acceleration) const
-  {
-    NodalVector result = make_vector();
-    for (const Held &h : held)
-      if (result.in_local_range(h.dof))
-        result[h.dof] = lumped[h.dof] * acceleration[h.dof];
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::array<dealii::Tensor<1, dim>, 2 * dim>
-  SolidModel<dim>::sum_over_sides(const NodalVector &forces) const
-  {
-    std::array<dealii::Tensor<1, dim>, 2 * dim> result;
-    for (const Held &h : held)
-      if (forces.in_local_range(h.dof))
-        result[h.side][h.component] += forces[h.dof];
-    for (auto &force : result)
-      force = dealii::Utilities::MPI::sum(force, communicator);
-    return result;
+    return dealii::FEValues<dim>(fe, places, update_flags);
   }
 
 
@@ -453,7 +256,7 @@ namespace limber
                                    NodalVector       &forces) const
   {
     forces = 0;
-    dealii::FEValues<dim>  values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>  values(shape_values(quadrature));
     dealii::Vector<double> on_cell(fe.dofs_per_cell);
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
     bool                                         good = true;
@@ -485,7 +288,7 @@ namespace limber
   {
     matrix                       = 0;
     const unsigned int         n = fe.dofs_per_cell;
-    dealii::FEValues<dim>      values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>      values(shape_values(quadrature));
     dealii::Vector<double>     on_cell(n);
     dealii::FullMatrix<double> tangent(n, n);
     std::vector<double>        former_values;
@@ -515,7 +318,9 @@ namespace limber
                                      values.JxW(q) * values.shape_value(i, q) *
                                      values.shape_value(j, q);
           cell->get_dof_indices(dofs);
-          held_constraints.distribute_local_to_global(tangent, dofs, matrix);
+          held().constraints().distribute_local_to_global(tangent,
+                                                          dofs,
+                                                          matrix);
         }
     matrix.compress(dealii::VectorOperation::add);
     return dealii::Utilities::MPI::min(int(good), communicator) != 0;
@@ -561,7 +366,7 @@ namespace limber
     if (!has_loads())
       return;
     const dealii::QGauss<dim - 1> face_quadrature(degree + 1);
-    dealii::FEValues<dim>         values(fe, quadrature, update_flags);
+    dealii::FEValues<dim>         values(shape_values(quadrature));
     dealii::FEFaceValues<dim>     faces(
       fe, face_quadrature, update_flags | dealii::update_normal_vectors);
     dealii::Vector<double>                       on_cell(fe.dofs_per_cell);
@@ -609,228 +414,6 @@ namespace limber
           none.distribute_local_to_global(on_cell, dofs, forces);
         }
     forces.compress(dealii::VectorOperation::add);
-  }
-
-
-
-  template <int dim>
-  StrainTotals
-  SolidModel<dim>::strain_totals(const NodalVector &displacement) const
-  {
-    StrainTotals          result;
-    dealii::FEValues<dim> values(fe, quadrature, update_flags);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          values.reinit(cell);
-          const auto states =
-            element->states(values, values, values_of(cell, displacement));
-          for (const unsigned int q : values.quadrature_point_indices())
-            {
-              result.strain_energy += values.JxW(q) * states[q].strain_energy;
-              result.smallest_volume =
-                std::min(result.smallest_volume, states[q].volume_ratio);
-              result.largest_volume =
-                std::max(result.largest_volume, states[q].volume_ratio);
-            }
-        }
-    using namespace dealii::Utilities::MPI;
-    result.strain_energy   = sum(result.strain_energy, communicator);
-    result.smallest_volume = min(result.smallest_volume, communicator);
-    result.largest_volume  = max(result.largest_volume, communicator);
-    return result;
-  }
-
-
-
-  template <int dim>
-  void
-  SolidModel<dim>::fill_samples(
-    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-    const std::vector<dealii::Point<dim>>                        &unit_places,
-    const NodalVector                                            &displacement,
-    const NodalVector                                            &velocity,
-    std::vector<PlaceSample<dim>>                                &samples) const
-  {
-    dealii::FEValues<dim> values(fe, quadrature, update_flags);
-    dealii::FEValues<dim> places(fe,
-                                 dealii::Quadrature<dim>(unit_places),
-                                 update_flags);
-    values.reinit(cell);
-    places.reinit(cell);
-    const auto u      = values_of(cell, displacement);
-    const auto v      = values_of(cell, velocity);
-    const auto states = element->states(values, places, u);
-    samples.assign(unit_places.size(), PlaceSample<dim>());
-    for (unsigned int q = 0; q < unit_places.size(); ++q)
-      {
-        samples[q].inside   = true;
-        samples[q].material = states[q];
-        for (unsigned int i = 0; i < u.size(); ++i)
-          {
-            const unsigned int c = fe.system_to_component_index(i).first;
-            samples[q].displacement[c] += places.shape_value(i, q) * u[i];
-            samples[q].velocity[c] += places.shape_value(i, q) * v[i];
-          }
-      }
-  }
-
-
-
-  template <int dim>
-  PlaceSample<dim>
-  SolidModel<dim>::sample(const dealii::Point<dim> &place,
-                          const NodalVector        &displacement,
-                          const NodalVector        &velocity) const
-  {
-    constexpr unsigned int n_stress = 9;
-    // count, displacement, velocity, volume ratio, pressure, stress
-    std::vector<double>           sums(1 + 2 * dim + 2 + n_stress);
-    const dealii::MappingQ1<dim>  mapping;
-    std::vector<PlaceSample<dim>> here;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned() &&
-          cell->bounding_box().point_inside(place, 1e-6))
-        {
-          dealii::Point<dim> unit;
-          if (!find_in_cell<dim>(mapping, cell, place, unit))
-            continue;
-          fill_samples(cell, {unit}, displacement, velocity, here);
-          const PlaceSample<dim> &found = here.front();
-          sums[0] += 1;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              sums[1 + d] += found.displacement[d];
-              sums[1 + dim + d] += found.velocity[d];
-            }
-          sums[1 + 2 * dim] += found.material.volume_ratio;
-          sums[2 + 2 * dim] += found.material.pressure;
-          for (unsigned int k = 0; k < n_stress; ++k)
-            sums[3 + 2 * dim + k] += found.material.stress[k / 3][k % 3];
-        }
-    dealii::Utilities::MPI::sum(sums, communicator, sums);
-
-    PlaceSample<dim> result;
-    result.inside = sums[0] > 0;
-    if (!result.inside)
-      return result;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        result.displacement[d] = sums[1 + d] / sums[0];
-        result.velocity[d]     = sums[1 + dim + d] / sums[0];
-      }
-    result.material.volume_ratio = sums[1 + 2 * dim] / sums[0];
-    result.material.pressure     = sums[2 + 2 * dim] / sums[0];
-    for (unsigned int i = 0; i < 3; ++i)
-      for (unsigned int j = 0; j <= i; ++j)
-        result.material.stress[i][j] = sums[3 + 2 * dim + 3 * i + j] / sums[0];
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<PlaceSample<dim>>
-  SolidModel<dim>::sample(const std::vector<dealii::Point<dim>> &places,
-                          const NodalVector                     &displacement,
-                          const NodalVector                     &velocity) const
-  {
-    // Places by what they lie in: the box of every cell asks for its own.
-    std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
-    for (std::size_t p = 0; p < places.size(); ++p)
-      entries.emplace_back(places[p], p);
-    const auto tree = dealii::pack_rtree(entries);
-
-    std::vector<PlaceSample<dim>>   result(places.size()), here;
-    const dealii::MappingQ1<dim>    mapping;
-    std::vector<dealii::Point<dim>> unit_places;
-    std::vector<std::size_t>        indices;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      {
-        unit_places.clear();
-        indices.clear();
-        dealii::BoundingBox<dim> box = cell->bounding_box();
-        box.extend(1e-6 * smallest_edge);
-        for (auto it = tree.qbegin(boost::geometry::index::intersects(box));
-             it != tree.qend();
-             ++it)
-          {
-            dealii::Point<dim> unit;
-            if (!result[it->second].inside &&
-                find_in_cell<dim>(mapping, cell, it->first, unit))
-              {
-                unit_places.push_back(unit);
-                indices.push_back(it->second);
-              }
-          }
-        if (indices.empty())
-          continue;
-        fill_samples(cell, unit_places, displacement, velocity, here);
-        for (std::size_t k = 0; k < indices.size(); ++k)
-          result[indices[k]] = here[k];
-      }
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<MaterialState>
-  SolidModel<dim>::nodal_states(const NodalVector &displacement) const
-  {
-    // count, volume ratio, pressure, six of stress: dim of them in a vector
-    constexpr unsigned int n_values = 9, n_vectors = (n_values + dim - 1) / dim;
-    std::vector<NodalVector>      sums(n_vectors, make_vector());
-    const dealii::Quadrature<dim> support(
-      fe.base_element(0).get_unit_support_points());
-    dealii::FEValues<dim> values(fe, quadrature, update_flags);
-    dealii::FEValues<dim> places(fe, support, update_flags);
-    std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          values.reinit(cell);
-          places.reinit(cell);
-          const auto states =
-            element->states(values, places, values_of(cell, displacement));
-          cell->get_dof_indices(dofs);
-          for (unsigned int n = 0; n < states.size(); ++n)
-            {
-              const auto                        &state = states[n];
-              const std::array<double, n_values> all   = {{1,
-                                                           state.volume_ratio,
-                                                           state.pressure,
-                                                           state.stress[0][0],
-                                                           state.stress[1][1],
-                                                           state.stress[2][2],
-                                                           state.stress[0][1],
-                                                           state.stress[1][2],
-                                                           state.stress[2][0]}};
-              for (unsigned int k = 0; k < n_values; ++k)
-                sums[k / dim](dofs[fe.component_to_system_index(k % dim, n)]) +=
-                  all[k];
-            }
-        }
-    for (NodalVector &sum : sums)
-      sum.compress(dealii::VectorOperation::add);
-
-    std::vector<MaterialState> result;
-    for (const auto &[place, of_node] : nodes)
-      {
-        const auto value = [&, d = of_node](const unsigned int k) {
-          return sums[k / dim][d[k % dim]] / sums[0][d[0]];
-        };
-        MaterialState state;
-        state.volume_ratio = value(1);
-        state.pressure     = value(2);
-        for (unsigned int d = 0; d < 3; ++d)
-          {
-            state.stress[d][d]           = value(3 + d);
-            state.stress[d][(d + 1) % 3] = value(6 + d);
-          }
-        result.push_back(state);
-      }
-    return result;
   }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/fem/solid_samples.h>
 #include <limber/output/files.h>
 #include <limber/output/point_arrays.h>
 #include <limber/simulation/reference_fields.h>
@@ -36,7 +37,7 @@ namespace limber
           v[d] = motion.velocity[dofs[d]];
         }
     });
-    for (const MaterialState &state : model.nodal_states(motion.displacement))
+    for (const MaterialState &state : nodal_states(model, motion.displacement))
       {
         const auto &s = state.stress;
         arrays.pressure.push_back(state.pressure);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/fem/solid_samples.h>
 #include <limber/simulation/reference_observables.h>
 
 #include <algorithm>
@@ -48,7 +49,7 @@ namespace limber
     const dealii::Point<dim> &place) const
   {
     const auto &u = solver.motion().displacement;
-    if (model.sample(place, u, u).inside)
+    if (sample_at(model, place, u, u).inside)
       return place;
     // distance, then coordinates: the same node on any number of ranks
     std::array<double, dim + 1> nearest;
@@ -119,13 +120,13 @@ namespace limber
   {
     const SolidMotion<dim> &motion = solver.motion();
     ReferenceTotals<dim>    result;
-    result.mass                 = solver.mass();
-    result.momentum             = solver.momentum();
-    result.mass_moment          = solver.mass_moment();
-    result.kinetic_energy       = solver.kinetic_energy();
+    result.mass                 = total_mass(model);
+    result.momentum             = momentum(model, motion.velocity);
+    result.mass_moment          = mass_moment(model, motion.displacement);
+    result.kinetic_energy       = kinetic_energy(model, motion.velocity);
     result.gravitational_energy = -(problem.loads.gravity * result.mass_moment);
-    result.strain               = model.strain_totals(motion.displacement);
-    result.largest_speed        = solver.largest_speed();
+    result.strain               = strain_totals(model, motion.displacement);
+    result.largest_speed        = largest_speed(model, motion.velocity);
 
     const double balance = result.kinetic_energy + result.strain.strain_energy +
                            result.gravitational_energy - motion.boundary_work -
@@ -189,7 +190,8 @@ namespace limber
         const double           sign       = observable.positive ? 1 : -1;
         PlaceSample<dim>       here;
         if (is_at_a_place(observable.kind))
-          here = model.sample(places[i], motion.displacement, motion.velocity);
+          here =
+            sample_at(model, places[i], motion.displacement, motion.velocity);
 
         double value = not_known;
         switch (observable.kind)

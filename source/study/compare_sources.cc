@@ -4,6 +4,7 @@
 #include <deal.II/numerics/rtree.h>
 
 #include <limber/base/exceptions.h>
+#include <limber/fem/solid_samples.h>
 #include <limber/problem/read_problem.h>
 #include <limber/simulation/reference_fields.h>
 #include <limber/study/field_source.h>
@@ -117,7 +118,7 @@ namespace limber
       {
         NodalVector u = model.make_vector(), v = model.make_vector();
         read_reference_fields(file_at(this->files, time), model, u, v);
-        const auto samples = model.sample(places, u, v);
+        const auto samples = sample_at(model, places, u, v);
         auto       result  = unknown_fields(time, places);
         for (std::size_t p = 0; p < places.size(); ++p)
           if (samples[p].inside)

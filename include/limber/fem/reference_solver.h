@@ -2,9 +2,13 @@
 #ifndef limber_fem_reference_solver_h
 #define limber_fem_reference_solver_h
 
+#include <limber/fem/fastest_mode.h>
 #include <limber/fem/solid_model.h>
 
+#include <array>
 #include <memory>
+#include <optional>
+#include <string>
 
 namespace limber
 {
@@ -71,22 +75,6 @@ namespace limber
       return state;
     }
 
-    /** Kinetic energy, J: of lumped masses where steps are explicit. */
-    double
-    kinetic_energy() const;
-
-    /** kg m/s and, of the deformed body, kg m. */
-    dealii::Tensor<1, dim>
-    momentum() const;
-    dealii::Tensor<1, dim>
-    mass_moment() const;
-    double
-    mass() const;
-
-    /** Of the nodes, m/s. */
-    double
-    largest_speed() const;
-
   private:
     void
     start();
@@ -116,8 +104,6 @@ namespace limber
     close_step(const NodalVector &former, const double step);
     void
     account(const NodalVector &former, const double step);
-    dealii::Tensor<1, dim>
-    sum_components(const NodalVector &vector) const;
 
     const SolidModel<dim>                            &model;
     const ReferenceMethod                             method;
@@ -133,9 +119,10 @@ namespace limber
     NodalVector former_load, former_support;
     NodalVector net_force, former_net_force; // all but inertia
     NodalVector predicted;       // displacement without the new acceleration, m
-    NodalVector mode;            // fastest, for the length of explicit steps
     double      load_factor = 1; // share of gravity and loads that acts
     double      rest        = 0; // unbalanced share of the forces
+
+    std::optional<FastestMode<dim>> fastest_mode; // where explicit steps ask
   };
 } // namespace limber
 

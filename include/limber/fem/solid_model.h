@@ -11,42 +11,23 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <limber/fem/fitted_mesh.h>
+#include <limber/fem/held_nodes.h>
 #include <limber/fem/linear_solver.h>
 #include <limber/fem/solid_element.h>
 
 #include <array>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace limber
 {
-  /** What a sweep over the elements sums up besides forces. */
-  struct StrainTotals
-  {
-    double strain_energy   = 0; // J
-    double smallest_volume = 1; // of all J at quadrature points
-    double largest_volume  = 1;
-  };
-
-
-
-  /** Displacement, velocity and state of the material at a place. */
-  template <int dim>
-  struct PlaceSample
-  {
-    bool                   inside = false;
-    dealii::Tensor<1, dim> displacement, velocity; // m, m/s
-    MaterialState          material;
-  };
-
-
-
   /**
    * The body of a scene in finite elements: mesh, degrees of freedom, masses,
-   * forces and their derivative, and which nodes the sides of the box hold.
+   * forces and their derivative, and the nodes that the sides of the box hold.
    * Nodal vectors have the displacements of all nodes of this rank's elements
    * (ghosted); forces are complete for those it owns. Member functions are
-   * collective unless they return what is known already.
+   * collective unless they return what is known already or ask for one cell.
    */
   template <int dim>
   class SolidModel
@@ -64,6 +45,13 @@ namespace limber
 
     NodalVector
     make_vector() const;
+
+    /** What the sides of the box hold. */
+    const HeldNodes<dim> &
+    held() const
+    {
+      return *held_nodes;
+    }
 
     /** Initial velocity, m/s; zero where the sides prescribe another one. */
     NodalVector
@@ -92,31 +80,6 @@ namespace limber
     {
       return problem.loads.body_force || !problem.loads.faces.empty();
     }
-
-    /** Set displacements, velocities, accelerations of held nodes. */
-    void
-    prescribe(const double       former_time,
-              const NodalVector &former_displacement,
-              const double       time,
-              NodalVector       &displacement,
-              NodalVector       &velocity,
-              NodalVector       &acceleration) const;
-
-    /** Set the components of held nodes to zero. */
-    void
-    clear_held(NodalVector &vector) const;
-
-    /** Take the held components from another vector. */
-    void
-    replace_held(NodalVector &vector, const NodalVector &from) const;
-
-    /** Nodal masses times accelerations, of held components only, N. */
-    NodalVector
-    held_inertia(const NodalVector &acceleration) const;
-
-    /** The forces in the held components, summed by side of the box. */
-    std::array<dealii::Tensor<1, dim>, 2 * dim>
-    sum_over_sides(const NodalVector &forces) const;
 
     /**
      * Stiffness + @p mass_factor M, one on the diagonal of held components;
@@ -147,27 +110,15 @@ namespace limber
       return lumped;
     }
 
-    StrainTotals
-    strain_totals(const NodalVector &displacement) const;
+    /** Shape functions of a cell at @p places, as the element wants them. */
+    dealii::FEValues<dim>
+    shape_values(const dealii::Quadrature<dim> &places) const;
 
-    /** Means over the elements that meet at a place of the initial body. */
-    PlaceSample<dim>
-    sample(const dealii::Point<dim> &place,
-           const NodalVector        &displacement,
-           const NodalVector        &velocity) const;
-
-    /**
-     * The same at many places, in their order, each in one element that holds
-     * it. For one rank.
-     */
-    std::vector<PlaceSample<dim>>
-    sample(const std::vector<dealii::Point<dim>> &places,
-           const NodalVector                     &displacement,
-           const NodalVector                     &velocity) const;
-
-    /** States of the owned nodes: means over the elements that meet there. */
-    std::vector<MaterialState>
-    nodal_states(const NodalVector &displacement) const;
+    /** Components of @p vector in a cell, in the numbering of the cell. */
+    std::vector<double>
+    values_of(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+      const NodalVector &vector) const;
 
     /** Values of the rigid motions, as LinearSolver wants them. */
     std::vector<double>
@@ -197,19 +148,10 @@ namespace limber
     double                                         smallest_edge = 0; // m
 
   private:
-    struct Held
-    {
-      dealii::types::global_dof_index dof;
-      unsigned int                    side, component;
-      dealii::Point<dim>              place;
-    };
-
     void
     check_scene() const;
     void
     number();
-    void
-    find_held();
     void
     assemble_masses();
     dealii::Tensor<1, dim>
@@ -218,23 +160,10 @@ namespace limber
                   const unsigned int               q,
                   const std::vector<double>       &u,
                   const double                     time) const;
-    double
-    prescribed_velocity(const Held &held, const double time) const;
-    void
-    fill_samples(
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const std::vector<dealii::Point<dim>>                        &unit_places,
-      const NodalVector             &displacement,
-      const NodalVector             &velocity,
-      std::vector<PlaceSample<dim>> &samples) const;
-    std::vector<double>
-    values_of(
-      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
-      const NodalVector &vector) const;
 
     dealii::IndexSet                                     relevant;
-    dealii::AffineConstraints<double>                    held_constraints, none;
-    std::vector<Held>                                    held;
+    dealii::AffineConstraints<double>                    none;
+    std::unique_ptr<const HeldNodes<dim>>                held_nodes;
     std::vector<std::pair<dealii::Point<dim>, NodeDofs>> nodes; // owned
     std::unique_ptr<Matrix>                              masses;
     NodalVector                                          lumped, weight;

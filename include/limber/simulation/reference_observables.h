@@ -3,6 +3,7 @@
 #define limber_simulation_reference_observables_h
 
 #include <limber/fem/reference_solver.h>
+#include <limber/fem/solid_totals.h>
 #include <limber/output/frequency.h>
 #include <limber/output/statistics.h>
 

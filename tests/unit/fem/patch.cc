@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/fem/solid_samples.h>
+
 #include <gtest/gtest.h>
 #include <support/solid_scene.h>
+
+#include <cmath>
 
 /**
  * @file The patch test: a body whose boundary moves linearly deforms
@@ -92,7 +96,8 @@ namespace
         here[d]  = 0.3;
         there[d] = 0.9;
       }
-    const auto a = model.sample(here, u, u), b = model.sample(there, u, u);
+    const auto a = sample_at(model, here, u, u),
+               b = sample_at(model, there, u, u);
     ASSERT_TRUE(a.inside && b.inside);
     EXPECT_GT(a.material.stress.norm(), 0.1);
     EXPECT_NEAR((a.material.stress - b.material.stress).norm(), 0, 1e-8);
@@ -124,8 +129,8 @@ namespace
         seed         = std::fmod(16807 * seed, 2147483647.);
         direction[i] = seed / 2147483647. - 0.5;
       }
-    model.clear_held(u);
-    model.clear_held(direction);
+    model.held().clear(u);
+    model.held().clear(direction);
     u.update_ghost_values();
 
     typename SolidModel<dim>::Matrix tangent;
@@ -144,8 +149,8 @@ namespace
     ASSERT_TRUE(model.internal_forces(u, behind));
     ahead -= behind;
     ahead *= 1 / (2 * h);
-    model.clear_held(ahead);
-    model.clear_held(product);
+    model.held().clear(ahead);
+    model.held().clear(product);
     const double size = product.l2_norm();
     product -= ahead;
     EXPECT_LT(product.l2_norm(), 1e-7 * size);
@@ -180,4 +185,45 @@ TEST(FittedElements, TangentIsTheDerivativeOfTheForces)
         compare_tangent<2>(element, law);
         compare_tangent<3>(element, law);
       }
+}
+
+
+
+// A corner pushed so far into its element that the material there is inside
+// out, while the quadrature points are not: its state is not known, all others
+// are.
+TEST(FittedElements, StateOfACornerInsideOutIsNotKnown)
+{
+  for (const std::string &element : reference_elements)
+    {
+      SCOPED_TRACE(element);
+      const auto problem =
+        problem_from<2>(unit_body<2>(), {"Reference/Element=" + element});
+      const BlockCorners<2> corners = {{dealii::Point<2>(0, 0),
+                                        dealii::Point<2>(1, 0),
+                                        dealii::Point<2>(0, 1),
+                                        dealii::Point<2>(1, 1)}};
+      const SolidModel<2>   model(
+        problem, make_block_mesh<2>(corners, {{1, 1}}, MPI_COMM_WORLD));
+      NodalVector                   u = model.make_vector();
+      std::vector<dealii::Point<2>> places;
+      model.for_each_owned_node([&](const auto &place, const auto &dofs) {
+        places.push_back(place);
+        for (unsigned int d = 0; d < 2; ++d)
+          u[dofs[d]] = -0.53 * place[0] * place[1];
+      });
+      u.compress(dealii::VectorOperation::insert);
+
+      const auto states = nodal_states(model, u);
+      ASSERT_EQ(states.size(), places.size());
+      for (unsigned int n = 0; n < states.size(); ++n)
+        {
+          const bool inside_out = places[n].distance(corners[3]) < 1e-10;
+          EXPECT_EQ(std::isfinite(states[n].pressure), !inside_out);
+          EXPECT_EQ(std::isfinite(states[n].stress.norm()), !inside_out);
+        }
+      const auto samples = sample_at(model, {corners[0], corners[3]}, u, u);
+      EXPECT_TRUE(std::isfinite(samples[0].material.pressure));
+      EXPECT_TRUE(std::isnan(samples[1].material.pressure));
+    }
 }

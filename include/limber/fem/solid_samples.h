@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_solid_samples_h
+#define limber_fem_solid_samples_h
+
+#include <limber/fem/solid_model.h>
+
+#include <vector>
+
+/** @file What a solution in finite elements says at places and at nodes. */
+namespace limber
+{
+  /** Displacement, velocity and state of the material at a place. */
+  template <int dim>
+  struct PlaceSample
+  {
+    bool                   inside = false; // else the rest means nothing
+    dealii::Tensor<1, dim> displacement, velocity; // m, m/s
+    MaterialState          material;
+  };
+
+
+
+  /**
+   * Means over the elements that meet at @p place of the initial body; outside
+   * of the body only @p inside is set. Strain energies are left out.
+   * Collective.
+   */
+  template <int dim>
+  PlaceSample<dim>
+  sample_at(const SolidModel<dim>    &model,
+            const dealii::Point<dim> &place,
+            const NodalVector        &displacement,
+            const NodalVector        &velocity);
+
+  /**
+   * The same at many places, in their order, each from one element that holds
+   * it, strain energies included. For one rank.
+   */
+  template <int dim>
+  std::vector<PlaceSample<dim>>
+  sample_at(const SolidModel<dim>                 &model,
+            const std::vector<dealii::Point<dim>> &places,
+            const NodalVector                     &displacement,
+            const NodalVector                     &velocity);
+
+  /**
+   * States of the nodes of this rank, in the order of
+   * SolidModel::for_each_owned_node(): means over the elements that meet
+   * there. Strain energies are left out. Collective.
+   */
+  template <int dim>
+  std::vector<MaterialState>
+  nodal_states(const SolidModel<dim> &model, const NodalVector &displacement);
+} // namespace limber
+
+#endif

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <limber/base/exceptions.h>
+#include <limber/fem/held_nodes.h>
+
+#include <cmath>
+#include <map>
+
+namespace limber
+{
+  namespace
+  {
+    // Places closer than this, relative to the box, are one.
+    constexpr double same_place = 1e-9;
+
+
+
+    template <int dim>
+    const char *
+    side_name(const unsigned int side)
+    {
+      constexpr const char *names[] = {
+        "left", "right", "bottom", "top", "back", "front"};
+      return names[side];
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  HeldNodes<dim>::HeldNodes(const Problem<dim>            &problem,
+                            const dealii::DoFHandler<dim> &dof_handler)
+    : problem(problem)
+    , communicator(dof_handler.get_communicator())
+    , lines(dealii::DoFTools::extract_locally_relevant_dofs(dof_handler))
+  {
+    find(dof_handler);
+  }
+
+
+
+  // A node is held by every side of the box that one of the faces that it
+  // belongs to lies in.
+  template <int dim>
+  void
+  HeldNodes<dim>::find(const dealii::DoFHandler<dim> &dof_handler)
+  {
+    const auto  &fe        = dof_handler.get_fe();
+    const auto  &grid      = problem.grid;
+    const double tolerance = same_place * grid.lower.distance(grid.upper);
+    const dealii::Quadrature<dim> places(
+      fe.base_element(0).get_unit_support_points());
+    dealii::FEValues<dim> values(fe, places, dealii::update_quadrature_points);
+
+    std::map<dealii::types::global_dof_index, Held> found;
+    std::vector<dealii::types::global_dof_index>    dofs(fe.dofs_per_cell);
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (!cell->is_artificial() && cell->at_boundary())
+        for (const unsigned int f : cell->face_indices())
+          for (unsigned int side = 0; side < 2 * dim; ++side)
+            {
+              const SideCondition condition = problem.sides[side].condition;
+              const unsigned int  normal    = side / 2;
+              const double        plane =
+                side % 2 == 0 ? grid.lower[normal] : grid.upper[normal];
+              const auto face = cell->face(f);
+              bool       in_plane =
+                face->at_boundary() && condition != SideCondition::free;
+              for (unsigned int v = 0; in_plane && v < face->n_vertices(); ++v)
+                in_plane =
+                  std::abs(face->vertex(v)[normal] - plane) < tolerance;
+              if (!in_plane)
+                continue;
+              if (condition == SideCondition::friction)
+                throw InputError(
+                  std::string("The body touches the side '") +
+                  side_name<dim>(side) +
+                  "', which is 'friction' in section 'Boundaries'; the finite "
+                  "element reference knows no friction. Set that side to slip "
+                  "or no slip.");
+              values.reinit(cell);
+              cell->get_dof_indices(dofs);
+              for (unsigned int i = 0; i < dofs.size(); ++i)
+                {
+                  const auto [component, node] =
+                    fe.system_to_component_index(i);
+                  if (fe.has_support_on_face(i, f) &&
+                      (condition != SideCondition::slip || component == normal))
+                    {
+                      // where two sides meet, the later one holds
+                      const Held entry{dofs[i],
+                                       side,
+                                       component,
+                                       values.quadrature_point(node)};
+                      const auto [place, is_new] =
+                        found.insert({dofs[i], entry});
+                      if (!is_new && place->second.side < side)
+                        place->second = entry;
+                    }
+                }
+            }
+    for (const auto &[key, value] : found)
+      {
+        all.push_back(value);
+        lines.add_line(value.dof);
+      }
+    lines.close();
+  }
+
+
+
+  template <int dim>
+  double
+  HeldNodes<dim>::prescribed_velocity(const Held &held, const double time) const
+  {
+    const Side<dim> &side = problem.sides[held.side];
+    return side.condition == SideCondition::velocity ?
+             side.velocity.value(held.place, time, held.component) :
+             0;
+  }
+
+
+
+  template <int dim>
+  void
+  HeldNodes<dim>::prescribe(const double       former_time,
+                            const NodalVector &former_displacement,
+                            const double       time,
+                            NodalVector       &displacement,
+                            NodalVector       &velocity,
+                            NodalVector       &acceleration) const
+  {
+    const double step = time - former_time;
+    for (const Held &h : all)
+      if (displacement.in_local_range(h.dof))
+        {
+          const double before = prescribed_velocity(h, former_time);
+          const double middle = prescribed_velocity(h, former_time + step / 2);
+          const double after  = prescribed_velocity(h, time);
+          // Simpson's rule, and a parabola through the three
+          displacement[h.dof] = former_displacement[h.dof] +
+                                step / 6 * (before + 4 * middle + after);
+          velocity[h.dof]     = after;
+          acceleration[h.dof] = (before - 4 * middle + 3 * after) / step;
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  HeldNodes<dim>::prescribe_velocity(const double time,
+                                     NodalVector &velocity) const
+  {
+    for (const Held &h : all)
+      if (velocity.in_local_range(h.dof))
+        velocity[h.dof] = prescribed_velocity(h, time);
+  }
+
+
+
+  template <int dim>
+  void
+  HeldNodes<dim>::clear(NodalVector &vector) const
+  {
+    for (const Held &h : all)
+      if (vector.in_local_range(h.dof))
+        vector[h.dof] = 0;
+  }
+
+
+
+  template <int dim>
+  void
+  HeldNodes<dim>::replace(NodalVector &vector, const NodalVector &from) const
+  {
+    for (const Held &h : all)
+      if (vector.in_local_range(h.dof))
+        vector[h.dof] = from[h.dof];
+  }
+
+
+
+  template <int dim>
+  NodalVector
+  HeldNodes<dim>::inertia(const NodalVector &masses,
+                          const NodalVector &acceleration) const
+  {
+    NodalVector result(masses.get_partitioner());
+    for (const Held &h : all)
+      if (result.in_local_range(h.dof))
+        result[h.dof] = masses[h.dof] * acceleration[h.dof];
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, 2 * dim>
+  HeldNodes<dim>::sum_over_sides(const NodalVector &forces) const
+  {
+    std::array<dealii::Tensor<1, dim>, 2 * dim> result;
+    for (const Held &h : all)
+      if (forces.in_local_range(h.dof))
+        result[h.side][h.component] += forces[h.dof];
+    for (auto &force : result)
+      force = dealii::Utilities::MPI::sum(force, communicator);
+    return result;
+  }
+
+
+
+  template class HeldNodes<2>;
+  template class HeldNodes<3>;
+} // namespace limber

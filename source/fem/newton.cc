@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <limber/base/exceptions.h>
+#include <limber/fem/reference_solver.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+/**
+ * @file Which forces are not in balance, Newton's method, and the steps of a
+ * reference that need it: of load, and in time by Hilber, Hughes and Taylor.
+ */
+namespace limber
+{
+  namespace
+  {
+    constexpr double       infinite = std::numeric_limits<double>::infinity();
+    constexpr unsigned int most_iterations = 25;
+    // of a load step, before Newton's method is given up
+    constexpr double       smallest_part = 1. / 256;
+    constexpr unsigned int most_halvings = 8; // of a time step, likewise
+    // alpha of Hilber, Hughes and Taylor (1977): the share of the forces of the
+    // step before. It damps what the step does not resolve, by 10 % a step.
+    constexpr double delay = 0.05;
+    // A kept tangent has to reduce the residual to this share at least.
+    constexpr double good_reduction = 0.1;
+  } // namespace
+
+
+
+  // Forces at the present displacement; what is left over relative to the
+  // largest of them, infinite where an element is turned inside out.
+  template <int dim>
+  double
+  ReferenceSolver<dim>::unbalance(const double time, const double mass_factor)
+  {
+    state.displacement.update_ghost_values();
+    if (!model.internal_forces(state.displacement, internal))
+      return infinite;
+    model.loads(state.displacement, time, load);
+    load *= load_factor;
+    unbalanced = load;
+    unbalanced.add(load_factor, model.gravity());
+    const double external = unbalanced.l2_norm();
+    if (mass_factor != 0)
+      {
+        state.acceleration = state.displacement;
+        state.acceleration -= predicted;
+        state.acceleration *= (1 - delay) * mass_factor;
+        model.mass_matrix().vmult(inertia, state.acceleration);
+      }
+    unbalanced -= internal;
+    net_force = unbalanced;
+    support   = inertia;
+    support -= unbalanced;
+    NodalVector of_free = support;
+    model.held().clear(of_free);
+    support -= of_free;
+
+    // with a share of the forces of the step before, over that of the new ones
+    if (mass_factor != 0)
+      unbalanced.add(delay / (1 - delay),
+                     former_net_force,
+                     -1 / (1 - delay),
+                     inertia);
+    else
+      unbalanced -= inertia;
+    model.held().clear(unbalanced);
+
+    const double scale =
+      std::max({external, internal.l2_norm(), inertia.l2_norm()});
+    return scale == 0 ? 0 : unbalanced.l2_norm() / scale;
+  }
+
+
+
+  template <int dim>
+  void
+  ReferenceSolver<dim>::renew_tangent(const double       mass_factor,
+                                      const NodalVector *former)
+  {
+    model.assemble(state.displacement, mass_factor, *matrix, former);
+    linear_solver.set_matrix(*matrix);
+    matrix_mass_factor = mass_factor;
+    ++state.factorisations;
+  }
+
+
+
+  // Newton's method from the present displacement; false where it fails.
+  template <int dim>
+  bool
+  ReferenceSolver<dim>::solve(const double time,
+                              const double mass_factor,
+                              const bool   keep_tangent)
+  {
+    NodalVector correction = model.make_vector(), before = correction;
+    double      former = infinite;
+    rest               = unbalance(time, mass_factor);
+    for (unsigned int k = 0; k < most_iterations && std::isfinite(rest); ++k)
+      {
+        if (rest <= model.problem.reference.tolerance)
+          return true;
+        if (!keep_tangent || !matrix_serves(mass_factor) ||
+            rest > good_reduction * former)
+          renew_tangent(mass_factor, k > 0 ? &before : nullptr);
+        before = state.displacement;
+        linear_solver.solve(correction, unbalanced);
+        ++state.newton_steps;
+        // Where forces nearly vanish, round-off of large ones remains.
+        if (rest <= 1e-4 &&
+            correction.l2_norm() <= 1e-11 * state.displacement.l2_norm())
+          return true;
+
+        former = rest;
+        state.displacement += correction;
+        rest = unbalance(time, mass_factor);
+        for (unsigned int half = 0; half < 8 && rest == infinite; ++half)
+          {
+            correction *= 0.5;
+            state.displacement -= correction;
+            rest = unbalance(time, mass_factor);
+          }
+      }
+    return rest <= model.problem.reference.tolerance;
+  }
+
+
+
+  template <int dim>
+  bool
+  ReferenceSolver<dim>::matrix_serves(const double mass_factor) const
+  {
+    return std::abs(matrix_mass_factor - mass_factor) <=
+           1e-6 * std::abs(mass_factor);
+  }
+
+
+
+  template <int dim>
+  void
+  ReferenceSolver<dim>::fail(const double time, const std::string &entry) const
+  {
+    std::ostringstream text;
+    text << "Newton's method of the finite element reference ends with " << rest
+         << " of the forces unbalanced at time " << time
+         << " s. Usually the step is too long, the body buckles, or the "
+            "tolerance is finer than round-off. Set 'Reference/"
+         << entry << "' finer, or 'Reference/Tolerance' above that number.";
+    throw ComputationError(text.str());
+  }
+
+
+
+  // What held nodes move is put on the others by the tangent at the start,
+  // so that no element is crushed before Newton's method begins.
+  template <int dim>
+  void
+  ReferenceSolver<dim>::follow_held(const NodalVector &former)
+  {
+    NodalVector direction = state.displacement;
+    direction -= former;
+    const double size = direction.linfty_norm();
+    if (size == 0)
+      return;
+    const double step  = 1e-6 * model.smallest_edge / size;
+    NodalVector  ahead = model.make_vector(), moved = former;
+    moved.add(step, direction);
+    moved.update_ghost_values();
+    NodalVector start = former;
+    start.update_ghost_values();
+    if (!model.internal_forces(moved, ahead) ||
+        !model.internal_forces(start, internal))
+      return;
+    ahead -= internal;
+    ahead *= -1 / step;
+    model.held().clear(ahead);
+    model.assemble(start, 0, *matrix);
+    linear_solver.set_matrix(*matrix);
+    matrix_mass_factor = 0;
+    ++state.factorisations;
+    linear_solver.solve(moved, ahead);
+    state.displacement += moved;
+  }
+
+
+
+  // A load step that Newton's method does not manage is taken in parts.
+  template <int dim>
+  void
+  ReferenceSolver<dim>::load_step(const double step)
+  {
+    const double end  = model.problem.end_time;
+    double       time = state.time, part = step;
+    NodalVector  velocity = model.make_vector(), none = velocity;
+    while (time < state.time + step * (1 - 1e-9))
+      {
+        const NodalVector former = state.displacement;
+        part                     = std::min(part, state.time + step - time);
+        load_factor              = (time + part) / end;
+        model.held().prescribe(
+          time, former, time + part, state.displacement, velocity, none);
+        follow_held(former);
+        if (solve(end, 0, false))
+          {
+            time += part;
+            part *= 2;
+            continue;
+          }
+        state.displacement = former;
+        part /= 2;
+        if (part < smallest_part * step)
+          fail(time, "Load steps");
+      }
+  }
+
+
+
+  // A step that Newton's method does not manage is taken in halves.
+  template <int dim>
+  void
+  ReferenceSolver<dim>::newmark_step(const double       step,
+                                     const unsigned int halved)
+  {
+    const SolidMotion<dim> start = state;
+    if (try_newmark_step(step))
+      return close_step(start.displacement, step);
+    const auto newton_steps = state.newton_steps,
+               tangents     = state.factorisations;
+    state                   = start;
+    state.newton_steps      = newton_steps;
+    state.factorisations    = tangents;
+    if (halved == most_halvings)
+      fail(state.time + step, "Time step");
+    newmark_step(step / 2, halved + 1);
+    newmark_step(step / 2, halved + 1);
+  }
+
+
+
+  template <int dim>
+  bool
+  ReferenceSolver<dim>::try_newmark_step(const double step)
+  {
+    const double      time                = state.time + step;
+    const double      beta                = (1 + delay) * (1 + delay) / 4;
+    const double      gamma               = 0.5 + delay;
+    const double      factor              = 1 / (beta * step * step);
+    const NodalVector former              = state.displacement;
+    const NodalVector former_velocity     = state.velocity;
+    const NodalVector former_acceleration = state.acceleration;
+
+    predicted = state.displacement;
+    predicted.add(step,
+                  state.velocity,
+                  (0.5 - beta) * step * step,
+                  state.acceleration);
+    // begin with the acceleration of the step before
+    state.displacement = predicted;
+    state.displacement.add(1 / factor, state.acceleration);
+    NodalVector held_acceleration = model.make_vector();
+    model.held().prescribe(state.time,
+                           former,
+                           time,
+                           state.displacement,
+                           state.velocity,
+                           held_acceleration);
+    // such that displacement and acceleration of held components agree
+    NodalVector held_predicted = state.displacement;
+    held_predicted.add(-1 / factor, held_acceleration);
+    model.held().replace(predicted, held_predicted);
+
+    if (!solve(time, factor / (1 - delay), true))
+      return false;
+
+    NodalVector held_velocity = state.velocity;
+    state.velocity            = former_velocity;
+    state.velocity.add((1 - gamma) * step,
+                       former_acceleration,
+                       gamma * step,
+                       state.acceleration);
+    model.held().replace(state.velocity, held_velocity);
+    return true;
+  }
+
+
+
+  template double
+  ReferenceSolver<2>::unbalance(const double, const double);
+  template void
+  ReferenceSolver<2>::load_step(const double);
+  template void
+  ReferenceSolver<2>::newmark_step(const double, const unsigned int);
+  template double
+  ReferenceSolver<3>::unbalance(const double, const double);
+  template void
+  ReferenceSolver<3>::load_step(const double);
+  template void
+  ReferenceSolver<3>::newmark_step(const double, const unsigned int);
+} // namespace limber
