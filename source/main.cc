@@ -95,6 +95,22 @@ namespace
       }
     return int(ExitCode::success);
   }
+
+
+
+  // Before MPI starts; who sets these in the environment is obeyed.
+  void
+  tune_open_mpi()
+  {
+    // Ranks wait for many small messages. What is larger than 4 kB Open MPI
+    // lets the receiver fetch by a system call, which takes longer than two
+    // copies through shared memory (doc/developer/speed.md).
+    setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
+    // Programs that are started without mpirun share a folder for files in
+    // shared memory, and the first to end removes it: others then could not
+    // open a file. Nothing here has file pointers that are shared.
+    setenv("OMPI_MCA_sharedfp", "^sm", 0);
+  }
 } // namespace
 
 
@@ -114,10 +130,7 @@ main(int argc, char *argv[])
         return int(failure.code);
       }
 
-  // Ranks wait for many small messages. Open MPI lets the receiver fetch what
-  // is larger than 4 kB by a system call, which takes longer than two copies
-  // through shared memory (doc/developer/speed.md). Who sets it is obeyed.
-  setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
+  tune_open_mpi();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
