@@ -40,15 +40,21 @@ def label_of(row, variations):
 
 
 def draw_line(axis, rows, measure, meta, style):
-    """One method: its points, joined in the order of the horizontal axis."""
+    """One method: its points, joined in the order of the horizontal axis. Of
+    several variations against cost only the last one goes along a line."""
     vertical = measure + " error"
     points = [(number(row[meta["horizontal"]]), number(row[vertical]), row)
               for row in rows if row["outcome"] == "finished"]
     points = [p for p in points if np.isfinite(p[0]) and np.isfinite(p[1])]
     points.sort(key=lambda p: p[0])
-    if points:
-        x, y, _ = zip(*points)
-        axis.plot(x, y, label=rows[0]["method"], **style)
+    joined = {}
+    for x, y, row in points:
+        others = meta["variations"][:-1] if meta["against cost"] else []
+        joined.setdefault(tuple(row[name] for name in others), []).append((x, y))
+    label = rows[0]["method"]
+    for line in joined.values():
+        axis.plot(*zip(*line), label=label, **style)
+        label = None
     for x, y, row in points:
         if row["beyond"].startswith("stable up to"):  # no limit was found
             axis.plot(x, y, "^", markersize=9, fillstyle="none",
