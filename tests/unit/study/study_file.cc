@@ -54,8 +54,9 @@ namespace
        const std::vector<std::string> &overrides  = {},
        const bool                      take_short = false)
   {
-    std::ofstream("study_under_test.prm") << text;
-    return read_study("study_under_test.prm", overrides, take_short);
+    const std::string path = testing::TempDir() + "study_under_test.prm";
+    std::ofstream(path) << text;
+    return read_study(path, overrides, take_short);
   }
 
 
@@ -91,7 +92,7 @@ namespace
 TEST(StudyFile, AllParts)
 {
   const StudyFile study = read(good);
-  EXPECT_EQ(study.scene, "scenes/beam.prm");
+  EXPECT_EQ(study.scene, testing::TempDir() + "scenes/beam.prm");
   EXPECT_EQ(study.directory, "studies/study_under_test");
   EXPECT_EQ(study.settings.size(), 2u);
   ASSERT_EQ(study.methods.size(), 2u);
