@@ -3,9 +3,9 @@
 
     all_studies.py [--limber PROGRAM] [--short] [--results FOLDER] [NAME ...]
 
-Without names all of prm/studies; an hour and a half on a quiet machine, --short some
-minutes. Runs that are there and have not changed are kept. Errors do not depend
-on the machine; CPU times do, so nothing else should be running.
+Without names all of prm/studies; an hour and a half on a quiet machine, --short
+some minutes. Runs that are there and have not changed are kept. Errors do not
+depend on the machine; CPU times do, so nothing else should be running.
 """
 
 import argparse

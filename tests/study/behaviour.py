@@ -179,15 +179,17 @@ class Behaviour(unittest.TestCase):
         self.refused("stands twice", cells="4, 4 | 4, 4")
 
     def compare(self, settings, comparison, name="displacement"):
-        text = STUDY.format(title="A test", scene=ARGUMENTS.scene, extra=settings,
-                            cells="8, 8 | 16, 16")
-        text = text.replace("set Measures = displacement",
-                            "set Measures = displacement, field")
-        text = text.replace("set Methods = good, unstable",
-                            "set Methods = good").split(
-            "subsection Method")[0] + "subsection Variation" + text.split(
-            "subsection Variation")[1]
-        return self.run_study(self.write(text=text + f"""
+        return self.run_study(self.write(text=f"""
+set Scene        = {ARGUMENTS.scene}
+set Methods      = good
+set Variations   = cells
+set Measures     = field
+set Error levels = 0.5
+{settings}
+subsection Variation cells
+  set Entry  = Grid/Cells
+  set Values = 8, 8 | 16, 16
+end
 subsection Measure field
   set Source = comparison
   set Name   = {name}

@@ -206,7 +206,7 @@ namespace limber
     class VectorField
     {
     public:
-      /** Component d is in lane first_lane + d, what else there is is not. */
+      /** Component d is in lane first_lane + d; other lanes mean nothing. */
       using Components                = Pack<dim == 2 ? 2 : 4>;
       static constexpr int first_lane = dim == 3 && first > start ? 1 : 0;
 

@@ -48,8 +48,10 @@ namespace limber
   class StrainOperator
   {
   public:
-    /** @p velocity is a NodalCoefficients::VectorField; @p nodal is S div v,
-     * 1/s. */
+    /**
+     * @p velocity is a NodalCoefficients::VectorField of m/s; @p nodal is
+     * S div v, 1/s; @p step in s.
+     */
     StrainOperator(const Coefficients         &velocity,
                    const CellGeometry<dim>    &cell,
                    const CellMeans<dim>       &means,
