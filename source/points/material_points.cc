@@ -215,12 +215,16 @@ namespace limber
   void
   MaterialPoints<dim>::collect_cells(std::vector<std::uint32_t> &cells) const
   {
-    const std::size_t before = cells.size();
+    // A bit per cell of the box: to sort the numbers would take as long as to
+    // reorder the points.
+    constexpr unsigned int     n_bits = 64;
+    std::vector<std::uint64_t> holds_points(grid.n_cells() / n_bits + 1);
     for (std::size_t p = 0; p < cell.size(); ++p)
       if (p == 0 || cell[p] != cell[p - 1])
-        cells.push_back(cell[p]);
-    std::sort(cells.begin() + before, cells.end());
-    cells.erase(std::unique(cells.begin() + before, cells.end()), cells.end());
+        holds_points[cell[p] / n_bits] |= std::uint64_t(1) << cell[p] % n_bits;
+    for (std::size_t word = 0; word < holds_points.size(); ++word)
+      for (std::uint64_t bits = holds_points[word]; bits != 0; bits &= bits - 1)
+        cells.push_back(word * n_bits + __builtin_ctzll(bits));
   }
 
 

@@ -182,8 +182,8 @@ namespace limber
         const std::size_t before = cells.size();
         body->points.collect_cells(cells);
         n_batches_sorted += cells.size() - before;
+        std::inplace_merge(cells.begin(), cells.begin() + before, cells.end());
       }
-    std::sort(cells.begin(), cells.end());
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     nodes.set_occupied(std::move(cells), agree);
     excess_batches = 0;

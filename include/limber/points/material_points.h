@@ -107,7 +107,7 @@ namespace limber
     void
     sort_by_cell();
 
-    /** Local numbers of the cells that hold points, ascending. */
+    /** Append the local numbers of the cells that hold points, ascending. */
     void
     collect_cells(std::vector<std::uint32_t> &cells) const;
 
