@@ -256,8 +256,10 @@ namespace limber
         const SolidMotion<dim> &motion = solver.motion();
         std::ostringstream      text;
         text << std::setprecision(4) << "step " << motion.step << "  time "
-             << motion.time << " s  step size " << motion.step_size
-             << " s  energy drift " << totals.energy_drift << "  left "
+             << motion.time << " s  step size " << motion.step_size << " s  ";
+        if (std::isfinite(totals.energy_drift))
+          text << "energy drift " << totals.energy_drift << "  ";
+        text << "left "
              << (now - start_wall) * (problem.end_time - motion.time) /
                   motion.time
              << " s";
@@ -296,9 +298,10 @@ namespace limber
         text << std::setprecision(4) << verdict << ": " << motion.step
              << " steps to time " << motion.time << " s in "
              << summary.wall_seconds << " s, " << motion.newton_steps
-             << " corrections with " << motion.factorisations
-             << " tangents, energy drift " << totals.energy_drift << "\n"
-             << std::setprecision(6);
+             << " corrections with " << motion.factorisations << " tangents";
+        if (std::isfinite(totals.energy_drift)) // there is motion
+          text << ", energy drift " << totals.energy_drift;
+        text << "\n" << std::setprecision(6);
         for (const CheckResult &check : summary.checks)
           text << "  check " << check.name << ": " << check.value
                << ", reference " << check.reference << " +- " << check.tolerance

@@ -32,6 +32,39 @@ namespace limber
 
 
 
+    /** Labels of the choices that say which problem a row belongs to. */
+    std::string
+    problem_of(const StudyReport &report, const StudyRow &row)
+    {
+      std::string result;
+      for (std::size_t v = 0; v < report.study.variations.size(); ++v)
+        {
+          const Variation &variation = report.study.variations[v];
+          if (variation.is_problem)
+            result += variation.name + " " +
+                      variation.choices[row.variant.choices[v]].label + ", ";
+        }
+      return result;
+    }
+
+
+
+    /** All problems, in the order of the rows. */
+    std::vector<std::string>
+    problems_of(const StudyReport &report)
+    {
+      std::vector<std::string> result;
+      for (const StudyRow &row : report.rows)
+        {
+          const std::string problem = problem_of(report, row);
+          if (std::find(result.begin(), result.end(), problem) == result.end())
+            result.push_back(problem);
+        }
+      return result;
+    }
+
+
+
     double
     cost_of(const StudyReport &report, const StudyRow &row)
     {
@@ -218,6 +251,15 @@ namespace limber
 
 
 
+    /** The value of a comparison is its error. */
+    bool
+    has_value_and_error(const Measure &measure)
+    {
+      return measure.has_error() && measure.source != MeasureSource::comparison;
+    }
+
+
+
     std::string
     markdown_text(const StudyReport &report, const std::string &findings)
     {
@@ -234,7 +276,7 @@ namespace limber
         {
           header += " " + measure.name + " |";
           rule += " --: |";
-          if (measure.has_error())
+          if (has_value_and_error(measure))
             {
               header += " error |";
               rule += " --: |";
@@ -269,7 +311,7 @@ namespace limber
                    << (m < row.measured.size() ? brief(row.measured[m].value) :
                                                  row.outcome)
                    << " |";
-              if (measure.has_error())
+              if (has_value_and_error(measure))
                 text << " "
                      << (m < row.measured.size() ?
                            brief(row.measured[m].error) :
@@ -313,19 +355,38 @@ namespace limber
 
 
 
-    /** The cheapest row with an error not above a level; -1: none. */
+    /** Rows of a problem that have an error; method -1: of all methods. */
+    std::vector<std::size_t>
+    candidates(const StudyReport &report,
+               const std::string &problem,
+               const std::size_t  measure,
+               const int          method)
+    {
+      std::vector<std::size_t> result;
+      for (std::size_t r = 0; r < report.rows.size(); ++r)
+        if (has_error(report.rows[r], measure) &&
+            problem_of(report, report.rows[r]) == problem &&
+            (method < 0 ||
+             report.rows[r].variant.method == std::size_t(method)))
+          result.push_back(r);
+      return result;
+    }
+
+
+
+    /** The cheapest of them with an error not above a level; -1: none. */
     int
     cheapest(const StudyReport &report,
+             const std::string &problem,
              const std::size_t  measure,
              const double       level,
              const int          method)
     {
       int best = -1;
-      for (std::size_t r = 0; r < report.rows.size(); ++r)
+      for (const std::size_t r : candidates(report, problem, measure, method))
         {
           const StudyRow &row = report.rows[r];
-          if (has_error(row, measure) && row.measured[measure].error <= level &&
-              (method < 0 || row.variant.method == std::size_t(method)) &&
+          if (row.measured[measure].error <= level &&
               (best < 0 ||
                cost_of(report, row) < cost_of(report, report.rows[best])))
             best = int(r);
@@ -335,21 +396,62 @@ namespace limber
 
 
 
-    /** In words; method -1: of all. */
+    /** In words. */
     std::string
     smallest_error(const StudyReport &report,
+                   const std::string &problem,
                    const std::size_t  measure,
                    const int          method)
     {
       double result = std::numeric_limits<double>::infinity();
-      for (const StudyRow &row : report.rows)
-        if (has_error(row, measure) &&
-            (method < 0 || row.variant.method == std::size_t(method)))
-          result = std::min(result, row.measured[measure].error);
+      for (const std::size_t r : candidates(report, problem, measure, method))
+        result = std::min(result, report.rows[r].measured[measure].error);
       std::ostringstream text;
       text.precision(3);
       text << "the smallest error is " << result;
       return std::isfinite(result) ? text.str() : "none has finished";
+    }
+
+
+
+    /** What one error of one problem costs, in words. */
+    std::string
+    findings_for(const StudyReport &report,
+                 const std::string &problem,
+                 const std::size_t  m,
+                 const double       level)
+    {
+      const StudyFile   &study = report.study;
+      std::ostringstream text;
+      text.precision(3);
+      text << study.measures[m].name << ", error " << level << ": ";
+      const int best = cheapest(report, problem, m, level, -1);
+      if (best < 0)
+        {
+          text << "reached by no variant; "
+               << smallest_error(report, problem, m, -1) << "\n";
+          return text.str();
+        }
+      const StudyRow &winner = report.rows[best];
+      const double    cost   = cost_of(report, winner);
+      text << "cheapest is '" << winner.variant.name << "' with "
+           << winner.measured[m].error << ", " << cost << " "
+           << name_of(study.cost) << "\n";
+      for (std::size_t method = 0; method < study.methods.size(); ++method)
+        {
+          if (winner.variant.method == method)
+            continue;
+          text << "  " << study.methods[method].choice.label << ": ";
+          const int own = cheapest(report, problem, m, level, int(method));
+          if (own < 0)
+            text << "not reached, "
+                 << smallest_error(report, problem, m, int(method)) << "\n";
+          else
+            text << cost_of(report, report.rows[own]) / cost
+                 << " times as much, with '" << report.rows[own].variant.name
+                 << "'\n";
+        }
+      return text.str();
     }
   } // namespace
 
@@ -376,7 +478,8 @@ namespace limber
       {
         front[a] = has_error(rows[a], measure);
         for (std::size_t b = 0; front[a] && b < rows.size(); ++b)
-          if (has_error(rows[b], measure))
+          if (has_error(rows[b], measure) &&
+              problem_of(report, rows[a]) == problem_of(report, rows[b]))
             {
               const double error_a = rows[a].measured[measure].error;
               const double error_b = rows[b].measured[measure].error;
@@ -396,41 +499,12 @@ namespace limber
   cheapest_variants(const StudyReport         &report,
                     const std::vector<double> &levels)
   {
-    const StudyFile   &study = report.study;
-    std::ostringstream text;
-    text.precision(3);
-    for (std::size_t m = 0; m < study.measures.size(); ++m)
-      for (const double level : levels)
-        {
-          text << study.measures[m].name << ", error " << level << ": ";
-          const int best = cheapest(report, m, level, -1);
-          if (best < 0)
-            {
-              text << "reached by no variant; " << smallest_error(report, m, -1)
-                   << "\n";
-              continue;
-            }
-          const StudyRow &winner = report.rows[best];
-          const double    cost   = cost_of(report, winner);
-          text << "cheapest is '" << winner.variant.name << "' with "
-               << winner.measured[m].error << ", " << cost << " "
-               << name_of(study.cost) << "\n";
-          for (std::size_t method = 0; method < study.methods.size(); ++method)
-            {
-              if (winner.variant.method == method)
-                continue;
-              text << "  " << study.methods[method].choice.label << ": ";
-              const int own = cheapest(report, m, level, int(method));
-              if (own < 0)
-                text << "not reached, "
-                     << smallest_error(report, m, int(method)) << "\n";
-              else
-                text << cost_of(report, report.rows[own]) / cost
-                     << " times as much, with '"
-                     << report.rows[own].variant.name << "'\n";
-            }
-        }
-    return text.str();
+    std::string text;
+    for (const std::string &problem : problems_of(report))
+      for (std::size_t m = 0; m < report.study.measures.size(); ++m)
+        for (const double level : levels)
+          text += problem + findings_for(report, problem, m, level);
+    return text;
   }
 
 

@@ -165,7 +165,8 @@ namespace limber
         {
           const Section section = root.subsection("Variation " + name);
           if (section.is_empty("With"))
-            variations.push_back({name, read_choices(section)});
+            variations.push_back(
+              {name, read_choices(section), section.flag("Another problem")});
         }
       std::vector<std::string> leaders;
       for (const Variation &variation : variations)

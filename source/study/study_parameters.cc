@@ -328,6 +328,12 @@ namespace limber
                                           "refinement"),
                          "This entry changes in parallel with another "
                          "variation, value by value; empty: on its own.");
+      parameters.declare("Another problem",
+                         "false",
+                         admissible::flag(),
+                         "Whether another value makes another problem: the "
+                         "cheapest variant for an error is then named for "
+                         "each value, and so is what no other one beats.");
       parameters.leave_subsection();
     }
 

@@ -46,6 +46,8 @@ namespace limber
   {
     std::string         name;
     std::vector<Choice> choices;
+    // Another choice is another problem: costs are not compared across them.
+    bool is_problem = false;
   };
 
   enum class MeasureSource

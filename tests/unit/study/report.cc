@@ -49,6 +49,32 @@ TEST(StudyReport, ParetoFront)
 
 
 
+TEST(StudyReport, ProblemsAreNotComparedWithEachOther)
+{
+  // Of two bodies the second costs ten times as much.
+  auto report =
+    report_of({{{0, 1, 0.01}}, {{0, 10, 0.5}}, {{1, 2, 0.02}}, {{1, 20, 0.2}}});
+  report.study.variations = {{"body", {{"small", {}}, {"large", {}}}, true}};
+  for (std::size_t r = 0; r < report.rows.size(); ++r)
+    report.rows[r].variant.choices = {r % 2};
+  EXPECT_EQ(pareto_front(report, 0),
+            (std::vector<bool>{true, true, false, true}));
+  const std::string text = cheapest_variants(report, {0.3});
+  EXPECT_NE(text.find("body small, frequency, error 0.3: cheapest is 'locked, "
+                      "1' with 0.01"),
+            std::string::npos)
+    << text;
+  EXPECT_NE(text.find("body large, frequency, error 0.3: cheapest is 'cured, "
+                      "20' with 0.2"),
+            std::string::npos)
+    << text;
+  EXPECT_NE(text.find("locked: not reached, the smallest error is 0.5"),
+            std::string::npos)
+    << text;
+}
+
+
+
 TEST(StudyReport, CheapestForAnError)
 {
   const auto report =
