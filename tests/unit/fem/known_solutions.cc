@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_out.h>
+#include <deal.II/grid/tria.h>
+
+#include <limber/fem/natural_modes.h>
 #include <limber/fem/solid_samples.h>
 
 #include <gtest/gtest.h>
@@ -313,4 +318,57 @@ TEST(MeshFile, GivesWhatTheBlockGives)
     }
   EXPECT_GT(corner[0].norm(), 0.05);
   EXPECT_LT((corner[0] - corner[1]).norm(), 1e-7);
+}
+
+
+
+// The slowest motion of a free ball twists its halves against each other: with
+// the spherical Bessel functions, j_2(x) = x j_3(x), x = w R / c_s = 2.5011,
+// five times. Straight edges of elements leave an error of second order.
+TEST(MeshFile, ABallTwistsAtItsExactFrequency)
+{
+  std::vector<double> errors;
+  for (const unsigned int refinements : {1, 2})
+    {
+      dealii::Triangulation<3> mesh;
+      dealii::GridGenerator::hyper_ball(mesh, dealii::Point<3>(2, 2, 2), 1);
+      mesh.refine_global(refinements);
+      const std::string path = testing::TempDir() + "limber_ball.vtk";
+      std::ofstream     file(path);
+      dealii::GridOut().write_vtk(mesh, file);
+      file.close();
+
+      const auto          problem = problem_from<3>(R"(
+        set Dimension = 3
+        set Bodies = ball
+        subsection Body ball
+          set Shape = ball
+          subsection Ball
+            set Centre = 2, 2, 2
+            set Radius = 1
+          end
+          set Material = linear elastic
+          subsection Linear elastic
+            set Density = 1
+            set Young's modulus = 2.6
+            set Poisson's ratio = 0.3
+          end
+        end
+        subsection Grid
+          set Upper corner = 4, 4, 4
+        end)",
+                                           {"Reference/Mesh file=" + path,
+                                                     "Reference/Element=Q2"});
+      const SolidModel<3> model(problem, MPI_COMM_WORLD);
+      EXPECT_EQ(model.mesh->n_global_active_cells(), mesh.n_active_cells());
+      const auto found = natural_frequencies(model, 5);
+      EXPECT_EQ(found.n_rigid_motions, 6u);
+      double mean = 0;
+      for (const double frequency : found.frequencies)
+        mean += 2 * pi * frequency / 5; // c_s = 1 m/s
+      errors.push_back(mean / 2.5011 - 1);
+    }
+  EXPECT_LT(errors[1], 0.025);
+  // what is left without the error of second order
+  EXPECT_NEAR((4 * errors[1] - errors[0]) / 3, 0, 0.002);
 }
