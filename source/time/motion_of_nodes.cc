@@ -180,15 +180,6 @@ namespace limber
     fastest_node = std::isfinite(all) ?
                      std::sqrt(checked_speed) * step / grid.smallest_edge :
                      1e300;
-    // The answer is needed only before points are touched.
-    if (parallel)
-      MPI_Iallreduce(MPI_IN_PLACE,
-                     &fastest_node,
-                     1,
-                     MPI_DOUBLE,
-                     MPI_MAX,
-                     grid.communicator,
-                     &check_request);
     lap(Verb::advance_nodes);
   }
 
@@ -199,7 +190,8 @@ namespace limber
   ExplicitIntegrator<dim>::check_nodes()
   {
     if (parallel)
-      MPI_Wait(&check_request, MPI_STATUS_IGNORE);
+      MPI_Allreduce(
+        MPI_IN_PLACE, &fastest_node, 1, MPI_DOUBLE, MPI_MAX, grid.communicator);
     lap(Verb::check_nodes);
     const double cells = fastest_node;
     if (cells <= 1)

@@ -214,12 +214,11 @@ namespace limber
     // Refilled in each step, which then allocates nothing
     std::vector<HourglassResistance<dim>> resisting;
 
-    double      any_lost            = 0;
-    double      any_entered_shared  = 0;
-    double      most_points         = 0; // on one rank
-    double      most_excess_batches = 0; // on one rank, see below
-    double      fastest_node        = 0; // cells in this step
-    MPI_Request check_request       = MPI_REQUEST_NULL;
+    double any_lost            = 0;
+    double any_entered_shared  = 0;
+    double most_points         = 0; // on one rank
+    double most_excess_batches = 0; // on one rank, see below
+    double fastest_node        = 0; // cells in this step
 
     // Sum of largest displacements since ranks exchanged points, in cells
     double travelled = 0;
