@@ -44,6 +44,7 @@ namespace limber
   NodalFields<dim>::find_roles()
   {
     roles.reinit(grid.n_nodes());
+    border_cells.clear();
     if (grid.shared_nodes.neighbours.empty())
       return;
     for (const std::uint32_t node : nodes_to_share.received)
@@ -58,6 +59,9 @@ namespace limber
           roles[hanging.node] |= roles[master] & is_shared;
           roles[master] |= roles[hanging.node] & is_corner_of_owned_cell;
         }
+    for (std::uint32_t cell = 0; cell < grid.n_cells(); ++cell)
+      if (is_at_border(cell))
+        border_cells.push_back(cell);
   }
 
 
@@ -182,11 +186,15 @@ namespace limber
         roles[node] &= ~may_be_added_to;
     for (const HangingNode &hanging : grid.hanging_nodes)
       roles[hanging.node] &= ~may_be_added_to;
-    for (const auto *const cells : {&with_own_points, &cells_to_share.received})
-      for (const std::uint32_t cell : *cells)
-        if (is_at_border(cell))
-          for (const std::uint32_t offset : grid.geometry[cell].node)
-            roles[offset / Layout::stride] |= may_be_added_to;
+    const auto may_get_sums = [&](const std::uint32_t cell) {
+      for (const std::uint32_t offset : grid.geometry[cell].node)
+        roles[offset / Layout::stride] |= may_be_added_to;
+    };
+    for (const std::uint32_t cell : border_cells)
+      if (has_own_points[cell])
+        may_get_sums(cell);
+    for (const std::uint32_t cell : cells_to_share.received)
+      may_get_sums(cell);
     for (const HangingNode &hanging : grid.hanging_nodes)
       for (const auto &[master, weight] : hanging.masters)
         roles[master] |= roles[hanging.node] & may_be_added_to;

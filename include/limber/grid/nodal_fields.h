@@ -165,6 +165,7 @@ namespace limber
     LazyArray<std::uint8_t>    roles; // of nodes
     RecordExchange             exchange{Layout::stride};
     ExchangePlan               nodes_to_share, cells_to_share;
+    std::vector<std::uint32_t> border_cells; // with a node that is shared
     std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
     std::vector<std::uint32_t> entered, active, active_boundary;
     LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
