@@ -395,6 +395,10 @@ namespace limber
     what.step     = length;
     what.remapped = remapped;
     what.move     = move ? step : 0;
+    // The means over cells are those of the beginning of the step: histories
+    // tend to them before anything is strained.
+    const bool begins =
+      !move || problem.method.order != StressUpdateOrder::both_ends;
     relax_deviators(length);
     project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
       sum_divergence<dim>(body.points.view(), nodes.view(), remapped, records);
@@ -403,7 +407,8 @@ namespace limber
       {
         const Body<dim> &description = body->description;
         what.nodal_divergence        = nodal_means_of(*body);
-        what.relaxation  = relaxation(description, description.history, length);
+        what.relaxation =
+          begins ? relaxation(description, description.history, step) : 0;
         what.shift       = description.chequerboard_control > 0 ?
                              body->cell_shift.data() :
                              nullptr;

@@ -184,6 +184,43 @@ TEST(Bar, OrderInTime)
 
 
 
+// All points of a cell with 'cell' have the same change of volume, so as long
+// as they stay in it the mean is what each of them has, and to put it in its
+// place or to tend to it changes nothing, whenever in a step the strain is
+// taken.
+TEST(Bar, HistoriesOfPointsThatStayMayBeReplaced)
+{
+  for (const std::string &order : stress_update_orders)
+    for (const std::vector<std::string> &history :
+         std::vector<std::vector<std::string>>{{"replace"},
+                                               {"crossing"},
+                                               {"relax", "Relaxation time=1"}})
+      {
+        SCOPED_TRACE(order + ", " + history.front());
+        const auto velocities = [&](const std::vector<std::string> &entries) {
+          std::vector<std::string> overrides = {
+            "Method/Stress update=" + order, "Body bar/Locking treatment=cell"};
+          for (const std::string &entry : entries)
+            overrides.push_back("Body bar/" + entry);
+          SceneRun<2> run(bar(16), overrides);
+          run.advance(0.02 * period / 16, 400);
+          std::vector<double> result;
+          for (std::size_t p = 0; p < run.points().size; ++p)
+            result.push_back(run.velocity(p)[0]);
+          return result;
+        };
+        auto replaced    = history;
+        replaced.front() = "History=" + history.front();
+        const auto a     = velocities({});
+        const auto b     = velocities(replaced);
+        ASSERT_EQ(a.size(), b.size());
+        for (std::size_t p = 0; p < a.size(); ++p)
+          EXPECT_NEAR(a[p], b[p], 1e-11 * v0);
+      }
+}
+
+
+
 // Theory, 6.9. The wall does no work; what little the ledger books is lost by
 // points whose velocity is against the wall. What the balance leaves swings
 // with the bar, as it does with symplectic Euler, and does not grow.
