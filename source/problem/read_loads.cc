@@ -144,12 +144,10 @@ namespace limber
       if (face == whole_surface)
         return std::nullopt;
       if (dynamic_cast<const BlockShape<dim> *>(body.shape.get()) == nullptr)
-        throw InputError("The face " + in_quotes(face) + " of body " +
-                         in_quotes(body.name) + " is asked for in " +
-                         section.where("Face") +
-                         ", but only a box or a block has faces. Set 'Face = "
-                         "surface', and name the part of it that bears the "
-                         "load, for instance 'Where = y - 0.9'.");
+        throw InputError("Body " + in_quotes(body.name) + " has no face " +
+                         in_quotes(face) + " as in " + section.where("Face") +
+                         "; only a box or a block has faces. Set 'Face = "
+                         "surface', with 'Where = y - 0.9' for a part of it.");
       return side_index(face);
     }
 

@@ -51,8 +51,8 @@ namespace limber
    * the lattice of the body (Body::lattice) and filled exactly, surfaces of
    * other shapes are those of surface(). All pieces are on all ranks.
    *
-   * What of a whole surface lies in a side of the grid, or beyond it, is held
-   * or lost there and bears nothing.
+   * What of a whole surface lies in a side of the grid is held there and bears
+   * nothing.
    */
   template <int dim>
   std::vector<FacePiece<dim>>
