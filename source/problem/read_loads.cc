@@ -145,8 +145,8 @@ namespace limber
         return std::nullopt;
       if (dynamic_cast<const BlockShape<dim> *>(body.shape.get()) == nullptr)
         throw InputError("Body " + in_quotes(body.name) + " has no face " +
-                         in_quotes(face) + " as in " + section.where("Face") +
-                         "; only a box or a block has faces. Set 'Face = "
+                         in_quotes(face) + " for " + section.where("Face") +
+                         "; only boxes and blocks have faces. Set 'Face = "
                          "surface', with 'Where = y - 0.9' for a part of it.");
       return side_index(face);
     }

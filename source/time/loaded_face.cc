@@ -9,7 +9,6 @@
 
 namespace limber
 {
-
   namespace
   {
     /** Pieces by the id of their carriers. */
@@ -96,19 +95,17 @@ namespace limber
     std::string
     nothing_loaded(const FaceLoad<dim> &load)
     {
-      const std::string subject = "'Face load " + load.name + "' of body '" +
-                                  load.body + "' acts on nothing, because ";
+      const std::string nothing = "'Face load " + load.name +
+                                  "' acts on nothing of body '" + load.body +
+                                  "': ";
       if (!load.where.empty())
-        return subject + "'Where = " + load.where.expression() +
-               "' is positive nowhere on the free surface of the body. Usually "
-               "the sign is wrong; the load acts where 'Where' is positive. "
-               "Change 'Where' in section 'Face load " +
-               load.name + "'.";
-      return subject +
-             "no surface of the body is within the grid, beside what lies in "
-             "its sides. Usually the body is outside, or thinner than the "
-             "spacing of its points. Check 'Shape' of the body, or set more "
-             "'Points per cell edge', for instance 4.";
+        return nothing + "'Where = " + load.where.expression() +
+               "' is positive nowhere on it. Usually the sign is wrong. Change "
+               "'Where' so that it is positive where the load acts.";
+      return nothing +
+             "all of its surface lies in the sides of the grid, or it is "
+             "thinner than the spacing of its points. Enlarge the grid, or set "
+             "more 'Points per cell edge', for instance 4.";
     }
   } // namespace
 

@@ -311,7 +311,7 @@ namespace
      {"'bean'", "Did you mean 'beam'?"}},
     {"FaceOfABall",
      {"Body beam/Shape=ball"},
-     {"'left'", "'beam'", "only a box", "'Face = surface"}},
+     {"'left'", "'beam'", "only boxes", "'Face = surface"}},
     {"FaceMisspelt",
      {"Loads/Face load press/Face=surfcae"},
      {"'surfcae'", "'Face'", "top | surface"}},
