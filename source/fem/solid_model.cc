@@ -396,12 +396,16 @@ namespace limber
           for (const FaceLoad<dim> &load : problem.loads.faces)
             for (const unsigned int f : cell->face_indices())
               if (cell->face(f)->at_boundary() &&
-                  cell->face(f)->boundary_id() == load.face)
+                  (load.face ?
+                     cell->face(f)->boundary_id() == *load.face :
+                     problem.grid.has_inside(cell->face(f)->center())))
                 {
                   faces.reinit(cell, f);
                   const auto u = values_of(cell, displacement);
                   for (const unsigned int q : faces.quadrature_point_indices())
                     {
+                      if (!load.acts_at(faces.quadrature_point(q)))
+                        continue;
                       const auto traction =
                         face_traction(load, faces, q, u, time);
                       for (unsigned int i = 0; i < fe.dofs_per_cell; ++i)

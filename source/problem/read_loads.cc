@@ -9,6 +9,11 @@ namespace limber
 {
   namespace
   {
+    /** The word of the entry 'Face' that stands for all of them. */
+    const std::string whole_surface = "surface";
+
+
+
     void
     declare_face_load(Parameters        &parameters,
                       const unsigned int dim,
@@ -18,12 +23,26 @@ namespace limber
       parameters.declare("Body",
                          "",
                          admissible::text("name of a body", "beam"),
-                         "The body, which must be a box or a block.");
+                         "The body.");
+      std::vector<std::string> faces = side_names(dim);
+      faces.push_back(whole_surface);
       parameters.declare("Face",
                          "",
-                         admissible::one_of(side_names(dim)).or_empty(),
-                         "The face of the box or block, at the start. The load "
-                         "moves with the material.");
+                         admissible::one_of(faces).or_empty(),
+                         "The face of the box or block, at the start, or "
+                         "'surface': all of the free surface of a body of any "
+                         "shape, that is what does not lie in a side of the "
+                         "grid. The load moves with the material.");
+      parameters.declare("Where",
+                         "",
+                         admissible::text("formula of " +
+                                            std::string(dim == 2 ? "x, y" :
+                                                                   "x, y, z") +
+                                            ", or empty",
+                                          "y - 0.9"),
+                         "The load acts on that part of the face or surface "
+                         "where this is positive at the start; empty: on all "
+                         "of it.");
       parameters.declare("Pressure",
                          "",
                          admissible::text("formula of " + variable_names(dim) +
@@ -67,12 +86,13 @@ namespace limber
                                         for_each_direction(dim, "0", "; ")),
                        "Force per mass b beside gravity, m/s^2.");
     declare_constants(parameters);
-    parameters.declare_list("Face loads",
-                            "",
-                            "Face load ",
-                            "Names of pressures and tractions on faces of "
-                            "bodies; each has a section 'Face load NAME' "
-                            "within 'Loads'.");
+    parameters.declare_list(
+      "Face loads",
+      "",
+      "Face load ",
+      "Names of pressures and tractions on faces or "
+      "surfaces of bodies; each has a section 'Face load NAME' "
+      "within 'Loads'.");
     for (const std::string &name : face_loads)
       declare_face_load(parameters, dim, name);
     parameters.leave_subsection();
@@ -108,17 +128,27 @@ namespace limber
         known.push_back(body.name);
       check_name("body", name, known, section.where("Body"));
 
-      const Body<dim> &body =
-        *std::find_if(problem.bodies.begin(),
-                      problem.bodies.end(),
-                      [&](const Body<dim> &b) { return b.name == name; });
+      return *std::find_if(problem.bodies.begin(),
+                           problem.bodies.end(),
+                           [&](const Body<dim> &b) { return b.name == name; });
+    }
+
+
+
+    /** Nothing for the whole surface. */
+    template <int dim>
+    std::optional<unsigned int>
+    read_face(const Section &section, const Body<dim> &body)
+    {
+      const std::string face = section.required_text("Face");
+      if (face == whole_surface)
+        return std::nullopt;
       if (dynamic_cast<const BlockShape<dim> *>(body.shape.get()) == nullptr)
-        throw InputError("The face load on body " + in_quotes(name) + " in " +
-                         section.where("Body") +
-                         " is refused, because only a box or a block has "
-                         "faces. Give the body 'Shape = block' or use 'Body "
-                         "force' instead.");
-      return body;
+        throw InputError("Body " + in_quotes(body.name) + " has no face " +
+                         in_quotes(face) + " for " + section.where("Face") +
+                         "; only boxes and blocks have faces. Set 'Face = "
+                         "surface', with 'Where = y - 0.9' for a part of it.");
+      return side_index(face);
     }
 
 
@@ -142,11 +172,17 @@ namespace limber
       FaceLoad<dim> load;
       load.name        = name;
       load.body        = body.name;
-      load.face        = side_index(section.required_text("Face"));
+      load.face        = read_face(section, body);
       load.is_pressure = has_pressure;
       load.formula     = read_formula<dim>(section,
                                        has_pressure ? "Pressure" : "Traction",
                                        has_pressure ? 1 : dim,
+                                       read_constants(section),
+                                       body.shape->bounding_box());
+      if (!section.is_empty("Where"))
+        load.where = read_formula<dim>(section,
+                                       "Where",
+                                       1,
                                        read_constants(section),
                                        body.shape->bounding_box());
       return load;

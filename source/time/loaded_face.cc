@@ -9,9 +9,6 @@
 
 namespace limber
 {
-  using dealii::Point;
-  using dealii::Tensor;
-
   namespace
   {
     /** Pieces by the id of their carriers. */
@@ -44,57 +41,6 @@ namespace limber
           for (auto found = begin; found != end; ++found)
             work(p, found->second);
         }
-    }
-
-
-
-    /** The pieces of a face, without carriers; the arm is from the origin. */
-    template <int dim>
-    std::vector<FacePiece<dim>>
-    cut(const Body<dim> &body, const unsigned int face)
-    {
-      const auto &block   = dynamic_cast<const BlockShape<dim> &>(*body.shape);
-      const auto &lattice = body.lattice;
-      const unsigned int normal = face / 2;
-      const bool         upper  = face % 2 == 1;
-
-      std::size_t n = 1;
-      for (unsigned int d = 0; d < dim; ++d)
-        if (d != normal)
-          n *= lattice[d];
-      std::vector<FacePiece<dim>> pieces(n);
-      for (std::size_t i = 0; i < n; ++i)
-        {
-          Point<dim>  xi;
-          std::size_t rest = i;
-          xi[normal]       = upper ? 1 : 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            if (d != normal)
-              {
-                xi[d] = (rest % lattice[d] + 0.5) / lattice[d];
-                rest /= lattice[d];
-              }
-
-          FacePiece<dim> &piece = pieces[i];
-          piece.reference       = block.place(xi);
-          piece.arm             = piece.reference;
-          const auto   slopes   = block.jacobian(xi);
-          unsigned int e        = 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            if (d != normal)
-              {
-                for (unsigned int c = 0; c < dim; ++c)
-                  piece.edges[e][c] = slopes[c][d] / lattice[d];
-                ++e;
-              }
-          Tensor<1, dim> outward;
-          for (unsigned int c = 0; c < dim; ++c)
-            outward[c] = upper ? slopes[c][normal] : -slopes[c][normal];
-          if (piece.area_vector() * outward < 0)
-            piece.edges[0] *= -1;
-          piece.area = piece.area_vector().norm();
-        }
-      return pieces;
     }
 
 
@@ -142,19 +88,26 @@ namespace limber
           }
       return result;
     }
+
+
+
+    template <int dim>
+    std::string
+    nothing_loaded(const FaceLoad<dim> &load)
+    {
+      const std::string nothing = "'Face load " + load.name +
+                                  "' acts on nothing of body '" + load.body +
+                                  "': ";
+      if (!load.where.empty())
+        return nothing + "'Where = " + load.where.expression() +
+               "' is positive nowhere on it. Usually the sign is wrong. Change "
+               "'Where' so that it is positive where the load acts.";
+      return nothing +
+             "all of its surface lies in the sides of the grid, or it is "
+             "thinner than the spacing of its points. Enlarge the grid, or set "
+             "more 'Points per cell edge', for instance 4.";
+    }
   } // namespace
-
-
-
-  template <int dim>
-  Tensor<1, dim>
-  FacePiece<dim>::area_vector() const
-  {
-    if constexpr (dim == 2)
-      return dealii::cross_product_2d(edges[0]);
-    else
-      return dealii::cross_product_3d(edges[0], edges[1]);
-  }
 
 
 
@@ -166,7 +119,9 @@ namespace limber
     , body(body)
     , grid(grid)
   {
-    auto all = cut(body.description, load.face);
+    auto all = pieces_at_start(load, body.description, grid.description);
+    if (all.empty())
+      throw InputError(nothing_loaded(load));
     find_carriers(all);
     adopt(all);
   }
@@ -230,7 +185,7 @@ namespace limber
         if (best[i] == nobody)
           throw InputError("'Face load " + load.name +
                            "' finds no point of body '" + load.body +
-                           "' within one cell of its face. Usually the body "
+                           "' within one cell of its surface. Usually the body "
                            "is thinner than a spacing; enlarge it, or set more "
                            "'Points per cell edge', for instance 4.");
         all[i].carrier = static_cast<std::uint64_t>(best[i][1 + dim]);
@@ -319,8 +274,6 @@ namespace limber
 
 
 
-  template struct FacePiece<2>;
-  template struct FacePiece<3>;
   template class LoadedFace<2>;
   template class LoadedFace<3>;
 } // namespace limber

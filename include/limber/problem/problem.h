@@ -66,18 +66,28 @@ namespace limber
   };
 
   /**
-   * A load on one face of a box or block. A pressure acts along the present
-   * normal on the present area, a function of the present place; a traction
-   * is a force per initial area, a function of the initial place.
+   * A load on one face of a box or block, or on the whole surface of a body of
+   * any shape. A pressure acts along the present normal on the present area, a
+   * function of the present place; a traction is a force per initial area, a
+   * function of the initial place.
    */
   template <int dim>
   struct FaceLoad
   {
-    std::string  name;
-    std::string  body;
-    unsigned int face = 0; // deal.II order: left right bottom top back front
-    bool         is_pressure = true;
+    std::string name;
+    std::string body;
+    // deal.II order: left right bottom top back front; empty: the surface
+    std::optional<unsigned int> face;
+    Formula<dim>                where; // 1 component; empty: everywhere
+    bool                        is_pressure = true;
     Formula<dim> formula; // pressure: 1 component, Pa; traction: dim, Pa
+
+    /** Whether this initial place of the face or surface bears the load. */
+    bool
+    acts_at(const dealii::Point<dim> &place) const
+    {
+      return where.empty() || where.value(place, 0.) > 0;
+    }
   };
 
   template <int dim>
@@ -121,6 +131,24 @@ namespace limber
   {
     dealii::Point<dim>            lower, upper;
     std::array<unsigned int, dim> cells{};
+
+    /** Edge of a cell, m. */
+    double
+    edge(const unsigned int direction) const
+    {
+      return (upper[direction] - lower[direction]) / cells[direction];
+    }
+
+    /** Whether a place is in the box and not in one of its sides. */
+    bool
+    has_inside(const dealii::Point<dim> &place) const
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (const double tolerance = 1e-9 * edge(d);
+            place[d] < lower[d] + tolerance || place[d] > upper[d] - tolerance)
+          return false;
+      return true;
+    }
   };
 
   /** What one side of the box does; sides in deal.II's order. */

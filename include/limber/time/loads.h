@@ -7,7 +7,7 @@
 namespace limber
 {
   /**
-   * Body force formulas and loads on the faces of boxes and blocks. Their
+   * Body force formulas and loads on faces and surfaces of bodies. Their
    * forces are kept apart from the internal ones so that their work is known;
    * a scene without such loads has none of this.
    *

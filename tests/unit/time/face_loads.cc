@@ -4,9 +4,7 @@
 #include <limber/problem/read_parts.h>
 
 #include <gtest/gtest.h>
-#include <support/scene_run.h>
-
-#include <map>
+#include <support/resultant.h>
 
 /**
  * @file Loads on faces of boxes and blocks: force and moment of what the
@@ -59,55 +57,6 @@ namespace
         set Face loads = load
         subsection Face load load
           set Body = panel)";
-  }
-
-
-
-  template <int dim>
-  Point<dim>
-  place_of_node(const CellGeometry<dim> &cell, const unsigned int i)
-  {
-    Point<dim> place;
-    for (int d = 0; d < dim; ++d)
-      place[d] = cell.origin[d] + (i >> d & 1 ? 1 / cell.inverse_edge[d] : 0);
-    return place;
-  }
-
-
-
-  /** Force, and moment about the origin, of what the nodes have got. */
-  template <int dim>
-  struct Resultant
-  {
-    Tensor<1, dim> force;
-    Tensor<2, dim> moment; // sum of x_i (x) f_i
-
-    Resultant() = default;
-
-    Resultant(SceneRun<dim> &run, ExternalLoads<dim> &loads)
-    {
-      loads.add(run.nodes, /*time=*/0);
-      std::map<std::uint32_t, Point<dim>> places;
-      for (const CellGeometry<dim> &cell : run.grid.geometry)
-        for (unsigned int i = 0; i < cell.node.size(); ++i)
-          places[cell.node[i] / NodeLayout<dim>::stride] =
-            place_of_node(cell, i);
-      for (const std::uint32_t node : run.nodes.active_nodes())
-        {
-          force += loads.on_node(node);
-          moment += outer_product(places.at(node), loads.on_node(node));
-        }
-    }
-  };
-
-
-
-  template <int dim>
-  Resultant<dim>
-  on_nodes(SceneRun<dim> &run)
-  {
-    ExternalLoads<dim> loads(run.problem, run.grid, run.bodies);
-    return Resultant<dim>(run, loads);
   }
 
 
@@ -199,7 +148,7 @@ TYPED_TEST(FaceLoads, HaveTheForceAndTheMomentOfTheirFormula)
         };
 
         SceneRun<dim>        pressed     = on_grid(8, "set Pressure = 2.5");
-        const Resultant<dim> pressure    = on_nodes(pressed),
+        const Resultant<dim> pressure    = Resultant<dim>(pressed),
                              of_pressure = exact(pressed,
                                                  face,
                                                  [](const Point<dim> &,
@@ -214,8 +163,8 @@ TYPED_TEST(FaceLoads, HaveTheForceAndTheMomentOfTheirFormula)
         const auto miss = [&](const unsigned int n) {
           SceneRun<dim> run =
             on_grid(n, "set Traction = " + vector_formula(dim, "x; 3 - 0.1*y"));
-          const Resultant<dim> result = on_nodes(run),
-                               wanted = exact(run, face, linear_traction<dim>);
+          const Resultant<dim> result(run),
+            wanted = exact(run, face, linear_traction<dim>);
           return std::make_pair((result.force - wanted.force).norm() /
                                   wanted.force.norm(),
                                 (result.moment - wanted.moment).norm() /
@@ -237,8 +186,7 @@ TYPED_TEST(FaceLoads, HaveTheForceAndTheMomentOfTheirFormula)
 // stays what it was, on its initial place.
 TYPED_TEST(FaceLoads, PressureFollowsTheFaceAndTractionDoesNot)
 {
-  constexpr int dim = TypeParam::value;
-  using Layout      = NodeLayout<dim>;
+  constexpr int  dim = TypeParam::value;
   Tensor<2, dim> gradient;
   for (int d = 0; d < dim; ++d)
     for (int e = 0; e < dim; ++e)
@@ -253,15 +201,7 @@ TYPED_TEST(FaceLoads, PressureFollowsTheFaceAndTractionDoesNot)
       ExternalLoads<dim> loads(run.problem, run.grid, run.bodies);
       const auto         before = Resultant<dim>(run, loads).force;
 
-      for (const unsigned int slot : {Layout::velocity, Layout::remapped})
-        for (const CellGeometry<dim> &cell : run.grid.geometry)
-          for (unsigned int i = 0; i < cell.node.size(); ++i)
-            {
-              const auto v = gradient * place_of_node(cell, i);
-              for (int d = 0; d < dim; ++d)
-                run.nodes.view().nodes[cell.node[i] + slot + d] =
-                  (slot == Layout::remapped ? 2 : 1) * v[d];
-            }
+      set_nodal_velocity(run, gradient);
       const double         dt = 0.1;
       const Tensor<2, dim> one(dealii::unit_symmetric_tensor<dim>());
       Tensor<2, dim>       F = one;

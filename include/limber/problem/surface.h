@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_surface_h
+#define limber_problem_surface_h
+
+#include <limber/problem/shapes.h>
+
+#include <functional>
+
+/** @file The surface of any shape, in small plane parts. */
+namespace limber
+{
+  /**
+   * A line segment in two dimensions, a triangle in three. Seen from outside
+   * the shape, triangles run counterclockwise; segments have it on their left.
+   */
+  template <int dim>
+  using Facet = std::array<dealii::Point<dim>, dim>;
+
+
+
+  /** What a place is asked for: whether it is in a shape, or in a part. */
+  template <int dim>
+  using Region = std::function<bool(const dealii::Point<dim> &)>;
+
+
+
+  /**
+   * The surface of the part of a shape inside @p box, closed: marching squares
+   * and cubes on a lattice that divides the common box of the two into parts
+   * not larger than @p spacing (m, by direction). Corners of facets lie on the
+   * surface to round-off, so smooth surfaces have errors of second order.
+   * Sharp edges are cut off within a part of the lattice, unless they lie in
+   * the sides of the common box, where lattice and shape fit. What is thinner
+   * than a part may be missed.
+   *
+   * Nothing but Shape::contains() is asked for, so every shape will do.
+   */
+  template <int dim>
+  std::vector<Facet<dim>>
+  surface(const Shape<dim>              &shape,
+          const Corners<dim>            &box,
+          const std::array<double, dim> &spacing);
+
+
+
+  /** The parts of facets in a region; those that its border crosses are cut. */
+  template <int dim>
+  std::vector<Facet<dim>>
+  part_in(const Region<dim> &region, const std::vector<Facet<dim>> &facets);
+} // namespace limber
+
+#endif

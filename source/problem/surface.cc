@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/problem/surface.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  using dealii::Point;
+
+  namespace
+  {
+    /**
+     * Where the way from a place inside to one outside leaves the region; the
+     * same to the last bit for all who go that way.
+     */
+    template <int dim>
+    Point<dim>
+    crossing(const Region<dim> &region,
+             const Point<dim>  &inside,
+             const Point<dim>  &outside)
+    {
+      double in = 0, out = 1;
+      for (unsigned int n = 0; n < 50; ++n)
+        {
+          const double middle = 0.5 * (in + out);
+          (region(inside + middle * (outside - inside)) ? in : out) = middle;
+        }
+      return inside + in * (outside - inside);
+    }
+
+
+
+    template <int dim>
+    void
+    add_polygon(const std::vector<Point<dim>> &corners,
+                std::vector<Facet<dim>>       &facets)
+    {
+      if constexpr (dim == 2)
+        facets.push_back({corners[0], corners[1]});
+      else
+        for (unsigned int i = 2; i < corners.size(); ++i)
+          facets.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+
+
+
+    /** A part of the lattice; corners are counted in deal.II's order. */
+    template <int dim>
+    struct Part
+    {
+      static constexpr unsigned int n_corners = 1 << dim;
+
+      std::array<Point<dim>, n_corners> corner;
+      std::array<bool, n_corners>       is_inside;
+    };
+
+
+
+    /**
+     * A side of a part, or the part itself in two dimensions: its corners,
+     * counterclockwise as seen from within the part.
+     */
+    using Square = std::array<unsigned int, 4>;
+
+    template <int dim>
+    std::vector<Square>
+    squares()
+    {
+      if constexpr (dim == 2)
+        return {{0, 1, 3, 2}};
+      else
+        {
+          std::vector<Square> result;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const unsigned int e = 1 << (d + 1) % dim, f = 1 << (d + 2) % dim;
+              const unsigned int up = 1 << d;
+              result.push_back({0, e, e + f, f});
+              result.push_back({up, up + f, up + e + f, up + e});
+            }
+          return result;
+        }
+    }
+
+
+
+    /** Two corners of a part, one inside and one outside. */
+    using Edge = std::pair<unsigned int, unsigned int>;
+
+
+
+    /**
+     * The surface leaves a square over edges that go, counterclockwise, from
+     * inside to outside and comes back over those that go the other way. Call
+     * @p work with both, for each line in which it crosses the square.
+     */
+    template <int dim, class Work>
+    void
+    for_each_line(const Region<dim> &region,
+                  const Part<dim>   &part,
+                  const Square      &square,
+                  const Work        &work)
+    {
+      const auto inside = [&](const unsigned int i) {
+        return part.is_inside[square[i % 4]];
+      };
+      // Where two opposite corners are inside, the centre tells whether they
+      // hang together.
+      const bool is_ambiguous = inside(0) == inside(2) &&
+                                inside(1) == inside(3) &&
+                                inside(0) != inside(1);
+      const bool is_joined =
+        !is_ambiguous ||
+        region(part.corner[square[0]] +
+               0.5 * (part.corner[square[2]] - part.corner[square[0]]));
+      for (unsigned int i = 0; i < 4; ++i)
+        if (inside(i) && !inside(i + 1))
+          {
+            unsigned int j = i;
+            do
+              j += is_joined ? 1 : 3;
+            while (inside(j) || !inside(j + 1));
+            work(Edge(square[i], square[(i + 1) % 4]),
+                 Edge(square[(j + 1) % 4], square[j % 4]));
+          }
+    }
+
+
+
+    /** The facets in one part of the lattice. */
+    template <int dim>
+    void
+    add_facets(const Region<dim>       &region,
+               const Part<dim>         &part,
+               std::vector<Facet<dim>> &facets)
+    {
+      static const std::vector<Square> all_squares = squares<dim>();
+      const auto                       place       = [&](const Edge &edge) {
+        return crossing<dim>(region,
+                             part.corner[edge.first],
+                             part.corner[edge.second]);
+      };
+
+      // In three dimensions the lines on the sides join to closed polygons.
+      std::vector<std::pair<Edge, Edge>> lines;
+      for (const Square &square : all_squares)
+        for_each_line<dim>(region,
+                           part,
+                           square,
+                           [&](const Edge &from, const Edge &to) {
+                             lines.emplace_back(from, to);
+                           });
+      while (!lines.empty())
+        {
+          auto [start, end] = lines.back();
+          lines.pop_back();
+          std::vector<Point<dim>> polygon = {place(start)};
+          if (dim == 2)
+            polygon.push_back(place(end));
+          else
+            while (end != start)
+              {
+                polygon.push_back(place(end));
+                const auto next = std::find_if(lines.begin(),
+                                               lines.end(),
+                                               [&end = end](const auto &line) {
+                                                 return line.first == end;
+                                               });
+                end             = next->second;
+                lines.erase(next);
+              }
+          add_polygon<dim>(polygon, facets);
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::vector<Facet<dim>>
+  surface(const Shape<dim>              &shape,
+          const Corners<dim>            &box,
+          const std::array<double, dim> &spacing)
+  {
+    // Nodes of the lattice, in a layer more than fill the common box, so that
+    // the outermost are outside.
+    Corners<dim>                         common = shape.bounding_box();
+    std::array<std::vector<double>, dim> lines;
+    std::size_t                          n_nodes = 1;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        common.first[d]     = std::max(common.first[d], box.first[d]);
+        common.second[d]    = std::min(common.second[d], box.second[d]);
+        const double length = common.second[d] - common.first[d];
+        if (length <= 0)
+          return {};
+        // Decimal fractions need not meet exactly.
+        const int n = std::max(1., std::ceil(length / spacing[d] - 1e-6));
+        for (int i = -1; i <= n + 1; ++i)
+          lines[d].push_back(i == n ? common.second[d] :
+                                      common.first[d] + i * length / n);
+        n_nodes *= lines[d].size();
+      }
+
+    const Region<dim> region = [&](const Point<dim> &place) {
+      for (unsigned int d = 0; d < dim; ++d)
+        if (place[d] < common.first[d] || place[d] > common.second[d])
+          return false;
+      return shape.contains(place);
+    };
+    const auto node = [&](std::size_t i) {
+      Point<dim> place;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          place[d] = lines[d][i % lines[d].size()];
+          i /= lines[d].size();
+        }
+      return place;
+    };
+
+    std::vector<bool> is_inside(n_nodes);
+    for (std::size_t i = 0; i < n_nodes; ++i)
+      is_inside[i] = region(node(i));
+
+    std::vector<Facet<dim>> facets;
+    for (std::size_t i = 0; i < n_nodes; ++i)
+      {
+        std::array<std::size_t, Part<dim>::n_corners> corner;
+        corner.fill(i);
+        bool        is_last = false;
+        std::size_t rest = i, stride = 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            is_last |= rest % lines[d].size() == lines[d].size() - 1;
+            for (unsigned int c = 0; c < corner.size(); ++c)
+              corner[c] += (c >> d & 1) * stride;
+            rest /= lines[d].size();
+            stride *= lines[d].size();
+          }
+        if (is_last || std::all_of(corner.begin(), corner.end(), [&](auto c) {
+              return is_inside[c] == is_inside[i];
+            }))
+          continue;
+        Part<dim> part;
+        for (unsigned int c = 0; c < corner.size(); ++c)
+          {
+            part.corner[c]    = node(corner[c]);
+            part.is_inside[c] = is_inside[corner[c]];
+          }
+        add_facets<dim>(region, part, facets);
+      }
+    return facets;
+  }
+
+
+
+  template <int dim>
+  std::vector<Facet<dim>>
+  part_in(const Region<dim> &region, const std::vector<Facet<dim>> &facets)
+  {
+    std::vector<Facet<dim>> result;
+    for (const Facet<dim> &facet : facets)
+      {
+        std::array<bool, dim> inside;
+        for (unsigned int i = 0; i < dim; ++i)
+          inside[i] = region(facet[i]);
+        std::vector<Point<dim>> polygon;
+        for (unsigned int i = 0; i < dim; ++i)
+          {
+            const unsigned int j = (i + 1) % dim;
+            if (inside[i])
+              polygon.push_back(facet[i]);
+            // A segment has one edge, a triangle three.
+            if (inside[i] != inside[j] && (dim == 3 || i == 0))
+              polygon.push_back(inside[i] ?
+                                  crossing(region, facet[i], facet[j]) :
+                                  crossing(region, facet[j], facet[i]));
+          }
+        if (!polygon.empty())
+          add_polygon<dim>(polygon, result);
+      }
+    return result;
+  }
+
+
+
+  template std::vector<Facet<2>>
+  surface<2>(const Shape<2> &,
+             const Corners<2> &,
+             const std::array<double, 2> &);
+  template std::vector<Facet<3>>
+  surface<3>(const Shape<3> &,
+             const Corners<3> &,
+             const std::array<double, 3> &);
+  template std::vector<Facet<2>>
+  part_in<2>(const Region<2> &, const std::vector<Facet<2>> &);
+  template std::vector<Facet<3>>
+  part_in<3>(const Region<3> &, const std::vector<Facet<3>> &);
+} // namespace limber
