@@ -170,6 +170,46 @@ def manufactured_solution(runner):
     runner.save(figure, "manufactured_solution")
 
 
+def pressurised_ring(runner):
+    """Radial displacement and stress over the radius, against Lame."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
+    a, b, young, nu = 1, 2, 1000, 0.499
+    stress_scale = a**2 / (b**2 - a**2)  # for a pressure of 1 Pa
+    exact_radius = np.linspace(a, b, 100)
+
+    def lame(r):
+        return 1e3 * ((1 + nu) / young * stress_scale *
+                      ((1 - 2 * nu) * r + b**2 / r))
+
+    left.plot(exact_radius, lame(exact_radius), "k-", lw=1, label="Lamé")
+    right.plot(exact_radius, stress_scale * (1 - b**2 / exact_radius**2),
+               "k-", lw=1, label="Lamé")
+    for name in ("assumed strain", "cell", "none"):
+        folder = runner.run("pressurised_ring", "Output/Time interval=2",
+                            "Output/Fields=displacement, stress",
+                            f"Body ring/Locking treatment={name}")
+        data = last_points(folder)
+        displacement = data["displacement"][:, :2]
+        place = data["position"][:, :2] - displacement
+        radius = np.linalg.norm(place, axis=1)
+        normal = place / radius[:, None]
+        radial = 1e3 * (displacement * normal).sum(axis=1)
+        stress = data["stress"].reshape(len(radius), 3, 3)[:, :2, :2]
+        radial_stress = np.einsum("pi,pij,pj->p", normal, stress, normal)
+        exact = lame(radius)
+        error = np.sqrt(((radial - exact)**2).sum() / (exact**2).sum())
+        print(f"pressurised ring, {name}: error of the displacement "
+              f"{100 * error:.2f} %")
+        left.plot(radius, radial, ".", ms=2, label=name)
+        if name != "none":
+            right.plot(radius, radial_stress, ".", ms=2, label=name)
+    left.set(xlabel="r [m]", ylabel="radial displacement [mm]")
+    right.set(xlabel="r [m]", ylabel="radial stress / p")
+    left.legend()
+    right.legend()
+    runner.save(figure, "pressurised_ring")
+
+
 def cantilever_3d(runner):
     figure, axes = plt.subplots(figsize=(8, 4))
     settings = ["Body beam/Neo hookean/Poisson's ratio=0.49",
@@ -198,7 +238,8 @@ def main():
     pictures = sys.argv[2] if len(sys.argv) > 2 else str(
         TOP / "doc/gallery/verification")
     runner = Runner(limber, pictures)
-    for scene in (tank, column, bar, manufactured_solution, cantilever_3d):
+    for scene in (tank, column, bar, manufactured_solution, pressurised_ring,
+                  cantilever_3d):
         scene(runner)
 
 
