@@ -4,9 +4,10 @@ doc/theory/treatments.md.
 
     treatments.py [path of limber] [--quick] [--only="node;hybrid"]
 
-Runs the free soft beam, the cantilever, Cook's membrane, the dam break, the tank and the
-sliding block with every treatment; --quick leaves out the slow beams. Takes
-some 25 minutes on one core; --only takes the treatments that it names.
+Runs the free soft beam, the cantilever, Cook's membrane, the dam break, the
+tank and the sliding block with every treatment; --quick leaves out the slow
+beams. Takes some 25 minutes on one core; --only takes the treatments that it
+names.
 """
 
 import json

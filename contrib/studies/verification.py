@@ -4,7 +4,7 @@ the numbers of doc/gallery/verification.
 
     verification.py [path of limber] [folder for the pictures]
 
-Takes half a minute on one core.
+Takes a minute on one core.
 """
 
 import json

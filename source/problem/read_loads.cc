@@ -86,13 +86,12 @@ namespace limber
                                         for_each_direction(dim, "0", "; ")),
                        "Force per mass b beside gravity, m/s^2.");
     declare_constants(parameters);
-    parameters.declare_list(
-      "Face loads",
-      "",
-      "Face load ",
-      "Names of pressures and tractions on faces or "
-      "surfaces of bodies; each has a section 'Face load NAME' "
-      "within 'Loads'.");
+    parameters.declare_list("Face loads",
+                            "",
+                            "Face load ",
+                            "Names of pressures and tractions on faces or "
+                            "surfaces of bodies; each has a section 'Face "
+                            "load NAME' within 'Loads'.");
     for (const std::string &name : face_loads)
       declare_face_load(parameters, dim, name);
     parameters.leave_subsection();

@@ -107,7 +107,10 @@ namespace limber
     void
     sort_by_cell();
 
-    /** Append the local numbers of the cells that hold points, ascending. */
+    /**
+     * Append the local numbers of the cells that hold points, ascending. All
+     * points have a cell.
+     */
     void
     collect_cells(std::vector<std::uint32_t> &cells) const;
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/cantilever_scene.h>
 #include <support/scene_run.h>
 
 #include <map>
@@ -14,36 +15,7 @@ using namespace limber;
 
 namespace
 {
-  // A cantilever of 8 m x 1 m in its first mode, four cells over the depth
-  const std::string beam           = R"(
-    set Bodies = beam
-    subsection Body beam
-      subsection Box
-        set Lower corner = 0, 2
-        set Upper corner = 8, 3
-      end
-      set Constants = L = 8, b = 1.875104068711961, s = 0.734095513758924, v0 = 1e-4
-      set Initial velocity = 0; v0*0.5*(cosh(b*x/L) - cos(b*x/L) - s*(sinh(b*x/L) - sin(b*x/L)))
-      subsection Linear elastic
-        set Density = 1000
-        set Young's modulus = 1e6
-        set Poisson's ratio = 0.3
-      end
-    end
-    subsection Grid
-      set Upper corner = 9, 5
-      set Cells = 36, 20
-    end
-    subsection Boundaries
-      set left = no slip
-      set right = free
-      set bottom = free
-      set top = free
-    end
-    subsection Method
-      set Stress update = last, remapped
-    end)";
-  constexpr double  quarter_period = 3; // s, about
+  constexpr double quarter_period = 3; // s, about
 
 
 
@@ -59,7 +31,10 @@ namespace
   ShearStress
   shear_stress(const std::string &treatment)
   {
-    SceneRun<2> run(beam, {"Body beam/Locking treatment=" + treatment});
+    SceneRun<2> run(cantilever_scene,
+                    {"Body beam/Locking treatment=" + treatment,
+                     "Body beam/Constants=v0 = 1e-4",
+                     "Method/Stress update=last, remapped"});
     run.advance_to(quarter_period);
     const PointView<2> points = run.points();
 

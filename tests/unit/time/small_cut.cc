@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 
 #include <gtest/gtest.h>
+#include <support/cantilever_scene.h>
 #include <support/scene_run.h>
 
 /**
@@ -14,33 +15,6 @@ using namespace limber;
 
 namespace
 {
-  const std::string cantilever = R"(
-    set Bodies = beam
-    subsection Body beam
-      subsection Box
-        set Lower corner = 0, 2
-        set Upper corner = 8, 3
-      end
-      set Constants = L = 8, b = 1.875104068711961, s = 0.734095513758924
-      set Initial velocity = 0; 0.005*(cosh(b*x/L) - cos(b*x/L))"
-                                 R"( - s*(sinh(b*x/L) - sin(b*x/L)))
-      subsection Linear elastic
-        set Density = 1000
-        set Young's modulus = 1e6
-      end
-      set Locking treatment = none
-    end
-    subsection Grid
-      set Upper corner = 9, 5
-      set Cells = 36, 20
-    end
-    subsection Boundaries
-      set left = no slip
-      set right = free
-      set bottom = free
-      set top = free
-    end)";
-
   constexpr double cell = 0.25, xi = 1e-4;
 
 
@@ -51,8 +25,9 @@ namespace
                        const double       courant_number,
                        const double       end_time)
   {
-    SceneRun<2> run(cantilever,
-                    {"Method/Stress update=" + order,
+    SceneRun<2> run(cantilever_scene,
+                    {"Body beam/Locking treatment=none",
+                     "Method/Stress update=" + order,
                      "Method/Courant number=" + digits(courant_number)});
     // rows of points at 1/4 and 3/4 of a cell
     run.translate(dealii::Tensor<1, 2>({0., (0.25 + xi) * cell}));
