@@ -38,70 +38,73 @@ namespace limber
 
       Number speed_squared{}, displacement{}, removed{};
 
-      for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim> &cell = grid.cells[batch.cell];
-        // velocity increment and, right behind it, the new velocity
-        const NodalCoefficients<dim, Layout::increment, 2 * dim> nodal(
-          cell, grid.nodes);
+      for_each_batch(
+        points, [&](const CellBatch &batch) __attribute__((always_inline)) {
+          const CellGeometry<dim> &cell = grid.cells[batch.cell];
+          // velocity increment and, right behind it, the new velocity
+          const NodalCoefficients<dim, Layout::increment, 2 * dim> nodal(
+            cell, grid.nodes);
 
-        for_each_pack<dim>(
-          batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            const auto xi = lanes.natural(points, cell);
+          for_each_pack<dim>(
+            batch, [&](const auto &lanes) __attribute__((always_inline)) {
+              const auto xi = lanes.natural(points, cell);
 
-            Number                                   squared{}, kept_squared{};
-            [[maybe_unused]] std::array<Number, dim> shift;
-            for (int d = 0; d < dim; ++d)
-              {
-                const auto   grid_velocity = nodal.component(dim + d);
-                const Number flip =
-                  lanes.load(points.velocity[d]) +
-                  Kernel::template value<Number>(nodal.component(d), xi);
-                Number velocity = flip;
-                if constexpr (affine)
-                  {
-                    velocity =
+              Number squared{}, kept_squared{};
+              [[maybe_unused]] std::array<Number, dim> shift;
+              for (int d = 0; d < dim; ++d)
+                {
+                  const auto   grid_velocity = nodal.component(dim + d);
+                  const Number flip =
+                    lanes.load(points.velocity[d]) +
+                    Kernel::template value<Number>(nodal.component(d), xi);
+                  Number velocity = flip;
+                  if constexpr (affine)
+                    {
+                      velocity =
+                        Kernel::template value<Number>(grid_velocity, xi);
+                      const auto gradient =
+                        Kernel::template gradient<Number>(grid_velocity, xi);
+                      for (int e = 0; e < dim; ++e)
+                        lanes.store(gradient[e] * cell.inverse_edge[e],
+                                    points.affine[d * dim + e]);
+                    }
+                  else if (what.flip_share != 1.)
+                    velocity +=
+                      (1. - what.flip_share) *
+                      (Kernel::template value<Number>(grid_velocity, xi) -
+                       flip);
+                  lanes.store(velocity, points.velocity[d]);
+                  kept_squared += flip * flip;
+                  squared += velocity * velocity;
+                  if constexpr (moves)
+                    shift[d] =
+                      what.move *
                       Kernel::template value<Number>(grid_velocity, xi);
-                    const auto gradient =
-                      Kernel::template gradient<Number>(grid_velocity, xi);
-                    for (int e = 0; e < dim; ++e)
-                      lanes.store(gradient[e] * cell.inverse_edge[e],
-                                  points.affine[d * dim + e]);
-                  }
-                else if (what.flip_share != 1.)
-                  velocity +=
-                    (1. - what.flip_share) *
-                    (Kernel::template value<Number>(grid_velocity, xi) - flip);
-                lanes.store(velocity, points.velocity[d]);
-                kept_squared += flip * flip;
-                squared += velocity * velocity;
-                if constexpr (moves)
-                  shift[d] = what.move *
-                             Kernel::template value<Number>(grid_velocity, xi);
-              }
-            speed_squared = larger(speed_squared, lanes.only_active(squared));
-            if (affine || what.flip_share != 1.)
-              removed += lanes.only_active(lanes.load(points.mass)) *
-                         (kept_squared - squared);
-            if constexpr (moves)
-              {
-                const auto moved =
-                  move_points<dim>(points, grid, batch.cell, lanes, shift);
-                displacement = larger(displacement, moved.displacement);
-                if (sums && moved.inside)
-                  CellGatherer<dim>(*sums).add(batch.cell,
-                                               moved.xi,
-                                               lanes.only_active(
-                                                 lanes.load(points.mass)),
-                                               lanes.load(points.volumetric));
-                else if (sums)
-                  CellGatherer<dim>(*sums).add_one_by_one(
-                    points, grid, lanes.first, lanes.first + lanes.n);
-              }
-          });
+                }
+              speed_squared = larger(speed_squared, lanes.only_active(squared));
+              if (affine || what.flip_share != 1.)
+                removed += lanes.only_active(lanes.load(points.mass)) *
+                           (kept_squared - squared);
+              if constexpr (moves)
+                {
+                  const auto moved =
+                    move_points<dim>(points, grid, batch.cell, lanes, shift);
+                  displacement = larger(displacement, moved.displacement);
+                  if (sums && moved.inside)
+                    CellGatherer<dim>(*sums).add(batch.cell,
+                                                 moved.xi,
+                                                 lanes.only_active(
+                                                   lanes.load(points.mass)),
+                                                 lanes.load(points.volumetric));
+                  else if (sums)
+                    CellGatherer<dim>(*sums).add_one_by_one(
+                      points, grid, lanes.first, lanes.first + lanes.n);
+                }
+            });
 
-        if constexpr (remap)
-          remap_momentum<dim, affine>(points, batch, cell, grid.nodes);
-      });
+          if constexpr (remap)
+            remap_momentum<dim, affine>(points, batch, cell, grid.nodes);
+        });
       return {maximum(speed_squared),
               maximum(displacement),
               0.5 * sum(removed)};

@@ -241,89 +241,90 @@ namespace limber
         what.relaxation > 0 || what.shift != nullptr;
       Number waves{}, viscous{}, removed{}, displacement{};
 
-      for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim> &cell = grid.cells[batch.cell];
-        // new velocity and, right behind it, the re-mapped one
-        const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
-          cell, grid.nodes);
+      for_each_batch(
+        points, [&](const CellBatch &batch) __attribute__((always_inline)) {
+          const CellGeometry<dim> &cell = grid.cells[batch.cell];
+          // new velocity and, right behind it, the re-mapped one
+          const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
+            cell, grid.nodes);
 
-        const auto                    velocity = nodal.field(strained);
-        const CellMeans<dim>          means(sums, batch.cell);
-        [[maybe_unused]] const double shift =
-          what.shift ? what.shift_share * what.shift[batch.cell] : 0;
-        const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
-        const StrainOperator<dim, kind, std::decay_t<decltype(velocity)>>
-          strain(
-            velocity, cell, means, divergence, strain_projection, what.step);
+          const auto                    velocity = nodal.field(strained);
+          const CellMeans<dim>          means(sums, batch.cell);
+          [[maybe_unused]] const double shift =
+            what.shift ? what.shift_share * what.shift[batch.cell] : 0;
+          const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
+          const StrainOperator<dim, kind, std::decay_t<decltype(velocity)>>
+            strain(
+              velocity, cell, means, divergence, strain_projection, what.step);
 
-        for_each_pack<dim>(
-          batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            const auto xi = lanes.natural(points, cell);
+          for_each_pack<dim>(
+            batch, [&](const auto &lanes) __attribute__((always_inline)) {
+              const auto xi = lanes.natural(points, cell);
 
-            MotionIncrement<dim, Number> motion;
-            motion.step = what.step;
-            strain.template evaluate<Number, Law::uses_spin>(xi, motion);
+              MotionIncrement<dim, Number> motion;
+              motion.step = what.step;
+              strain.template evaluate<Number, Law::uses_spin>(xi, motion);
 
-            auto state = load_state<Number>(points, [&](const double *a) {
-              return lanes.load(a);
-            });
-            // zero in lanes beyond the batch
-            [[maybe_unused]] const Number mass =
-              lanes.only_active(lanes.load(points.mass));
+              auto state = load_state<Number>(points, [&](const double *a) {
+                return lanes.load(a);
+              });
+              // zero in lanes beyond the batch
+              [[maybe_unused]] const Number mass =
+                lanes.only_active(lanes.load(points.mass));
 
-            if constexpr (projected)
-              if (changes_history)
-                {
-                  Number      &variable = volumetric_variable(state);
-                  const Number before   = law.volumetric_energy(variable);
-                  variable +=
-                    what.relaxation * (means.volumetric() - variable) + shift;
-                  removed += mass * inverse_density *
-                             (before - law.volumetric_energy(variable));
-                }
-
-            const auto dissipation = law.template update<dim>(motion, state);
-            if constexpr (Law::dissipates)
-              {
-                viscous += mass * inverse_density * dissipation.viscous;
-                removed += mass * inverse_density * dissipation.cutoff;
-              }
-            store_state(points, state, [&](const Number &value, double *a) {
-              lanes.store(value, a);
-            });
-            if (measure_waves)
-              waves = larger(waves,
-                             lanes.only_active(
-                               law.template wave_speed_squared<dim>(state)));
-
-            if constexpr (moves)
-              {
-                std::array<Number, dim> shift;
-                for (int d = 0; d < dim; ++d)
-                  shift[d] =
-                    what.move *
-                    Kernel::template value<Number>(nodal.component(d), xi);
-                const auto moved =
-                  move_points<dim>(points, grid, batch.cell, lanes, shift);
-                displacement = larger(displacement, moved.displacement);
-                // without means over cells the sums may still be wanted
-                if (needs_cell_means(kind) || (projected && sums))
+              if constexpr (projected)
+                if (changes_history)
                   {
-                    const CellGatherer<dim> gatherer(*sums);
-                    if (moved.inside)
-                      gatherer.add(batch.cell,
-                                   moved.xi,
-                                   mass,
-                                   volumetric_variable(state));
-                    else
-                      gatherer.add_one_by_one(points,
-                                              grid,
-                                              lanes.first,
-                                              lanes.first + lanes.n);
+                    Number      &variable = volumetric_variable(state);
+                    const Number before   = law.volumetric_energy(variable);
+                    variable +=
+                      what.relaxation * (means.volumetric() - variable) + shift;
+                    removed += mass * inverse_density *
+                               (before - law.volumetric_energy(variable));
                   }
-              }
-          });
-      });
+
+              const auto dissipation = law.template update<dim>(motion, state);
+              if constexpr (Law::dissipates)
+                {
+                  viscous += mass * inverse_density * dissipation.viscous;
+                  removed += mass * inverse_density * dissipation.cutoff;
+                }
+              store_state(points, state, [&](const Number &value, double *a) {
+                lanes.store(value, a);
+              });
+              if (measure_waves)
+                waves = larger(waves,
+                               lanes.only_active(
+                                 law.template wave_speed_squared<dim>(state)));
+
+              if constexpr (moves)
+                {
+                  std::array<Number, dim> shift;
+                  for (int d = 0; d < dim; ++d)
+                    shift[d] =
+                      what.move *
+                      Kernel::template value<Number>(nodal.component(d), xi);
+                  const auto moved =
+                    move_points<dim>(points, grid, batch.cell, lanes, shift);
+                  displacement = larger(displacement, moved.displacement);
+                  // without means over cells the sums may still be wanted
+                  if (needs_cell_means(kind) || (projected && sums))
+                    {
+                      const CellGatherer<dim> gatherer(*sums);
+                      if (moved.inside)
+                        gatherer.add(batch.cell,
+                                     moved.xi,
+                                     mass,
+                                     volumetric_variable(state));
+                      else
+                        gatherer.add_one_by_one(points,
+                                                grid,
+                                                lanes.first,
+                                                lanes.first + lanes.n);
+                    }
+                }
+            });
+        });
 
       StressSummary result;
       result.wave_speed_squared =
