@@ -107,5 +107,28 @@ def series(folder):
     return np.array(times), [files[time] for time in times]
 
 
+def is_reference(folder):
+    """Whether 'limber reference' has written the folder."""
+    return (Path(folder) / "nodes").is_dir()
+
+
+def nodes(folder, wanted):
+    """The nodes of a reference at the time nearest to the wanted one:
+    (time, {'position': ..., and each scalar array by its name})."""
+    import h5py  # only references need it
+
+    best = None
+    for path in sorted((Path(folder) / "nodes").glob("*.h5")):
+        with h5py.File(path) as file:
+            fields = {name: values[()] for name, values in file.items()}
+        time = float(fields.pop("time")[0])
+        if best is None or abs(time - wanted) < abs(best[0] - wanted):
+            fields["position"] = np.stack(
+                [fields[f"initial place {d}"] + fields[f"displacement {d}"]
+                 for d in "xyz" if f"displacement {d}" in fields], axis=1)
+            best = time, fields
+    return best
+
+
 def magnitude(vectors):
     return np.sqrt((vectors**2).sum(axis=1))
