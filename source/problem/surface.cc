@@ -37,10 +37,10 @@ namespace limber
                 std::vector<Facet<dim>>       &facets)
     {
       if constexpr (dim == 2)
-        facets.push_back({corners[0], corners[1]});
+        facets.push_back({{corners[0], corners[1]}});
       else
         for (unsigned int i = 2; i < corners.size(); ++i)
-          facets.push_back({corners[0], corners[i - 1], corners[i]});
+          facets.push_back({{corners[0], corners[i - 1], corners[i]}});
     }
 
 
@@ -68,7 +68,7 @@ namespace limber
     squares()
     {
       if constexpr (dim == 2)
-        return {{0, 1, 3, 2}};
+        return {{{0, 1, 3, 2}}};
       else
         {
           std::vector<Square> result;
@@ -76,8 +76,8 @@ namespace limber
             {
               const unsigned int e = 1 << (d + 1) % dim, f = 1 << (d + 2) % dim;
               const unsigned int up = 1 << d;
-              result.push_back({0, e, e + f, f});
-              result.push_back({up, up + f, up + e + f, up + e});
+              result.push_back({{0, e, e + f, f}});
+              result.push_back({{up, up + f, up + e + f, up + e}});
             }
           return result;
         }

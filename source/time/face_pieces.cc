@@ -88,15 +88,15 @@ namespace limber
     {
       const auto &edges = piece.edges;
       if constexpr (dim == 2)
-        facets.push_back(
-          {piece.reference - 0.5 * edges[0], piece.reference + 0.5 * edges[0]});
+        facets.push_back({{piece.reference - 0.5 * edges[0],
+                           piece.reference + 0.5 * edges[0]}});
       else
         {
           const Point<dim> corner =
             piece.reference - 0.5 * (edges[0] + edges[1]);
           const Point<dim> opposite = corner + edges[0] + edges[1];
-          facets.push_back({corner, corner + edges[0], opposite});
-          facets.push_back({corner, opposite, corner + edges[1]});
+          facets.push_back({{corner, corner + edges[0], opposite}});
+          facets.push_back({{corner, opposite, corner + edges[1]}});
         }
     }
   } // namespace

@@ -48,8 +48,8 @@ namespace limber
         if (!(k > 0))
           continue;
 
-        std::array<Nodes, dim> velocity{};
-        double                 smallest = 1e300;
+        std::array<std::array<double, n_nodes>, dim> velocity;
+        double                                       smallest = 1e300;
         for (int a = 0; a < n_nodes; ++a)
           {
             const double *const record = grid.nodes + cell.node[a];
@@ -71,7 +71,9 @@ namespace limber
               if (mode >> d & 1)
                 signs *= Kernel::sign(d);
             for (int d = 0; d < dim; ++d)
-              force[d] -= (k / n_nodes * sum(signs * velocity[d])) * signs;
+              force[d] -=
+                (k / n_nodes * sum(signs * load<Nodes>(velocity[d].data()))) *
+                signs;
           }
         add_to_nodes<dim, Layout::remapped>(cell, force, grid.nodes);
       }
