@@ -108,7 +108,9 @@ def draw_panel(axis, rows, measure, meta):
         if meta["closed forms"]:
             style.update(linestyle="none", fillstyle="none",
                          markersize=4 + 2 * index)
-        draw_line(axis, own, measure, meta, style)
+        if not draw_line(axis, own, measure, meta, style) and any(
+                row["outcome"] != "finished" for row in own):
+            axis.plot([], [], "x", color=style["color"], label=method)
         draw_failed(axis, own, meta, style["color"])
     draw_closed_forms(axis, methods, meta)
     if meta["logarithmic"] in ("both", "horizontal"):
