@@ -49,8 +49,9 @@ namespace limber
                        "0",
                        admissible::non_negative_number("1e-3"),
                        "dt, s; 0: 'explicit' takes 0.8 of the longest stable "
-                       "one, 'implicit' that in which shear waves cross half "
-                       "an element.");
+                       "one, 'implicit' that in which shear waves cross the "
+                       "smallest element. Loads and sides that move faster "
+                       "than the body vibrates need a shorter one.");
     parameters.declare("Load steps",
                        "1",
                        admissible::positive_integer("10"),
