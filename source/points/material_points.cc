@@ -347,6 +347,10 @@ namespace limber
   void
   MaterialPoints<dim>::hand_over()
   {
+    if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) == 1)
+      return;
+
+    ++n_reorderings;
     // Behind each record stands the receiver's number of the cell, so that it
     // need not search.
     const std::size_t                           stride = record_size() + 1;
@@ -383,21 +387,11 @@ namespace limber
 
   template <int dim>
   void
-  MaterialPoints<dim>::synchronise()
-  {
-    if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
-      hand_over();
-    sort_by_cell();
-  }
-
-
-
-  template <int dim>
-  void
   MaterialPoints<dim>::prepare_mesh_change()
   {
     // Points must be in their cells before these are split or moved.
-    synchronise();
+    hand_over();
+    sort_by_cell();
     carrier = std::make_unique<dealii::Particles::ParticleHandler<dim>>(
       grid.triangulation, grid.mapping, record_size());
     carrier->reserve(size());

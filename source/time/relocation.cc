@@ -161,7 +161,7 @@ namespace limber
   ExplicitIntegrator<dim>::exchange_points()
   {
     for (auto &body : bodies)
-      body->points.synchronise();
+      body->points.hand_over();
     loads.exchange_pieces();
     travelled = 0;
     sort_points(/*agree=*/true);

@@ -40,8 +40,8 @@ namespace limber
 
   /**
    * The points of one body: one array per quantity, on which the sweeps work.
-   * Points that change cell only get a new cell number; synchronise() hands
-   * those over that have entered cells of other ranks. deal.II's
+   * Points that change cell only get a new cell number; hand_over() gives those
+   * that have entered cells of other ranks to these. deal.II's
    * ParticleHandler takes all of them through a change of the mesh and is
    * empty otherwise.
    */
@@ -119,12 +119,12 @@ namespace limber
     remove_lost();
 
     /**
-     * Hand the points in ghost cells over to the ranks that own these, and
-     * sort. All points have a cell: none may have gone beyond the ghost layer
-     * since the last time. Collective.
+     * Give the points in ghost cells to the ranks that own these; what comes
+     * stands last. All points have a cell: none may have gone beyond the ghost
+     * layer since the last time. Collective.
      */
     void
-    synchronise();
+    hand_over();
 
     /**
      * Before and after the mesh is changed or partitioned anew; in between
@@ -175,8 +175,6 @@ namespace limber
     resize(std::size_t n);
     void
     move(std::size_t from, std::size_t to);
-    void
-    hand_over();
 
     // A point as consecutive numbers: its fields, then its id.
     std::size_t

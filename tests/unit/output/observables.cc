@@ -88,10 +88,7 @@ namespace limber::test
         EXPECT_NEAR(values[2], -0.4375, 1e-14);
         EXPECT_NEAR(values[3], 1e5 / J, 1e-8);
         EXPECT_NEAR(values[4], 1e5 / J, 1e-8);
-        if (round == 0)
-          run.points().synchronise();
-        else
-          run.points().sort_by_cell();
+        run.points().sort_by_cell();
       }
   }
 
