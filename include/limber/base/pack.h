@@ -64,6 +64,20 @@ namespace limber
 
 
 
+  /** The lanes of a wide pack from @p first on that fill a narrow one. */
+  template <class Narrow, class Wide>
+  inline Narrow
+  some_lanes(const Wide &pack, const int first)
+  {
+    Narrow to;
+    std::memcpy(&to,
+                reinterpret_cast<const char *>(&pack) + first * sizeof(double),
+                sizeof(to));
+    return to;
+  }
+
+
+
   /** All lanes equal to one value. */
   template <class Number>
   inline Number
@@ -245,7 +259,8 @@ namespace limber
   transpose(std::array<Pack<width>, width> &a)
   {
     internal::exchange_blocks<width, 1>(a);
-    internal::exchange_blocks<width, 2>(a);
+    if constexpr (width >= 4)
+      internal::exchange_blocks<width, 2>(a);
     if constexpr (width == 8)
       internal::exchange_blocks<width, 4>(a);
   }

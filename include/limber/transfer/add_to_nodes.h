@@ -19,28 +19,36 @@ namespace limber
                const std::array<Pack<(1 << dim)>, n_values> &values,
                double *const                                 nodes)
   {
-    constexpr unsigned int width = 1 << dim;
+    // Two values alone: the next batch reads velocities that stand next to
+    // re-mapped momenta in the records of the same nodes, and would wait until
+    // what overlaps them has left for the cache. In three dimensions nothing
+    // waits for that.
+    constexpr unsigned int n_nodes = 1 << dim;
+    constexpr unsigned int width   = n_values == 2 ? 2 : n_nodes;
     static_assert(dim == 2 || n_values <= width, "one transposition in 3d");
-    using Nodes = Pack<width>;
+    using Lanes = Pack<width>;
 
-    // An addition as wide as the node count stays within the record.
+    // It has to stay within the record.
     constexpr unsigned int n_first = n_values < width ? n_values : width;
     constexpr unsigned int shift   = first + width <= NodeLayout<dim>::stride ?
                                        0 :
                                        first + width - NodeLayout<dim>::stride;
     static_assert(n_first + shift <= width, "the record is too short");
 
-    std::array<Nodes, width> block{};
-    for (unsigned int k = 0; k < n_first; ++k)
-      block[k + shift] = values[k];
-    transpose<width>(block);
-    for (unsigned int i = 0; i < width; ++i)
+    for (unsigned int begin = 0; begin < n_nodes; begin += width)
       {
-        double *const record = nodes + cell.node[i] + first - shift;
-        store(load<Nodes>(record) + block[i], record);
+        std::array<Lanes, width> block{};
+        for (unsigned int k = 0; k < n_first; ++k)
+          block[k + shift] = some_lanes<Lanes>(values[k], begin);
+        transpose<width>(block);
+        for (unsigned int i = 0; i < width; ++i)
+          {
+            double *const record = nodes + cell.node[begin + i] + first - shift;
+            store(load<Lanes>(record) + block[i], record);
+          }
       }
     for (unsigned int k = n_first; k < n_values; ++k)
-      for (unsigned int i = 0; i < width; ++i)
+      for (unsigned int i = 0; i < n_nodes; ++i)
         nodes[cell.node[i] + first + k] += values[k][i];
   }
 } // namespace limber
