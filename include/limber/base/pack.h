@@ -138,7 +138,16 @@ namespace limber
   inline Number
   magnitude(const Number &a)
   {
-    return a < 0. ? -a : a;
+    using Bits =
+      std::conditional_t<pack_width<Number> == 1,
+                         std::int64_t,
+                         typename internal::PackType<pack_width<Number>>::mask>;
+    Bits bits;
+    std::memcpy(&bits, &a, sizeof(a));
+    bits &= 0x7fffffffffffffffLL;
+    Number result;
+    std::memcpy(&result, &bits, sizeof(a));
+    return result;
   }
 
 

@@ -143,8 +143,7 @@ namespace limber
     using Number                      = PointPack<dim>;
     const CellGeometry<dim> &geometry = grid.cells[cell];
     MovedPack<dim>           moved;
-    moved.displacement = Number{};
-    auto inside        = Number{} == Number{};
+    auto                     inside = Number{} == Number{};
     for (int d = 0; d < dim; ++d)
       {
         const Number position = lanes.load(points.position[d]) + shift[d];
@@ -152,10 +151,9 @@ namespace limber
         const Number xi =
           (position - geometry.origin[d]) * geometry.inverse_edge[d];
         inside &= (xi >= 0.) & (xi <= 1.);
-        moved.xi[d] = xi;
-        moved.displacement =
-          larger(moved.displacement,
-                 magnitude(shift[d]) * geometry.inverse_edge[d]);
+        moved.xi[d]        = xi;
+        const Number cells = magnitude(shift[d]) * geometry.inverse_edge[d];
+        moved.displacement = d == 0 ? cells : larger(moved.displacement, cells);
       }
     moved.inside = all(inside);
     if (!moved.inside)
@@ -183,6 +181,7 @@ namespace limber
     using Lanes = Pack<width>;
 
   public:
+    __attribute__((always_inline))
     NodalCoefficients(const CellGeometry<dim> &cell, const double *const nodes)
     {
       std::array<Lanes, 1 << dim> a;
@@ -202,7 +201,7 @@ namespace limber
       };
     }
 
-    /** As many components as there are directions. */
+    /** As many components as there are directions, of the same object. */
     class VectorField
     {
     public:
@@ -210,33 +209,33 @@ namespace limber
       using Components                = Pack<dim == 2 ? 2 : 4>;
       static constexpr int first_lane = dim == 3 && first > start ? 1 : 0;
 
-      VectorField(const NodalCoefficients &nodal, const unsigned int begin)
-        : nodal(nodal)
-        , begin(begin)
+      explicit VectorField(const double *const values)
+        : values(values)
       {}
 
       auto
       operator()(const int d) const
       {
-        return nodal.component(begin + d);
+        return [this, d](const int k) { return values[k * int(width) + d]; };
       }
 
       Components
       components(const int k) const
       {
-        return load<Components>(
-          &nodal.coefficients[k * width + begin + first - start - first_lane]);
+        return load<Components>(values + (k * int(width) - first_lane));
       }
 
     private:
-      const NodalCoefficients &nodal;
-      const unsigned int       begin;
+      // Coefficient 0 of component 0. As an address, for which of two fields
+      // it is may be known at run time only.
+      const double *values;
     };
 
+    /** From that component on. */
     VectorField
     field(const unsigned int begin) const
     {
-      return VectorField(*this, begin);
+      return VectorField(&coefficients[begin + first - start]);
     }
 
   private:

@@ -69,12 +69,12 @@ namespace limber
       return result;
     }
 
-    /** Lane k: the same of monomial k. */
+    /** Lane k: the same of monomial k, times a factor. */
     Nodes
-    derivatives(const int d) const
+    derivatives(const int d, const double factor) const
     {
-      return inverse_mass * Linear<dim>::upper(d) *
-             Linear<dim>::across(load<Nodes>(record), d);
+      return (factor * inverse_mass) *
+             Linear<dim>::derivatives(load<Nodes>(record), d);
     }
 
   private:

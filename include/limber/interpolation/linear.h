@@ -74,11 +74,14 @@ namespace limber
       return a;
     }
 
-    /** Lanes of the nodes at the upper end in direction d: 1, others 0. */
+    /**
+     * From values of the monomials, or means, to those of their derivatives
+     * in direction d, one lane per monomial.
+     */
     static Nodes
-    upper(const int d)
+    derivatives(const Nodes &monomials, const int d)
     {
-      return upper_ends[d];
+      return __builtin_shuffle(monomials, Nodes{}, without[d]);
     }
 
     /** Lane of the monomial xi_d: 1, others 0. */
@@ -165,6 +168,17 @@ namespace limber
       return result;
     }
 
+    // The monomial without the coordinate, or the first lane of zeros.
+    template <int... k>
+    static constexpr std::array<Numbers, dim>
+    monomials_without(std::integer_sequence<int, k...>)
+    {
+      std::array<Numbers, dim> result{};
+      for (int d = 0; d < dim; ++d)
+        result[d] = Numbers{(k >> d & 1 ? k ^ (1 << d) : n_nodes + k)...};
+      return result;
+    }
+
     template <int... k>
     static constexpr std::array<Nodes, dim>
     unit_lanes(std::integer_sequence<int, k...>)
@@ -180,7 +194,7 @@ namespace limber
     static constexpr auto signs            = end_values(-1., 1., AllNodes());
     static constexpr auto lower_ends       = end_values(1., 0., AllNodes());
     static constexpr auto linear_monomials = unit_lanes(AllNodes());
-    static constexpr auto upper_ends       = end_values(0., 1., AllNodes());
+    static constexpr auto without          = monomials_without(AllNodes());
     static constexpr auto opposites        = opposite_nodes(AllNodes());
   };
 } // namespace limber

@@ -52,6 +52,7 @@ namespace limber
      * @p velocity is a NodalCoefficients::VectorField of m/s; @p nodal is
      * S div v, 1/s; @p step in s.
      */
+    __attribute__((always_inline))
     StrainOperator(const Coefficients         &velocity,
                    const CellGeometry<dim>    &cell,
                    const CellMeans<dim>       &means,
@@ -144,7 +145,7 @@ namespace limber
   private:
     // Components as lanes: what is summed up here belongs to a cell, not to a
     // point, and eight points a cell would have to pay for it one by one.
-    void
+    __attribute__((always_inline)) void
     set_hourglass(const CellMeans<dim>   &means,
                   const StrainProjection &projection)
     {
@@ -335,7 +336,7 @@ namespace limber
 #pragma GCC unroll 8
         for (int e = 0; e < dim; ++e)
           {
-            slopes[e] = cell.inverse_edge[e] * means.derivatives(e);
+            slopes[e] = means.derivatives(e, cell.inverse_edge[e]);
             if constexpr (dim == 3)
               of_trilinear[e] = Linear<dim>::last() * means[1 << e];
           }
@@ -393,7 +394,7 @@ namespace limber
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           result[d] -=
-            (total_pressure * cell.inverse_edge[d]) * means.derivatives(d);
+            means.derivatives(d, total_pressure * cell.inverse_edge[d]);
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         result[d] = -Linear<dim>::to_nodes(result[d]);

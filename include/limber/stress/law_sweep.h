@@ -224,6 +224,137 @@ namespace limber
 
 
 
+    // What the points of a batch share. One object, so that work on a pack,
+    // which is called apart for the last points of a batch, knows it by one
+    // address: to pass every part by its own took a fifth of the sweep.
+    struct Batch
+    {
+      using Layout = NodeLayout<dim>;
+      using Nodal  = NodalCoefficients<dim, Layout::velocity, 2 * dim>;
+      using Field  = typename Nodal::VectorField;
+
+      __attribute__((always_inline)) Batch(const LawSweep      &sweep,
+                                           const CellBatch     &batch,
+                                           const GridView<dim> &grid,
+                                           const CellSums<dim> *sums,
+                                           const StressSweep   &what)
+        : cell_number(batch.cell)
+        , cell(grid.cells[batch.cell])
+        , nodal(cell, grid.nodes)
+        , strained(nodal.field(what.remapped ? dim : 0))
+        , means(sums, batch.cell)
+        , shift(what.shift ? what.shift_share * what.shift[batch.cell] : 0)
+        , divergence(what.nodal_divergence, cell)
+        , strain(strained,
+                 cell,
+                 means,
+                 divergence,
+                 sweep.strain_projection,
+                 what.step)
+      {}
+
+      const std::uint32_t                    cell_number;
+      const CellGeometry<dim>               &cell;
+      const Nodal                            nodal; // new, then re-mapped
+      const Field                            strained;
+      const CellMeans<dim>                   means;
+      const double                           shift;
+      const NodalMean<dim, kind>             divergence;
+      const StrainOperator<dim, kind, Field> strain;
+    };
+
+
+
+    // A sweep in progress.
+    template <bool moves>
+    struct Sweep
+    {
+      using Number = PointPack<dim>;
+
+      template <class Lanes>
+      __attribute__((always_inline)) void
+      update(const Batch &batch, const Lanes &lanes)
+      {
+        const Law &law = owner.law;
+        const auto xi  = lanes.natural(points, batch.cell);
+
+        MotionIncrement<dim, Number> motion;
+        motion.step = what.step;
+        batch.strain.template evaluate<Number, Law::uses_spin>(xi, motion);
+
+        auto state = load_state<Number>(points, [&](const double *a) {
+          return lanes.load(a);
+        });
+        // zero in lanes beyond the batch
+        [[maybe_unused]] const Number mass =
+          lanes.only_active(lanes.load(points.mass));
+
+        if constexpr (projected)
+          if (changes_history)
+            {
+              Number      &variable = volumetric_variable(state);
+              const Number before   = law.volumetric_energy(variable);
+              variable +=
+                what.relaxation * (batch.means.volumetric() - variable) +
+                batch.shift;
+              removed += mass * owner.inverse_density *
+                         (before - law.volumetric_energy(variable));
+            }
+
+        const auto dissipation = law.template update<dim>(motion, state);
+        if constexpr (Law::dissipates)
+          {
+            viscous += mass * owner.inverse_density * dissipation.viscous;
+            removed += mass * owner.inverse_density * dissipation.cutoff;
+          }
+        store_state(points, state, [&](const Number &value, double *a) {
+          lanes.store(value, a);
+        });
+        if (measure_waves)
+          waves = larger(waves,
+                         lanes.only_active(
+                           law.template wave_speed_squared<dim>(state)));
+
+        if constexpr (moves)
+          {
+            std::array<Number, dim> shift;
+            for (int d = 0; d < dim; ++d)
+              shift[d] =
+                what.move *
+                Linear<dim>::template value<Number>(batch.nodal.component(d),
+                                                    xi);
+            const auto moved =
+              move_points<dim>(points, grid, batch.cell_number, lanes, shift);
+            displacement = larger(displacement, moved.displacement);
+            // without means over cells the sums may still be wanted
+            if (needs_cell_means(kind) || (projected && sums))
+              {
+                const CellGatherer<dim> gatherer(*sums);
+                if (moved.inside)
+                  gatherer.add(batch.cell_number,
+                               moved.xi,
+                               mass,
+                               volumetric_variable(state));
+                else
+                  gatherer.add_one_by_one(points,
+                                          grid,
+                                          lanes.first,
+                                          lanes.first + lanes.n);
+              }
+          }
+      }
+
+      const LawSweep            &owner;
+      const PointView<dim>      &points;
+      const GridView<dim>       &grid;
+      const CellSums<dim> *const sums;
+      const StressSweep         &what;
+      const bool                 measure_waves, changes_history;
+      Number                     waves{}, viscous{}, removed{}, displacement{};
+    };
+
+
+
     template <bool moves>
     StressSummary
     sweep(const PointView<dim>      &points,
@@ -231,108 +362,31 @@ namespace limber
           const CellSums<dim> *const sums,
           const StressSweep         &what) const
     {
-      using Number = PointPack<dim>;
-      using Kernel = Linear<dim>;
-      using Layout = NodeLayout<dim>;
-
-      const unsigned int strained      = what.remapped ? dim : 0;
-      const bool         measure_waves = !law.has_constant_wave_speed();
-      [[maybe_unused]] const bool changes_history =
-        what.relaxation > 0 || what.shift != nullptr;
-      Number waves{}, viscous{}, removed{}, displacement{};
-
+      Sweep<moves> sweep{*this,
+                         points,
+                         grid,
+                         sums,
+                         what,
+                         !law.has_constant_wave_speed(),
+                         what.relaxation > 0 || what.shift != nullptr};
       for_each_batch(
-        points, [&](const CellBatch &batch) __attribute__((always_inline)) {
-          const CellGeometry<dim> &cell = grid.cells[batch.cell];
-          // new velocity and, right behind it, the re-mapped one
-          const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
-            cell, grid.nodes);
-
-          const auto                    velocity = nodal.field(strained);
-          const CellMeans<dim>          means(sums, batch.cell);
-          [[maybe_unused]] const double shift =
-            what.shift ? what.shift_share * what.shift[batch.cell] : 0;
-          const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
-          const StrainOperator<dim, kind, std::decay_t<decltype(velocity)>>
-            strain(
-              velocity, cell, means, divergence, strain_projection, what.step);
-
+        points,
+        [&](const CellBatch &cell_batch) __attribute__((always_inline)) {
+          const Batch batch(*this, cell_batch, grid, sums, what);
           for_each_pack<dim>(
-            batch, [&](const auto &lanes) __attribute__((always_inline)) {
-              const auto xi = lanes.natural(points, cell);
-
-              MotionIncrement<dim, Number> motion;
-              motion.step = what.step;
-              strain.template evaluate<Number, Law::uses_spin>(xi, motion);
-
-              auto state = load_state<Number>(points, [&](const double *a) {
-                return lanes.load(a);
-              });
-              // zero in lanes beyond the batch
-              [[maybe_unused]] const Number mass =
-                lanes.only_active(lanes.load(points.mass));
-
-              if constexpr (projected)
-                if (changes_history)
-                  {
-                    Number      &variable = volumetric_variable(state);
-                    const Number before   = law.volumetric_energy(variable);
-                    variable +=
-                      what.relaxation * (means.volumetric() - variable) + shift;
-                    removed += mass * inverse_density *
-                               (before - law.volumetric_energy(variable));
-                  }
-
-              const auto dissipation = law.template update<dim>(motion, state);
-              if constexpr (Law::dissipates)
-                {
-                  viscous += mass * inverse_density * dissipation.viscous;
-                  removed += mass * inverse_density * dissipation.cutoff;
-                }
-              store_state(points, state, [&](const Number &value, double *a) {
-                lanes.store(value, a);
-              });
-              if (measure_waves)
-                waves = larger(waves,
-                               lanes.only_active(
-                                 law.template wave_speed_squared<dim>(state)));
-
-              if constexpr (moves)
-                {
-                  std::array<Number, dim> shift;
-                  for (int d = 0; d < dim; ++d)
-                    shift[d] =
-                      what.move *
-                      Kernel::template value<Number>(nodal.component(d), xi);
-                  const auto moved =
-                    move_points<dim>(points, grid, batch.cell, lanes, shift);
-                  displacement = larger(displacement, moved.displacement);
-                  // without means over cells the sums may still be wanted
-                  if (needs_cell_means(kind) || (projected && sums))
-                    {
-                      const CellGatherer<dim> gatherer(*sums);
-                      if (moved.inside)
-                        gatherer.add(batch.cell,
-                                     moved.xi,
-                                     mass,
-                                     volumetric_variable(state));
-                      else
-                        gatherer.add_one_by_one(points,
-                                                grid,
-                                                lanes.first,
-                                                lanes.first + lanes.n);
-                    }
-                }
+            cell_batch, [&](const auto &lanes) __attribute__((always_inline)) {
+              sweep.update(batch, lanes);
             });
         });
 
       StressSummary result;
       result.wave_speed_squared =
-        measure_waves ? maximum(waves) :
-                        law.template wave_speed_squared<dim>(State<double>{});
-      result.viscous      = sum(viscous);
-      result.history      = sum(removed);
-      result.displacement = maximum(displacement);
+        sweep.measure_waves ?
+          maximum(sweep.waves) :
+          law.template wave_speed_squared<dim>(State<double>{});
+      result.viscous      = sum(sweep.viscous);
+      result.history      = sum(sweep.removed);
+      result.displacement = maximum(sweep.displacement);
       return result;
     }
 
