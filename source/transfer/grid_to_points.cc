@@ -10,7 +10,7 @@ namespace limber
   {
     /** Momentum of the points of a batch, to the nodes of their cell. */
     template <int dim, bool affine>
-    void
+    __attribute__((always_inline)) inline void
     remap_momentum(const PointView<dim>    &points,
                    const CellBatch         &batch,
                    const CellGeometry<dim> &cell,
