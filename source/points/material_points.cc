@@ -212,8 +212,8 @@ namespace limber
 
 
   template <int dim>
-  void
-  MaterialPoints<dim>::collect_cells(std::vector<std::uint32_t> &cells) const
+  std::vector<std::uint32_t>
+  MaterialPoints<dim>::occupied_cells() const
   {
     // A bit per cell of the box: to sort the numbers would take as long as to
     // reorder the points.
@@ -222,20 +222,21 @@ namespace limber
     for (std::size_t p = 0; p < cell.size(); ++p)
       if (p == 0 || cell[p] != cell[p - 1])
         holds_points[cell[p] / n_bits] |= std::uint64_t(1) << cell[p] % n_bits;
+    std::vector<std::uint32_t> cells;
     for (std::size_t word = 0; word < holds_points.size(); ++word)
       for (std::uint64_t bits = holds_points[word]; bits != 0; bits &= bits - 1)
         cells.push_back(word * n_bits + __builtin_ctzll(bits));
+    return cells;
   }
 
 
 
   template <int dim>
-  void
+  std::vector<std::uint32_t>
   MaterialPoints<dim>::sort_by_cell()
   {
     ++n_reorderings;
-    std::vector<std::uint32_t> cells;
-    collect_cells(cells);
+    std::vector<std::uint32_t> cells = occupied_cells();
 
     // Only the entries of occupied cells are touched: an empty box is free.
     const std::unique_ptr<std::uint32_t[]> offset(
@@ -268,6 +269,7 @@ namespace limber
     }
     std::vector<std::uint32_t> scratch(size());
     reorder(cell, scratch);
+    return cells;
   }
 
 

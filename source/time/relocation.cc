@@ -178,10 +178,10 @@ namespace limber
     n_batches_sorted = 0;
     for (auto &body : bodies)
       {
-        body->points.sort_by_cell();
-        const std::size_t before = cells.size();
-        body->points.collect_cells(cells);
-        n_batches_sorted += cells.size() - before;
+        const auto        of_body = body->points.sort_by_cell();
+        const std::size_t before  = cells.size();
+        cells.insert(cells.end(), of_body.begin(), of_body.end());
+        n_batches_sorted += of_body.size();
         std::inplace_merge(cells.begin(), cells.begin() + before, cells.end());
       }
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());

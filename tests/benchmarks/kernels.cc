@@ -76,10 +76,8 @@ namespace
       , nodes(grid)
       , body(*bodies[0])
     {
-      body.points.sort_by_cell();
-      body.points.collect_cells(cells);
-      auto occupied = cells;
-      nodes.set_occupied(std::move(occupied));
+      cells = body.points.sort_by_cell();
+      nodes.set_occupied(std::vector<std::uint32_t>(cells));
       if (body.cell_sums)
         {
           gather_cell_sums<dim>(body.points.view(),

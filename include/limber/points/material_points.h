@@ -103,16 +103,13 @@ namespace limber
       return n_reorderings;
     }
 
-    /** Put the arrays into the order of cells (counting sort). */
-    void
-    sort_by_cell();
-
     /**
-     * Append the local numbers of the cells that hold points, ascending. All
-     * points have a cell.
+     * Put the arrays into the order of cells (counting sort), and return the
+     * local numbers of the cells that hold points, ascending. All points have
+     * a cell.
      */
-    void
-    collect_cells(std::vector<std::uint32_t> &cells) const;
+    std::vector<std::uint32_t>
+    sort_by_cell();
 
     /** Take out the points without a cell and say which they were. */
     std::vector<LostPoint<dim>>
@@ -175,6 +172,8 @@ namespace limber
     resize(std::size_t n);
     void
     move(std::size_t from, std::size_t to);
+    std::vector<std::uint32_t>
+    occupied_cells() const;
 
     // A point as consecutive numbers: its fields, then its id.
     std::size_t

@@ -49,9 +49,7 @@ namespace limber::test
       if (averages_around_nodes(treatment))
         bodies[0]->nodal_means.emplace(grid);
       seed();
-      std::vector<std::uint32_t> cells;
-      points().collect_cells(cells);
-      nodes.set_occupied(std::move(cells));
+      nodes.set_occupied(points().sort_by_cell());
       totals.bodies.resize(1);
     }
 
