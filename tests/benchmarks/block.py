@@ -60,8 +60,8 @@ def main():
             wall = [s["wall_seconds"] for s in summaries]
             print(f"{scene} {name:24s} ns per point and step: best "
                   f"{min(cost):6.1f} median {statistics.median(cost):6.1f}"
-                  f"   wall s: best {min(wall):.2f} "
-                  f"median {statistics.median(wall):.2f}", flush=True)
+                  f"   wall s: best {min(wall):.3f} "
+                  f"median {statistics.median(wall):.3f}", flush=True)
         memory = run(limber, scene, FINE[scene])
         print(f"{scene} {memory['points']} points: "
               f"{memory['bytes_per_point']:.0f} bytes per point", flush=True)
