@@ -253,6 +253,8 @@ namespace limber
                  what.step)
       {}
 
+      Batch(const Batch &) = delete; // the parts know each other's addresses
+
       const std::uint32_t                    cell_number;
       const CellGeometry<dim>               &cell;
       const Nodal                            nodal; // new, then re-mapped
