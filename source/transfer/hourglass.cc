@@ -44,36 +44,35 @@ namespace limber
     for (const std::uint32_t number : cells)
       {
         const CellGeometry<dim> &cell = grid.cells[number];
-        double                   k    = resistance(cell, number, bodies);
+
+        const auto of_nodes = [&](const unsigned int slot) {
+          Nodes values{};
+#pragma GCC unroll 8
+          for (int a = 0; a < n_nodes; ++a)
+            values[a] = grid.nodes[cell.node[a] + slot];
+          return values;
+        };
+        const Nodes  mass = of_nodes(Layout::mass);
+        const double k    = std::min(resistance(cell, number, bodies),
+                                  largest_share * minimum(mass));
+        // Nothing to resist, or all points on a side: a node has no velocity.
         if (!(k > 0))
           continue;
+        const Nodes inverse_mass = 1. / mass;
 
-        std::array<std::array<double, n_nodes>, dim> velocity;
-        double                                       smallest = 1e300;
-        for (int a = 0; a < n_nodes; ++a)
+        std::array<Nodes, dim> force;
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
           {
-            const double *const record = grid.nodes + cell.node[a];
-            const double        mass   = record[Layout::mass];
-            smallest                   = std::min(smallest, mass);
-            for (int d = 0; d < dim; ++d)
-              velocity[d][a] = record[Layout::momentum + d] / mass;
-          }
-        k = std::min(k, largest_share * smallest);
-
-        std::array<Nodes, dim> force{};
-        for (int mode = 3; mode < n_nodes; ++mode)
-          {
-            // one mode for every product of two or more coordinates
-            if ((mode & (mode - 1)) == 0)
-              continue;
-            Nodes signs = broadcast<Nodes>(1.);
-            for (int d = 0; d < dim; ++d)
-              if (mode >> d & 1)
-                signs *= Kernel::sign(d);
-            for (int d = 0; d < dim; ++d)
-              force[d] -=
-                (k / n_nodes * sum(signs * load<Nodes>(velocity[d].data()))) *
-                signs;
+            // From the nodes to the modes, products of the signs of the nodes
+            // in some directions, and back from those of two or more.
+            Nodes velocity = of_nodes(Layout::momentum + d) * inverse_mass;
+            for (int e = 0; e < dim; ++e)
+              velocity -= Kernel::sign(e) * Kernel::across(velocity, e);
+            velocity *= Kernel::bilinear();
+            for (int e = 0; e < dim; ++e)
+              velocity += Kernel::sign(e) * Kernel::across(velocity, e);
+            force[d] = -k / n_nodes * velocity;
           }
         add_to_nodes<dim, Layout::remapped>(cell, force, grid.nodes);
       }

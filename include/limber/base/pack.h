@@ -124,6 +124,18 @@ namespace limber
 
 
 
+  template <class Number>
+  inline double
+  minimum(const Number &pack)
+  {
+    double result = lane(pack, 0);
+    for (int i = 1; i < pack_width<Number>; ++i)
+      result = lane(pack, i) < result ? lane(pack, i) : result;
+    return result;
+  }
+
+
+
   /** The larger of two, lane by lane. */
   template <class Number>
   inline Number

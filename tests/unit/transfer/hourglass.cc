@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <support/small_grid.h>
 
+#include <cmath>
 #include <numeric>
 
 using namespace limber;
@@ -167,4 +168,25 @@ TYPED_TEST(Hourglass, ResistanceIsThatOfTheFormula)
                       d == 1 ? -0.5 * mass / h * 0.3 * sign(i) : 0.,
                       1e-12);
     }
+}
+
+
+
+TYPED_TEST(Hourglass, ANodeWithoutMassHasNoVelocityToResist)
+{
+  constexpr int dim  = TestFixture::dim;
+  using Layout       = NodeLayout<dim>;
+  const auto without = this->grid.node_number(0, 0);
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    {
+      if (n == without)
+        this->record(n)[Layout::mass] = 0;
+      this->set_velocity(n, this->random.template vector<dim>());
+    }
+  this->resist(0.5, 1e-9);
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    for (int d = 0; d < dim; ++d)
+      EXPECT_TRUE(std::isfinite(this->record(n)[Layout::remapped + d]));
+  for (int d = 0; d < dim; ++d)
+    EXPECT_EQ(this->record(without)[Layout::remapped + d], 0);
 }
