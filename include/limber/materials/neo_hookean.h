@@ -217,9 +217,7 @@ namespace limber
     Number
     volumetric_energy(const Number &J) const
     {
-      const Number logarithm =
-        each_lane(J, [](const double x) { return std::log(x); });
-      return 0.5 * bulk_modulus * (0.5 * (J * J - 1.) - logarithm);
+      return 0.5 * bulk_modulus * (0.5 * (J * J - 1.) - logarithm(J));
     }
 
     /** ln(be) / 2; be has the determinant one, so the trace is zero. */

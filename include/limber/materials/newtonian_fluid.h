@@ -149,9 +149,7 @@ namespace limber
       if (tait)
         return bulk_modulus / exponent *
                ((power(J, 1 - exponent) - 1.) / (exponent - 1) + J - 1.);
-      return bulk_modulus * (J - 1. - each_lane(J, [](const double x) {
-                               return std::log(x);
-                             }));
+      return bulk_modulus * (J - 1. - logarithm(J));
     }
 
     template <int dim, class Number>

@@ -99,6 +99,27 @@ TYPED_TEST(PackOf, InverseCubeRootIsGoodToRoundOff)
 
 
 
+TYPED_TEST(PackOf, LogarithmIsGoodToRoundOffNextToOneToo)
+{
+  constexpr int n = pack_width<TypeParam>;
+  for (int k = -3000; k <= 3000; ++k)
+    {
+      for (const double x : {std::exp(0.2 * k), 1 + 1e-6 * k})
+        {
+          const TypeParam found = logarithm(broadcast<TypeParam>(x));
+          for (int i = 0; i < n; ++i)
+            EXPECT_NEAR(lane(found, i),
+                        std::log(x),
+                        5e-16 * std::abs(std::log(x)))
+              << x;
+        }
+    }
+  for (int i = 0; i < n; ++i)
+    EXPECT_EQ(lane(logarithm(broadcast<TypeParam>(1.)), i), 0);
+}
+
+
+
 TYPED_TEST(PackOf, InverseCubeRootOfOneIsOne)
 {
   const TypeParam one = inverse_cube_root(broadcast<TypeParam>(1.));
