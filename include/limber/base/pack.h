@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 
 /**
@@ -50,6 +51,17 @@ namespace limber
       std::conditional_t<pack_width<Number> == 1,
                          std::int64_t,
                          typename PackType<pack_width<Number>>::mask>;
+
+    /** The same bits as another type of the same size. */
+    template <class To, class From>
+    inline To
+    same_bits(const From &from)
+    {
+      static_assert(sizeof(To) == sizeof(From));
+      To to;
+      std::memcpy(&to, &from, sizeof(to));
+      return to;
+    }
   } // namespace internal
 
 
@@ -160,13 +172,8 @@ namespace limber
   inline Number
   magnitude(const Number &a)
   {
-    using Bits = internal::Bits<Number>;
-    Bits bits;
-    std::memcpy(&bits, &a, sizeof(a));
-    bits &= 0x7fffffffffffffffLL;
-    Number result;
-    std::memcpy(&result, &bits, sizeof(a));
-    return result;
+    return internal::same_bits<Number>(
+      internal::same_bits<internal::Bits<Number>>(a) & 0x7fffffffffffffffLL);
   }
 
 
@@ -208,11 +215,8 @@ namespace limber
   inverse_cube_root(const Number &a)
   {
     using Bits = internal::Bits<Number>;
-    Bits bits;
-    std::memcpy(&bits, &a, sizeof(a));
-    bits = 0x553ef0ff289dd796LL - bits / 3;
-    Number x;
-    std::memcpy(&x, &bits, sizeof(x));
+    Number x   = internal::same_bits<Number>(0x553ef0ff289dd796LL -
+                                           internal::same_bits<Bits>(a) / 3);
     for (unsigned int i = 0; i < 5; ++i)
       x *= (4. - a * x * x * x) * (1. / 3.);
     return x;
@@ -221,28 +225,23 @@ namespace limber
 
 
   /**
-   * The natural logarithm of positive, normal a, to two units in the last
-   * place, next to a = 1 as well: with a = 2^k m and m within a factor sqrt(2)
-   * of one, k ln 2 + 2 artanh s, s = (m - 1) / (m + 1), by the series up to
-   * s^21. To call the library for each lane took as long as all else that a
-   * liquid does.
+   * The natural logarithm of finite, normal a, to two units in the last place,
+   * next to a = 1 as well; not a number where a is not positive. With a = 2^k m
+   * and m within a factor sqrt(2) of one, k ln 2 + 2 artanh s, s = (m - 1) / (m
+   * + 1), by the series up to s^21. To call the library for each lane took as
+   * long as all else that a liquid does.
    */
   template <class Number>
   inline Number
   logarithm(const Number &a)
   {
-    using Bits = internal::Bits<Number>;
-    Bits bits;
-    std::memcpy(&bits, &a, sizeof(a));
-    const Bits k = (bits - 0x3fe6a09e667f3bcdLL) >> 52; // from sqrt(1/2) on
-    bits -= k << 52;
-    Number m;
-    std::memcpy(&m, &bits, sizeof(m));
+    using Bits        = internal::Bits<Number>;
+    const Bits   bits = internal::same_bits<Bits>(a);
+    const Bits   k = (bits - 0x3fe6a09e667f3bcdLL) >> 52; // from sqrt(1/2) on
+    const Number m = internal::same_bits<Number>(bits - (k << 52));
     // An integer in the last digits of 1.5 2^52 is that number of units.
-    bits = k + 0x4338000000000000LL;
-    Number exponent;
-    std::memcpy(&exponent, &bits, sizeof(exponent));
-    exponent -= 6755399441055744.;
+    const Number exponent =
+      internal::same_bits<Number>(k + 0x4338000000000000LL) - 6755399441055744.;
 
     const Number s = (m - 1.) / (m + 1.), z = s * s;
     Number       series = broadcast<Number>(1. / 21);
@@ -252,8 +251,10 @@ namespace limber
     // ln 2 as 42 bits, so that their product with k is exact, and the rest
     constexpr double ln2_high = 0x1.62e42fefa38p-1;
     constexpr double ln2_low  = 0x1.ef35793c7673p-45;
-    return exponent * ln2_high +
-           (2. * s + (2. * s * z * series + exponent * ln2_low));
+    const Number     result   = exponent * ln2_high +
+                          (2. * s + (2. * s * z * series + exponent * ln2_low));
+    return a > 0. ? result :
+                    broadcast<Number>(std::numeric_limits<double>::quiet_NaN());
   }
 
 

@@ -201,7 +201,7 @@ namespace limber
       };
     }
 
-    /** As many components as there are directions, of the same object. */
+    /** As many components as there are directions; refers to its object. */
     class VectorField
     {
     public:

@@ -116,6 +116,9 @@ TYPED_TEST(PackOf, LogarithmIsGoodToRoundOffNextToOneToo)
     }
   for (int i = 0; i < n; ++i)
     EXPECT_EQ(lane(logarithm(broadcast<TypeParam>(1.)), i), 0);
+  for (const double x : {-1., 0., std::nan("")})
+    for (int i = 0; i < n; ++i)
+      EXPECT_TRUE(std::isnan(lane(logarithm(broadcast<TypeParam>(x)), i))) << x;
 }
 
 
