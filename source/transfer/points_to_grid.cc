@@ -31,8 +31,18 @@ namespace limber
                                                  means,
                                                  nodal);
       constexpr std::size_t               width = 1 << dim;
-      for (std::size_t p = batch.begin; p < batch.end; p += width)
-        stress.add(points, p, batch.end - p, what.inverse_density);
+      const auto add = [&](const auto begins, const std::size_t p)
+        __attribute__((always_inline))
+      {
+        stress.template add<begins>(points,
+                                    p,
+                                    batch.end - p,
+                                    what.inverse_density);
+      };
+      add(std::true_type(), batch.begin);
+      for (std::size_t p = batch.begin + width; rarely(p < batch.end);
+           p += width)
+        add(std::false_type(), p);
       const auto forces = stress.forces();
       for (int d = 0; d < dim; ++d)
         to_nodes[NodeLayout<dim>::force + d] = forces[d];

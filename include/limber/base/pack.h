@@ -86,6 +86,23 @@ namespace limber
 
 
 
+  /**
+   * Have the compiler forget what it stored in @p values. To spread one of them
+   * over the lanes of a pack is then part of a load, where GCC would permute
+   * the register that it stored them from. In three dimensions only: packs of
+   * two dimensions are short, and GCC loads several at once, which waits until
+   * all of them have left for the cache.
+   */
+  template <int dim, class Values>
+  inline void
+  read_from_memory(Values &values)
+  {
+    if constexpr (dim == 3)
+      __asm__("" : "+m"(values));
+  }
+
+
+
   /** The lanes of a wide pack from @p first on that fill a narrow one. */
   template <class Narrow, class Wide>
   inline Narrow

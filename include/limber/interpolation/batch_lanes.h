@@ -2,6 +2,7 @@
 #ifndef limber_interpolation_batch_lanes_h
 #define limber_interpolation_batch_lanes_h
 
+#include <limber/base/expected.h>
 #include <limber/interpolation/linear.h>
 #include <limber/points/cell_batch.h>
 #include <limber/points/locate.h>
@@ -108,9 +109,14 @@ namespace limber
   {
     constexpr std::size_t width = 1 << dim;
     std::size_t           p     = batch.begin;
-    for (; p + width <= batch.end; p += width)
-      work(BatchLanes<dim, true>(p, width));
-    if (p < batch.end)
+    if (usually(p + width <= batch.end))
+      do
+        {
+          work(BatchLanes<dim, true>(p, width));
+          p += width;
+        }
+      while (rarely(p + width <= batch.end));
+    if (rarely(p < batch.end))
       internal::do_apart(
         work, BatchLanes<dim, false>(p, static_cast<int>(batch.end - p)));
   }

@@ -104,7 +104,7 @@ namespace limber
     {
       double *const record = sums.next + cell * CellSums<dim>::stride;
       Number        total  = sums_over_lanes(products(xi, mass, volumetric));
-      if (sums.is_open(cell))
+      if (rarely(sums.is_open(cell)))
         total += load<Number>(record);
       else
         sums.turn_of[cell] = sums.turn;

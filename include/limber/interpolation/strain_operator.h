@@ -43,6 +43,15 @@
  */
 namespace limber
 {
+  /** Whether points get another shear than their own. */
+  inline constexpr bool
+  replaces_shear(const Projection kind)
+  {
+    return averages_shear_in_cells(kind) || kind == Projection::assumed_strain;
+  }
+
+
+
   /** B of a cell for one velocity field, times the step. */
   template <int dim, Projection kind, class Coefficients>
   class StrainOperator
@@ -74,17 +83,15 @@ namespace limber
           divergence += scale[d] * means.derivative(velocity(d), d);
       else
         {
-          const auto gradient = means.derivatives_of(velocity);
+          const auto derivatives = means.derivatives_of(velocity);
 #pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
+            mean_gradient[d] = scale[d] * derivatives[d];
+          read_from_memory<dim>(mean_gradient);
+          if constexpr (averages_volume_in_cells(kind))
 #pragma GCC unroll 8
-            for (int e = 0; e <= d; ++e)
-              mean[d][e] = mean[e][d] =
-                0.5 * (scale[e] * gradient[e][lane + d] +
-                       scale[d] * gradient[d][lane + e]);
-#pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-            divergence += mean[d][d];
+            for (int d = 0; d < dim; ++d)
+              divergence += mean_gradient[d][lane + d];
           if constexpr (kind == Projection::assumed_strain)
             set_hourglass(means, projection);
         }
@@ -102,37 +109,47 @@ namespace limber
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          const auto gradient =
+          const auto derivatives =
             Linear<dim>::template gradient<Number>(velocity(d), xi);
 #pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
-            motion.gradient[d][e] = scale[e] * gradient[e];
+            motion.gradient[d][e] = scale[e] * derivatives[e];
         }
-      if constexpr (averages_shear_in_cells(kind) ||
-                    kind == Projection::assumed_strain)
+      if constexpr (replaces_shear(kind))
+        {
+          [[maybe_unused]] std::array<Number, dim> deviation;
+          if constexpr (kind == Projection::assumed_strain)
 #pragma GCC unroll 8
-        for (int d = 0; d < dim; ++d)
-          {
-            if constexpr (kind == Projection::cell_full)
-              motion.gradient[d][d] = broadcast<Number>(mean[d][d]);
-            if constexpr (kind == Projection::assumed_strain)
-              motion.gradient[d][d] = assumed_normal(d, xi);
+            for (int d = 0; d < dim; ++d)
+              deviation[d] = xi[d] - centroid[d];
 #pragma GCC unroll 8
-            for (int e = 0; e < d; ++e)
-              {
-                Number shear = broadcast<Number>(mean[d][e]);
-                if constexpr (kind == Projection::assumed_strain && dim == 3)
-                  {
-                    const int f = 3 - d - e;
-                    shear += torsion[f] * (xi[f] - centroid[f]);
-                  }
-                Number spin{};
-                if constexpr (with_spin)
-                  spin = 0.5 * (motion.gradient[d][e] - motion.gradient[e][d]);
-                motion.gradient[d][e] = shear + spin;
-                motion.gradient[e][d] = shear - spin;
-              }
-          }
+          for (int d = 0; d < dim; ++d)
+            {
+              if constexpr (kind == Projection::cell_full)
+                motion.gradient[d][d] =
+                  broadcast<Number>(mean_gradient[d][lane + d]);
+#pragma GCC unroll 8
+              for (int e = 0; e < d; ++e)
+                {
+                  Number shear =
+                    broadcast<Number>(0.5 * (mean_gradient[d][lane + e] +
+                                             mean_gradient[e][lane + d]));
+                  if constexpr (kind == Projection::assumed_strain && dim == 3)
+                    {
+                      const int f = 3 - d - e;
+                      shear += torsion[f] * deviation[f];
+                    }
+                  Number spin{};
+                  if constexpr (with_spin)
+                    spin =
+                      0.5 * (motion.gradient[d][e] - motion.gradient[e][d]);
+                  motion.gradient[d][e] = shear + spin;
+                  motion.gradient[e][d] = shear - spin;
+                }
+            }
+          if constexpr (kind == Projection::assumed_strain)
+            set_assumed_normals(deviation, motion);
+        }
       if constexpr (kind == Projection::none ||
                     kind == Projection::assumed_strain)
         motion.volumetric = motion.trace();
@@ -158,13 +175,9 @@ namespace limber
         }
       if constexpr (dim == 2)
         {
-          const Components c = scales * velocity.components(3);
-#pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-            {
-              linear[d][1 - d] = projection.own * c[lane + d];
-              linear[d][d]     = projection.mate * c[lane + 1 - d];
-            }
+          const Components mode = scales * velocity.components(3);
+          modes.own[0]          = projection.own * mode;
+          modes.mate[0]         = projection.mate * mode;
         }
       else
         {
@@ -172,74 +185,86 @@ namespace limber
           // not in them, in monomials of deviations from the centroid: those
           // of the cell have a corner of it as their origin, which would leave
           // its mirror image with another strain.
-          const Components            trilinear = velocity.components(7);
-          std::array<Components, dim> bilinear, own, mate;
+          const Components trilinear = velocity.components(7);
 #pragma GCC unroll 8
           for (int f = 0; f < dim; ++f)
             {
-              bilinear[f] =
+              modes.bilinear[f] =
                 velocity.components(7 ^ (1 << f)) + trilinear * centroid[f];
-              own[f]  = (projection.own * scales) * bilinear[f];
-              mate[f] = (projection.mate * scales) * bilinear[f];
+              modes.own[f]  = (projection.own * scales) * modes.bilinear[f];
+              modes.mate[f] = (projection.mate * scales) * modes.bilinear[f];
             }
-          const Components product_own =
-            (projection.trilinear_own * scales) * trilinear;
-          const Components product_mate =
-            (projection.trilinear_mate * scales) * trilinear;
-#pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-            {
-              const int e = (d + 1) % 3, f = (d + 2) % 3;
-              linear[d][d] = mate[f][lane + e] + mate[e][lane + f];
-              linear[d][e] = own[f][lane + d];
-              linear[d][f] = own[e][lane + d];
-              product_mean[d] =
-                means[1 << e | 1 << f] - centroid[e] * centroid[f];
-#pragma GCC unroll 8
-              for (int g = 0; g < dim; ++g)
-                product[d][g] =
-                  g == d ? product_own[lane + g] : product_mate[lane + g];
-              torsion[d] = 0.5 * (scale[f] * bilinear[e][lane + e] +
-                                  scale[e] * bilinear[f][lane + f]);
-            }
+          modes.own[dim]  = (projection.trilinear_own * scales) * trilinear;
+          modes.mate[dim] = (projection.trilinear_mate * scales) * trilinear;
         }
+      read_from_memory<dim>(modes);
+      if constexpr (dim == 3)
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          {
+            const int e = (d + 1) % 3, f = (d + 2) % 3;
+            product_mean[d] =
+              means[1 << e | 1 << f] - centroid[e] * centroid[f];
+            torsion[d] = 0.5 * (scale[f] * modes.bilinear[e][lane + e] +
+                                scale[e] * modes.bilinear[f][lane + f]);
+          }
     }
 
     template <class Number>
-    Number
-    assumed_normal(const int d, const std::array<Number, dim> &xi) const
+    __attribute__((always_inline)) void
+    set_assumed_normals(const std::array<Number, dim> &deviation,
+                        MotionIncrement<dim, Number>  &motion) const
     {
-      Number result = broadcast<Number>(mean[d][d]);
-#pragma GCC unroll 8
-      for (int e = 0; e < dim; ++e)
-        result += linear[d][e] * (xi[e] - centroid[e]);
+      [[maybe_unused]] std::array<Number, dim> product;
       if constexpr (dim == 3)
 #pragma GCC unroll 8
-        for (int g = 0; g < dim; ++g)
-          result +=
-            product[d][g] * ((xi[(g + 1) % 3] - centroid[(g + 1) % 3]) *
-                               (xi[(g + 2) % 3] - centroid[(g + 2) % 3]) -
-                             product_mean[g]);
-      return result;
+        for (int d = 0; d < dim; ++d)
+          product[d] =
+            deviation[(d + 1) % 3] * deviation[(d + 2) % 3] - product_mean[d];
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          const int e = (d + 1) % dim, f = (d + 2) % dim;
+          Number    normal = broadcast<Number>(mean_gradient[d][lane + d]);
+          if constexpr (dim == 2)
+            normal += modes.own[0][lane + d] * deviation[e] +
+                      modes.mate[0][lane + e] * deviation[d];
+          else
+            {
+              normal += modes.own[f][lane + d] * deviation[e];
+              normal += modes.own[e][lane + d] * deviation[f];
+              normal += modes.mate[f][lane + e] * deviation[d];
+              normal += modes.mate[e][lane + f] * deviation[d];
+              normal += modes.own[dim][lane + d] * product[d];
+              normal += modes.mate[dim][lane + e] * product[e];
+              normal += modes.mate[dim][lane + f] * product[f];
+            }
+          motion.gradient[d][d] = normal;
+        }
     }
 
     using Components          = typename Coefficients::Components;
     static constexpr int lane = Coefficients::first_lane; // of component 0
 
-    const Coefficients                      &velocity;
-    const NodalMean<dim, kind>              &nodal;
-    const double                             step;
-    std::array<double, dim>                  scale;
-    double                                   divergence = 0;
-    std::array<std::array<double, dim>, dim> mean;
-    // Of the assumed strain: D_dd = mean + sum_e linear[d][e] xi_e' + sum_g
-    // product[d][g] (product of the other two coordinates)'; torsion[f] is the
-    // slope along f of the shear in the plane across it.
-    std::array<double, dim>                  centroid;
-    std::array<std::array<double, dim>, dim> linear;
-    std::array<std::array<double, dim>, dim> product;
-    std::array<double, dim>                  product_mean;
-    std::array<double, dim>                  torsion;
+    const Coefficients         &velocity;
+    const NodalMean<dim, kind> &nodal;
+    const double                step;
+    std::array<double, dim>     scale;
+    double                      divergence = 0;
+    std::array<Components, dim> mean_gradient; // <du/dx_d>
+    // Of the assumed strain, times the step. In 3d the modes are numbered by
+    // the axis that is not in them, the last is trilinear.
+    struct Modes
+    {
+      // what mode and scale give to the strain along a component itself, and
+      // to those along the other axes of the mode
+      std::array<Components, dim == 2 ? 1 : 4> own, mate;
+      std::array<Components, dim == 2 ? 0 : 3> bilinear; // about the centroid
+    };
+    Modes                   modes;
+    std::array<double, dim> centroid;
+    std::array<double, dim> product_mean; // of the other two coordinates'
+    std::array<double, dim> torsion; // slope along d of the shear across it
   };
 
 
@@ -268,8 +293,10 @@ namespace limber
 
     /**
      * The points from @p first on, at most a pack and at most @p n. What lies
-     * beyond is read as well and gets the weight zero.
+     * beyond is read as well and gets the weight zero. What @p begins needs
+     * no sums to add to: few batches have more than one pack.
      */
+    template <bool begins>
     __attribute__((always_inline)) void
     add(const PointView<dim> &points,
         const std::size_t     first,
@@ -294,7 +321,7 @@ namespace limber
       else
         p = volume * read(points.pressure);
       if constexpr (mean_pressure)
-        pressure += p;
+        accumulate<begins>(pressure, p);
       if constexpr (deviator || !mean_pressure)
         {
           std::array<std::array<Number, dim>, dim> t{};
@@ -319,8 +346,8 @@ namespace limber
 #pragma GCC unroll 8
             for (int e = 0; e <= d; ++e)
               if (deviator || d == e)
-                stress[d][e] += t[d][e];
-          add_hourglass(t, xi);
+                accumulate<begins>(stress[d][e], t[d][e]);
+          add_hourglass<begins>(t, xi);
         }
     }
 
@@ -328,68 +355,35 @@ namespace limber
     __attribute__((always_inline)) std::array<Nodes, dim>
     forces() const
     {
-      std::array<Nodes, dim>                  result{};
-      double                                  total_pressure = 0;
-      [[maybe_unused]] std::array<Nodes, dim> slopes, of_trilinear;
-      if constexpr (averages_shear_in_cells(kind) ||
-                    kind == Projection::assumed_strain)
-#pragma GCC unroll 8
-        for (int e = 0; e < dim; ++e)
-          {
-            slopes[e] = means.derivatives(e, cell.inverse_edge[e]);
-            if constexpr (dim == 3)
-              of_trilinear[e] = Linear<dim>::last() * means[1 << e];
-          }
+      std::array<Nodes, dim> result{};
+      double                 total_pressure = 0;
       if constexpr (mean_pressure && !pressure_in_lane)
         total_pressure = sum(pressure);
       if constexpr (deviator || !mean_pressure)
+        {
 #pragma GCC unroll 8
-        for (int d = 0; d < dim; ++d)
-          {
-            // what acts on the coefficient c_k of component d in lane k
-            std::array<Number, 1 << dim> a{};
+          for (int d = 0; d < dim; ++d)
+            {
+              result[d] = on_coefficients(d);
+              if (pressure_in_lane && d == 0)
+                {
+                  total_pressure = result[d][0];
+                  result[d][0]   = 0;
+                }
+            }
+          if constexpr (replaces_shear(kind))
+            distribute(result);
+          else
+            {
+              Nodes scale = broadcast<Nodes>(1.);
 #pragma GCC unroll 8
-            for (int e = 0; e < dim; ++e)
-              a[1 << e] = e <= d ? stress[d][e] : stress[e][d];
-            if constexpr (kind != Projection::cell_full)
+              for (int e = 0; e < dim; ++e)
+                scale[1 << e] = cell.inverse_edge[e];
 #pragma GCC unroll 8
-              for (int k = 3; k < 1 << dim; ++k)
-                if (k & (k - 1))
-                  a[k] = hourglass[d][k];
-            if (pressure_in_lane && d == 0)
-              a[0] = pressure;
-            Nodes sums = sums_over_lanes(a);
-            if (pressure_in_lane && d == 0)
-              {
-                total_pressure = sums[0];
-                sums[0]        = 0;
-              }
-            if constexpr (!averages_shear_in_cells(kind) &&
-                          kind != Projection::assumed_strain)
-              {
-                Nodes scale = broadcast<Nodes>(1.);
-#pragma GCC unroll 8
-                for (int e = 0; e < dim; ++e)
-                  scale[1 << e] = cell.inverse_edge[e];
-                result[d] = scale * sums;
-              }
-            else
-              {
-                result[d] = Linear<dim>::bilinear() * sums;
-                // bilinear modes about the centroid hold part of c_7
-                if constexpr (kind == Projection::assumed_strain && dim == 3)
-#pragma GCC unroll 8
-                  for (int f = 0; f < dim; ++f)
-                    result[d] += Linear<dim>::across(sums, f) * of_trilinear[f];
-#pragma GCC unroll 8
-                for (int e = 0; e < dim; ++e)
-                  if (normal_as_is && d == e)
-                    result[d] += (sums[1 << e] * cell.inverse_edge[e]) *
-                                 Linear<dim>::linear(e);
-                  else
-                    result[d] += sums[1 << e] * slopes[e];
-              }
-          }
+              for (int d = 0; d < dim; ++d)
+                result[d] *= scale;
+            }
+        }
       if constexpr (mean_pressure)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
@@ -410,7 +404,79 @@ namespace limber
     static constexpr bool normal_as_is =
       kind == Projection::cell_shear || kind == Projection::hybrid;
 
+    template <bool begins>
+    __attribute__((always_inline)) static void
+    accumulate(Number &sum, const Number &value)
+    {
+      if constexpr (begins)
+        sum = value;
+      else
+        sum += value;
+    }
+
+    /**
+     * What acts on the coefficient c_k of component d, in lane k; in those of
+     * linear modes the stress alone.
+     */
+    __attribute__((always_inline)) Nodes
+    on_coefficients(const int d) const
+    {
+      std::array<Number, 1 << dim> a{};
+#pragma GCC unroll 8
+      for (int e = 0; e < dim; ++e)
+        a[1 << e] = e <= d ? stress[d][e] : stress[e][d];
+      if constexpr (kind != Projection::cell_full)
+#pragma GCC unroll 8
+        for (int k = 3; k < 1 << dim; ++k)
+          if (k & (k - 1))
+            a[k] = hourglass[d][k];
+      if (pressure_in_lane && d == 0)
+        a[0] = pressure;
+      return sums_over_lanes(a);
+    }
+
+    /**
+     * Stress that meets mean gradients acts on all modes. For all components
+     * once their sums are there, and in two chains: with one chain for each,
+     * right behind its sum, the processor waited.
+     */
+    __attribute__((always_inline)) void
+    distribute(std::array<Nodes, dim> &on_coefficients) const
+    {
+      std::array<Nodes, dim>                  slopes;
+      [[maybe_unused]] std::array<Nodes, dim> of_trilinear;
+#pragma GCC unroll 8
+      for (int e = 0; e < dim; ++e)
+        {
+          slopes[e] = means.derivatives(e, cell.inverse_edge[e]);
+          if constexpr (dim == 3)
+            of_trilinear[e] = Linear<dim>::last() * means[1 << e];
+        }
+      std::array<Nodes, dim> single = on_coefficients;
+      read_from_memory<dim>(single);
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          on_coefficients[d] *= Linear<dim>::bilinear();
+          // bilinear modes about the centroid hold part of c_7
+          if constexpr (kind == Projection::assumed_strain && dim == 3)
+#pragma GCC unroll 8
+            for (int f = 0; f < dim; ++f)
+              on_coefficients[d] += single[d][7 ^ (1 << f)] * of_trilinear[f];
+          Nodes of_means{};
+#pragma GCC unroll 8
+          for (int e = 0; e < dim; ++e)
+            if (normal_as_is && d == e)
+              of_means += (single[d][1 << e] * cell.inverse_edge[e]) *
+                          Linear<dim>::linear(e);
+            else
+              of_means += single[d][1 << e] * slopes[e];
+          on_coefficients[d] += of_means;
+        }
+    }
+
     /** What acts on coefficients of hourglass modes at the points. */
+    template <bool begins>
     __attribute__((always_inline)) void
     add_hourglass(const std::array<std::array<Number, dim>, dim> &t,
                   const std::array<Number, dim>                  &place)
@@ -432,35 +498,40 @@ namespace limber
             const Number product =
               (place[e] - means[1 << e]) * (place[f] - means[1 << f]) -
               (means[1 << e | 1 << f] - means[1 << e] * means[1 << f]);
-            hourglass[d][7] +=
-              (projection.trilinear_own * t[d][d] +
-               projection.trilinear_mate * (t[e][e] + t[f][f])) *
-              (h[d] * product);
+            accumulate<begins>(hourglass[d][7],
+                               (projection.trilinear_own * t[d][d] +
+                                projection.trilinear_mate *
+                                  (t[e][e] + t[f][f])) *
+                                 (h[d] * product));
           }
 
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
           const int e = (d + 1) % dim, f = (d + 2) % dim;
-          add_bilinear(t, xi, d, e);
+          add_bilinear<begins>(t, xi, d, e);
           if constexpr (dim == 3)
             {
-              add_bilinear(t, xi, d, f);
+              add_bilinear<begins>(t, xi, d, f);
               if constexpr (!normal_as_is)
-                hourglass[d][1 << e | 1 << f] +=
-                  t[d][e] * (h[e] * xi[f]) + t[d][f] * (h[f] * xi[e]);
+                accumulate<begins>(hourglass[d][1 << e | 1 << f],
+                                   t[d][e] * (h[e] * xi[f]) +
+                                     t[d][f] * (h[f] * xi[e]));
               if constexpr (normal_as_is)
-                hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f]));
+                accumulate<begins>(hourglass[d][7],
+                                   t[d][d] * (h[d] * (xi[e] * xi[f])));
               if constexpr (!averages_shear_in_cells(kind) &&
                             kind != Projection::assumed_strain)
-                hourglass[d][7] += t[d][d] * (h[d] * (xi[e] * xi[f])) +
-                                   t[d][e] * (h[e] * (xi[d] * xi[f])) +
-                                   t[d][f] * (h[f] * (xi[d] * xi[e]));
+                accumulate<begins>(hourglass[d][7],
+                                   t[d][d] * (h[d] * (xi[e] * xi[f])) +
+                                     t[d][e] * (h[e] * (xi[d] * xi[f])) +
+                                     t[d][f] * (h[f] * (xi[d] * xi[e])));
             }
         }
     }
 
     /** Of the mode xi_d xi_e of component d. */
+    template <bool begins>
     __attribute__((always_inline)) void
     add_bilinear(const std::array<std::array<Number, dim>, dim> &t,
                  const std::array<Number, dim>                  &xi,
@@ -470,12 +541,15 @@ namespace limber
       const double *const h       = cell.inverse_edge.data();
       Number             &on_mode = hourglass[d][1 << d | 1 << e];
       if constexpr (kind == Projection::assumed_strain)
-        on_mode += (projection.own * t[d][d] + projection.mate * t[e][e]) *
-                   (h[d] * xi[e]);
+        accumulate<begins>(on_mode,
+                           (projection.own * t[d][d] +
+                            projection.mate * t[e][e]) *
+                             (h[d] * xi[e]));
       else if constexpr (normal_as_is)
-        on_mode += t[d][d] * (h[d] * xi[e]);
+        accumulate<begins>(on_mode, t[d][d] * (h[d] * xi[e]));
       else
-        on_mode += t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]);
+        accumulate<begins>(on_mode,
+                           t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]));
     }
 
     const CellGeometry<dim>    &cell;

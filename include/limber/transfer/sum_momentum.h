@@ -2,8 +2,11 @@
 #ifndef limber_transfer_sum_momentum_h
 #define limber_transfer_sum_momentum_h
 
+#include <limber/base/expected.h>
 #include <limber/interpolation/linear.h>
 #include <limber/points/cell_batch.h>
+
+#include <algorithm>
 
 namespace limber
 {
@@ -23,30 +26,45 @@ namespace limber
     using Kernel = Linear<dim>;
     using Nodes  = typename Kernel::Nodes;
 
-    for (std::size_t p = batch.begin; p < batch.end; ++p)
+    constexpr std::size_t width = 1 << dim;
+    std::size_t           begin = batch.begin;
+    do
       {
-        std::array<Nodes, dim> w;
+        // natural coordinates of a pack; points beyond the batch are not used
+        alignas(64) double xi[dim][width];
+#pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
-          w[d] = Kernel::weights(d,
-                                 (points.position[d][p] - cell.origin[d]) *
-                                   cell.inverse_edge[d]);
-        Nodes mass_weight = w[0] * w[1];
-        if constexpr (dim == 3)
-          mass_weight *= w[2];
-        mass_weight *= points.mass[p];
-        mass += mass_weight;
-        for (int d = 0; d < dim; ++d)
+          store((load<Nodes>(points.position[d] + begin) - cell.origin[d]) *
+                  cell.inverse_edge[d],
+                xi[d]);
+        const std::size_t end = std::min(begin + width, batch.end);
+        read_from_memory<dim>(xi);
+        for (std::size_t p = begin; p < end; ++p)
           {
-            Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
-            if constexpr (affine)
-              // x_i - x: one weight of the other end, signed
-              for (int e = 0; e < dim; ++e)
-                velocity += points.affine[d * dim + e][p] /
-                            cell.inverse_edge[e] *
-                            (Kernel::sign(e) * Kernel::across(w[e], e));
-            momentum[d] += mass_weight * velocity;
+            std::array<Nodes, dim> w;
+#pragma GCC unroll 8
+            for (int d = 0; d < dim; ++d)
+              w[d] = Kernel::weights(d, xi[d][p - begin]);
+            Nodes mass_weight = w[0] * w[1];
+            if constexpr (dim == 3)
+              mass_weight *= w[2];
+            mass_weight *= points.mass[p];
+            mass += mass_weight;
+            for (int d = 0; d < dim; ++d)
+              {
+                Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
+                if constexpr (affine)
+                  // x_i - x: one weight of the other end, signed
+                  for (int e = 0; e < dim; ++e)
+                    velocity += points.affine[d * dim + e][p] /
+                                cell.inverse_edge[e] *
+                                (Kernel::sign(e) * Kernel::across(w[e], e));
+                momentum[d] += mass_weight * velocity;
+              }
           }
+        begin += width;
       }
+    while (rarely(begin < batch.end));
   }
 } // namespace limber
 
