@@ -366,16 +366,14 @@ namespace limber
             {
               result[d] = on_coefficients(d);
               if (pressure_in_lane && d == 0)
-                {
-                  total_pressure = result[d][0];
-                  result[d][0]   = 0;
-                }
+                total_pressure = result[d][0];
             }
           if constexpr (replaces_shear(kind))
             distribute(result);
           else
             {
               Nodes scale = broadcast<Nodes>(1.);
+              scale[0]    = 0;
 #pragma GCC unroll 8
               for (int e = 0; e < dim; ++e)
                 scale[1 << e] = cell.inverse_edge[e];
