@@ -373,7 +373,7 @@ namespace limber
           else
             {
               Nodes scale = broadcast<Nodes>(1.);
-              scale[0]    = 0;
+              scale[0]    = 0; // nothing acts on c_0, whatever is there
 #pragma GCC unroll 8
               for (int e = 0; e < dim; ++e)
                 scale[1 << e] = cell.inverse_edge[e];
@@ -518,8 +518,7 @@ namespace limber
               if constexpr (normal_as_is)
                 accumulate<begins>(hourglass[d][7],
                                    t[d][d] * (h[d] * (xi[e] * xi[f])));
-              if constexpr (!averages_shear_in_cells(kind) &&
-                            kind != Projection::assumed_strain)
+              if constexpr (!replaces_shear(kind))
                 accumulate<begins>(hourglass[d][7],
                                    t[d][d] * (h[d] * (xi[e] * xi[f])) +
                                      t[d][e] * (h[e] * (xi[d] * xi[f])) +
