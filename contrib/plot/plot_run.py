@@ -43,9 +43,14 @@ def draw_snapshots(folder, parameters, field, number):
         if colour.ndim > 1:
             colour = run_folder.magnitude(colour)
         x, y = cloud["position"][:, 0], cloud["position"][:, 1]
-        dots = axis.scatter(x, y, c=colour, s=3, linewidths=0)
+        # Without the hundredth at either end: a single point that splashes
+        # would take all colours. The arrows of the bar stand for what is left.
+        low, high = np.percentile(colour, [1, 99])
+        dots = axis.scatter(x, y, c=colour, s=3, linewidths=0,
+                            vmin=low, vmax=high)
         figure.colorbar(dots, ax=axis, label=LABELS.get(field, field),
-                        orientation="horizontal", ticks=MaxNLocator(4))
+                        orientation="horizontal", ticks=MaxNLocator(4),
+                        extend="both")
     return figure
 
 
