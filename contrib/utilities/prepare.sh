@@ -1,11 +1,12 @@
-# Sourced by contrib/limber and contrib/check: installs what is missing on
+# Sourced by contrib/limber and contrib/check*: installs what is missing on
 # Debian, configures and builds. Says nothing when nothing needs doing.
 #
-# Expects 'set -euo pipefail'. Sets root (the project) and build (the folder of
-# the release build).
+# Expects 'set -euo pipefail', and in preset which one of CMakePresets.json is
+# built, release by default. Sets root (the project) and build (the folder of
+# that build).
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-build=$root/build/release
+build=$root/build/${preset:=release}
 
 packages=(g++ cmake ninja-build ccache libdeal.ii-dev libgtest-dev
   python3-numpy python3-matplotlib python3-h5py)
@@ -76,17 +77,16 @@ announce_building() {
   done
 }
 
-# prepare [target]: everything if no target is named.
+# prepare [target...]: everything if no target is named.
 prepare() {
   local log=$build/build.log
   install_missing
   mkdir -p "$build"
   if [[ ! -e $build/build.ninja ]]; then
     echo "Configuring Limber in $build"
-    quietly "$build/configure.log" \
-      cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release
+    quietly "$build/configure.log" cmake -S "$root" --preset "$preset"
   fi
-  cmake --build "$build" --parallel "$(jobs_that_fit)" ${1:+--target "$1"} 2>&1 |
+  cmake --build "$build" --parallel "$(jobs_that_fit)" ${1:+--target "$@"} 2>&1 |
     tee "$log" | announce_building "$log" && return
   cat "$log" >&2
   fail "The build failed; what it said is above and in $log."

@@ -16,7 +16,20 @@ namespace limber
   {
     constexpr unsigned int most_iterations = 2000;
     constexpr double       accuracy        = 1e-10; // relative residual
-  }                                                 // namespace
+
+
+
+    [[noreturn]] void
+    refuse_singular_matrix(const unsigned int n_equations)
+    {
+      throw ComputationError(
+        "The " + std::to_string(n_equations) +
+        " equations of the finite element reference have no unique solution. "
+        "Usually nothing holds the body, an element of 'Reference/Mesh file' "
+        "is degenerate, or numbers are too large or not finite. Set a side to "
+        "'no slip' in 'Boundaries', or 'Reference/Method = implicit'.");
+    }
+  } // namespace
 
 
 
@@ -58,7 +71,14 @@ namespace limber
         methods->factors = std::make_unique<Direct>(
           methods->control,
           Direct::AdditionalData(false, alone ? "Amesos_Klu" : "Amesos_Mumps"));
-        methods->factors->initialize(matrix);
+        try
+          {
+            methods->factors->initialize(matrix);
+          }
+        catch (const dealii::ExceptionBase &)
+          {
+            refuse_singular_matrix(matrix.m());
+          }
         return;
       }
 
@@ -83,7 +103,14 @@ namespace limber
   {
     if (direct)
       {
-        methods->factors->solve(solution, right_side);
+        try
+          {
+            methods->factors->solve(solution, right_side);
+          }
+        catch (const dealii::ExceptionBase &)
+          {
+            refuse_singular_matrix(right_side.size());
+          }
         return;
       }
     const double          size = right_side.l2_norm();

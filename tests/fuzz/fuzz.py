@@ -61,7 +61,8 @@ class Fuzzer:
         self.arguments = arguments
         self.work = work
         self.healthy = healthy
-        self.limits = sandbox.Limits()
+        self.limits = (sandbox.SANITIZED if arguments.sanitized
+                       else sandbox.Limits())
 
     def __call__(self, number):
         """Runs one mutant: number, what it is, outcome, complaints."""
@@ -114,6 +115,9 @@ def parse():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--work", type=Path,
                         help="where the mutants live and failing ones stay")
+    parser.add_argument("--sanitized", action="store_true",
+                        help="the program is built with sanitizers, which "
+                             "take time and no end of addresses")
     parser.add_argument("--keep", action="store_true",
                         help="keep mutants that pass, too")
     parser.add_argument("--verbose", action="store_true")

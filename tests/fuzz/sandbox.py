@@ -24,6 +24,11 @@ class Limits(NamedTuple):
     file_size: int = 200 << 20  # bytes
 
 
+# Addresses are what the shadow memory is made of.
+SANITIZED = Limits(asked_to_stop=60, stopped=60, processor=120,
+                   address_space=resource.RLIM_INFINITY, memory=6 << 30)
+
+
 class Outcome(NamedTuple):
     code: int  # negative: minus the signal that ended it
     stdout: str
