@@ -355,13 +355,11 @@ namespace limber
       if (method.order != StressUpdateOrder::last || courant_number > 0.7)
         return {};
       return {"small cut cell",
-              "with the stress update 'last' a Courant number of " +
-                brief(courant_number) +
-                " is unstable in a cell at the rim of a body that points fill "
-                "to less than " +
+              "with the stress update 'last', Courant number " +
+                brief(courant_number) + " fails in cells filled to less than " +
                 brief(0.5 * courant_number * courant_number) +
-                " edges (now the emptiest one of body '" + body.body +
-                "' is filled to " + brief(2 * body.filling) +
+                " edges (body '" + body.body +
+                "' now: " + brief(2 * body.filling) +
                 "). Set 'Method/Stress update = auto'."};
     }
 
@@ -380,7 +378,7 @@ namespace limber
       // MUSL and USF hold to 1.3 and more in the bulk; locked or not.
       if (symptoms.courant_number > 1)
         return {"Courant number",
-                "the Courant number of the last step is " +
+                "the last step had Courant number " +
                   brief(symptoms.courant_number) +
                   ", beyond what the stress update holds. Set 'Method/Courant "
                   "number = 0.4' and 'Method/Time step = 0'."};
@@ -391,8 +389,8 @@ namespace limber
             return {"inverted point",
                     "a point of body '" + body.body + "' has " +
                       brief(body.smallest_volume) +
-                      " of its volume left. Refine 'Grid/Cells', load more "
-                      "slowly, or take a law that hardens."};
+                      " of its volume left. Refine 'Grid/Cells' or load more "
+                      "slowly."};
         }
       return {};
     }
@@ -410,23 +408,22 @@ namespace limber
           const bool averaged = problem.bodies[b].treatment != Projection::none;
           if (!averaged && body.pressure_scatter > 1)
             return {"locking",
-                    "within the cells of body '" + body.body +
+                    "in cells of body '" + body.body +
                       "' the pressure scatters by " +
                       brief(body.pressure_scatter) + " times its mean. Set '" +
                       start + "Locking treatment = auto'."};
           if (averaged && body.chequerboard > 1)
             return {"chequerboard",
-                    "the pressure of a cell of body '" + body.body +
-                      "' differs from that of its neighbours by " +
-                      brief(body.chequerboard) + " times its size. Set '" +
-                      start + "Hourglass control = 0.1' or more."};
+                    "neighbouring cells of body '" + body.body +
+                      "' differ in pressure by " + brief(body.chequerboard) +
+                      " times its size. Set '" + start +
+                      "Hourglass control = 0.1' or more."};
           if (body.isolated_cells > 0.05)
             return {"lost contact",
                     percent_of(body.isolated_cells) +
-                      " of the cells with points of body '" + body.body +
+                      " of the cells of body '" + body.body +
                       "' touch no other one. Set '" + start +
-                      "Points per cell edge' above the largest stretch, or "
-                      "coarsen 'Grid/Cells'."};
+                      "Points per cell edge' above the largest stretch."};
         }
       return {};
     }
@@ -453,9 +450,8 @@ namespace limber
         problem.method.transfer == Transfer::flip)
       return {"null space",
               percent_of(symptoms.unseen_energy) +
-                " of the kinetic energy is motion of the points that the nodes "
-                "do not see. Set 'Method/Damping time' to the shortest time of "
-                "interest, or 'Method/Transfer = apic'."};
+                " of the kinetic energy is motion that the nodes do not see. "
+                "Set 'Method/Damping time' to the shortest time of interest."};
     return {};
   }
 

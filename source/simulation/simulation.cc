@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
 #include <limber/simulation/set_up.h>
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
@@ -34,7 +35,7 @@ namespace limber
     {
       return diagnosis.mode.empty() ?
                "" :
-               "Suspected: " + diagnosis.mode + ", for " + diagnosis.text + " ";
+               "Suspected: " + diagnosis.mode + ", for " + diagnosis.text;
     }
   } // namespace
 
@@ -156,9 +157,18 @@ namespace limber
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
     const Diagnosis   suspected = look_for_cause(/*unstable=*/true);
-    const std::string message   = std::string(failure.what()) + " " +
-                                in_words(suspected) + describe_last_state();
-    finish("unstable", message, word_for(failure.kind), suspected.mode);
+    const std::string message =
+      (suspected.mode.empty() ?
+         failure.what() :
+         failure.what_happened + " " + in_words(suspected)) +
+      " " + describe_last_state();
+    const std::string checkpoint = describe_last_checkpoint();
+    if (!checkpoint.empty())
+      console.say(checkpoint);
+    finish("unstable",
+           message + (checkpoint.empty() ? "" : " " + checkpoint),
+           word_for(failure.kind),
+           suspected.mode);
     throw ComputationError(message, failure.kind);
   }
 
@@ -200,10 +210,19 @@ namespace limber
       {
         text = std::string("The last state is lost. ") + failure.what();
       }
-    if (!checkpoints.good_file().empty())
-      text += " The last checkpoint, of step " + std::to_string(saved_step) +
-              ", is " + checkpoints.good_file() + ".";
     return text;
+  }
+
+
+
+  template <int dim>
+  std::string
+  Simulation<dim>::describe_last_checkpoint() const
+  {
+    if (checkpoints.good_file().empty())
+      return "";
+    return "The last checkpoint, of step " + std::to_string(saved_step) +
+           ", is " + checkpoints.good_file() + ".";
   }
 
 
@@ -262,13 +281,13 @@ namespace limber
   void
   Simulation<dim>::refuse_step(const double first_step) const
   {
-    std::ostringstream text;
-    text << "The step has shrunk to " << integrator.longest_step()
-         << " s, from " << first_step << " s at first, at time " << state.time
-         << " s. Usually a point is compressed to nothing, so that its wave "
-            "speed grows without bound. Look at 'smallest volume ratio' in the "
-            "statistics; refine 'Grid/Cells' or load more slowly.";
-    throw ComputationError(text.str(), FailureKind::step_too_small);
+    throw ComputationError(
+      "The step has shrunk to " + brief(integrator.longest_step()) +
+        " s, from " + brief(first_step) + " s at first, at time " +
+        brief(state.time) + " s.",
+      FailureKind::step_too_small,
+      "Usually a point is compressed to nothing, see 'smallest volume ratio' "
+      "in the statistics. Refine 'Grid/Cells' or load more slowly.");
   }
 
 
@@ -323,33 +342,29 @@ namespace limber
 
     if (totals.smallest_volume <= 0)
       {
-        std::ostringstream text;
-        text << "A point has turned inside out: the smallest volume ratio is "
-             << totals.smallest_volume << ", at time " << state.time
-             << " s with step " << state.step_size
-             << " s. Usually the material is compressed or sheared by more "
-                "than the grid resolves, or the step is too long. Refine "
-                "'Grid/Cells', load more slowly, or set Method/Courant number "
-                "to 0.4 or below.";
-        throw ComputationError(text.str(), FailureKind::inverted_point);
+        throw ComputationError(
+          "A point has turned inside out: the smallest volume ratio is " +
+            brief(totals.smallest_volume) + ", at time " + brief(state.time) +
+            " s with step " + brief(state.step_size) + " s.",
+          FailureKind::inverted_point,
+          "Usually the grid does not resolve the motion. Refine 'Grid/Cells', "
+          "load more slowly, or set 'Method/Courant number' to 0.4 or below.");
       }
     if (!(std::abs(totals.energy_drift) < problem.method.energy_growth_limit))
       {
-        std::ostringstream text;
-        if (std::isfinite(totals.energy_drift))
-          text << "The total energy has drifted by " << totals.energy_drift
-               << " of its scale";
-        else
-          text << "The total energy is not finite";
-        text << ", at time " << state.time << " s with step " << state.step_size
-             << " s. The run is unstable: usually the step is too long or the "
-                "material too stiff for it. Set Method/Courant number to 0.4 "
-                "or below; 'Energy growth limit' is "
-             << problem.method.energy_growth_limit << ".";
-        throw ComputationError(text.str(),
-                               std::isfinite(totals.energy_drift) ?
-                                 FailureKind::growing_energy :
-                                 FailureKind::not_finite);
+        const bool finite = std::isfinite(totals.energy_drift);
+        throw ComputationError(
+          "The run is unstable: the total energy " +
+            (finite ? "has drifted by " + brief(totals.energy_drift) +
+                        " of its scale" :
+                      "is not finite") +
+            ", at time " + brief(state.time) + " s with step " +
+            brief(state.step_size) + " s.",
+          finite ? FailureKind::growing_energy : FailureKind::not_finite,
+          "Usually the step is too long or the material too stiff for it. Set "
+          "'Method/Courant number' to 0.4 or below; 'Method/Energy growth "
+          "limit' is " +
+            brief(problem.method.energy_growth_limit) + ".");
       }
   }
 
@@ -379,15 +394,12 @@ namespace limber
     for (const auto &[body, point] : integrator.lost_points())
       {
         std::ostringstream text;
-        text << "Point " << point.id << " of body '" << body << "' "
+        text.precision(4);
+        text << "point " << point.id << " of body '" << body << "' "
              << (point.left_the_box ? "has left the box" :
                                       "has jumped past the cells known here")
              << " at (" << point.position << ") with velocity ("
-             << point.momentum / point.mass << ") m/s at time " << state.time
-             << " s"
-             << (point.left_the_box ?
-                   "; a side is free there, or the motion is unstable" :
-                   "; usually the motion is unstable");
+             << point.momentum / point.mass << ") m/s";
         own.push_back(text.str());
       }
     for (const auto &texts : dealii::Utilities::MPI::gather(communicator, own))
@@ -395,22 +407,23 @@ namespace limber
         console.warn_once("lost point " +
                             std::to_string(
                               std::min<std::size_t>(texts.size(), 5)),
-                          text);
+                          "At time " + brief(state.time) + " s " + text +
+                            ". Usually a side is free there, or the motion is "
+                            "unstable.");
 
     const auto lost =
       dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);
     totals.points = n_points_at_start - lost;
     if (lost > problem.method.lost_points_limit * n_points_at_start)
       {
-        std::ostringstream text;
-        text << lost << " of " << n_points_at_start
-             << " points are lost at time " << state.time << " s. "
-             << (own.empty() ? "They" : own.front() + ". They")
-             << " were taken out with their momentum on record. Close the side "
-                "in 'Boundaries' with slip, or raise 'Method/Lost points "
-                "limit' above "
-             << double(lost) / n_points_at_start << ".";
-        throw ComputationError(text.str(), FailureKind::lost_points);
+        throw ComputationError(
+          std::to_string(lost) + " of " + std::to_string(n_points_at_start) +
+            " points are lost at time " + brief(state.time) + " s" +
+            (own.empty() ? "." : ": " + own.front() + "."),
+          FailureKind::lost_points,
+          "Close the side in 'Boundaries' with slip, or raise 'Method/Lost "
+          "points limit' above " +
+            brief(double(lost) / n_points_at_start) + ".");
       }
   }
 

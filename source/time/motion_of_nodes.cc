@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
 #include <limber/time/explicit_integrator.h>
 #include <limber/transfer/chequerboard.h>
 #include <limber/transfer/hourglass.h>
@@ -197,20 +198,26 @@ namespace limber
     if (cells <= 1)
       return;
 
-    std::ostringstream text;
+    const std::string where = " at time " + brief(time) + " s.";
+    const double      good_step =
+      0.4 * grid.smallest_edge / (wave_speed + point_speed);
+    const std::string remedy =
+      "Usually the step is too long for the stiffness. Set 'Method/Courant "
+      "number' to 0.4 or below, or 'Method/Time step' to " +
+      brief(good_step) + ".";
     if (cells >= 1e300)
-      text << "The velocity of a node is not finite";
-    else
-      text << "A node moves at " << cells * grid.smallest_edge / step
-           << " m/s, " << cells << " cells in one step";
-    text << ", at time " << time << " s with step " << step
-         << " s. The run is unstable: usually the step is too long for the "
-            "stiffness, or 'Stress update' is 'last' without re-mapping. Set "
-            "Method/Courant number to 0.4 or below, or Method/Time step to "
-         << 0.4 * grid.smallest_edge / (wave_speed + point_speed) << " s.";
-    throw ComputationError(text.str(),
-                           cells >= 1e300 ? FailureKind::not_finite :
-                                            FailureKind::growing_energy);
+      throw ComputationError("The run is unstable: the velocity of a node is "
+                             "not finite," +
+                               where,
+                             FailureKind::not_finite,
+                             remedy);
+    throw ComputationError("The run is unstable: a node moves by " +
+                             brief(cells) + " cells in one step of " +
+                             brief(step) + " s, at " +
+                             brief(cells * grid.smallest_edge / step) +
+                             " m/s," + where,
+                           FailureKind::growing_energy,
+                           remedy);
   }
 
 

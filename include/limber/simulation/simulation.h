@@ -63,6 +63,8 @@ namespace limber
     finish_failed(const ComputationError &failure);
     std::string
     describe_last_state();
+    std::string
+    describe_last_checkpoint() const;
     Diagnosis
     look_for_cause(bool unstable);
     double
