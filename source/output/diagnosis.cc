@@ -450,8 +450,8 @@ namespace limber
         problem.method.transfer == Transfer::flip)
       return {"null space",
               percent_of(symptoms.unseen_energy) +
-                " of the kinetic energy is motion that the nodes do not see. "
-                "Set 'Method/Damping time' to the shortest time of interest."};
+                " of the kinetic energy is unseen by the nodes. Set "
+                "'Method/Damping time' to the shortest time of interest."};
     return {};
   }
 

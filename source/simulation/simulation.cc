@@ -37,6 +37,37 @@ namespace limber
                "" :
                "Suspected: " + diagnosis.mode + ", for " + diagnosis.text;
     }
+
+
+
+    /** Where no cause has been found: the usual one, and what to change. */
+    std::string
+    usual_cause(const FailureKind kind)
+    {
+      switch (kind)
+        {
+          case FailureKind::growing_energy:
+          case FailureKind::not_finite:
+            return "Usually the step is too long for the stiffness. Set "
+                   "'Method/Courant number' to 0.4 or below and 'Method/Time "
+                   "step' to 0.";
+          case FailureKind::inverted_point:
+            return "Usually the grid does not resolve the motion. Refine "
+                   "'Grid/Cells', load more slowly, or set 'Method/Courant "
+                   "number' to 0.4 or below.";
+          case FailureKind::lost_points:
+            return "Usually a side is free there. Close it in 'Boundaries' "
+                   "with slip, or raise 'Method/Lost points limit' above the "
+                   "share that is lost.";
+          case FailureKind::step_too_small:
+            return "Usually a point is compressed to nothing, see 'smallest "
+                   "volume ratio' in the statistics. Refine 'Grid/Cells' or "
+                   "load more slowly.";
+          case FailureKind::other:
+            break;
+        }
+      return "";
+    }
   } // namespace
 
 
@@ -158,9 +189,9 @@ namespace limber
   {
     const Diagnosis   suspected = look_for_cause(/*unstable=*/true);
     const std::string message =
-      (suspected.mode.empty() ?
-         failure.what() :
-         failure.what_happened + " " + in_words(suspected)) +
+      std::string(failure.what()) + " " +
+      (suspected.mode.empty() ? usual_cause(failure.kind) :
+                                in_words(suspected)) +
       " " + describe_last_state();
     const std::string checkpoint = describe_last_checkpoint();
     if (!checkpoint.empty())
@@ -281,13 +312,11 @@ namespace limber
   void
   Simulation<dim>::refuse_step(const double first_step) const
   {
-    throw ComputationError(
-      "The step has shrunk to " + brief(integrator.longest_step()) +
-        " s, from " + brief(first_step) + " s at first, at time " +
-        brief(state.time) + " s.",
-      FailureKind::step_too_small,
-      "Usually a point is compressed to nothing, see 'smallest volume ratio' "
-      "in the statistics. Refine 'Grid/Cells' or load more slowly.");
+    throw ComputationError("The step has shrunk to " +
+                             brief(integrator.longest_step()) + " s, from " +
+                             brief(first_step) + " s at first, at time " +
+                             brief(state.time) + " s.",
+                           FailureKind::step_too_small);
   }
 
 
@@ -346,9 +375,7 @@ namespace limber
           "A point has turned inside out: the smallest volume ratio is " +
             brief(totals.smallest_volume) + ", at time " + brief(state.time) +
             " s with step " + brief(state.step_size) + " s.",
-          FailureKind::inverted_point,
-          "Usually the grid does not resolve the motion. Refine 'Grid/Cells', "
-          "load more slowly, or set 'Method/Courant number' to 0.4 or below.");
+          FailureKind::inverted_point);
       }
     if (!(std::abs(totals.energy_drift) < problem.method.energy_growth_limit))
       {
@@ -356,15 +383,12 @@ namespace limber
         throw ComputationError(
           "The run is unstable: the total energy " +
             (finite ? "has drifted by " + brief(totals.energy_drift) +
-                        " of its scale" :
+                        " of its scale, 'Energy growth limit' is " +
+                        brief(problem.method.energy_growth_limit) :
                       "is not finite") +
             ", at time " + brief(state.time) + " s with step " +
             brief(state.step_size) + " s.",
-          finite ? FailureKind::growing_energy : FailureKind::not_finite,
-          "Usually the step is too long or the material too stiff for it. Set "
-          "'Method/Courant number' to 0.4 or below; 'Method/Energy growth "
-          "limit' is " +
-            brief(problem.method.energy_growth_limit) + ".");
+          finite ? FailureKind::growing_energy : FailureKind::not_finite);
       }
   }
 
@@ -391,6 +415,7 @@ namespace limber
   Simulation<dim>::report_lost_points()
   {
     std::vector<std::string> own;
+    std::string              first; // of them, without its velocity
     for (const auto &[body, point] : integrator.lost_points())
       {
         std::ostringstream text;
@@ -398,8 +423,10 @@ namespace limber
         text << "point " << point.id << " of body '" << body << "' "
              << (point.left_the_box ? "has left the box" :
                                       "has jumped past the cells known here")
-             << " at (" << point.position << ") with velocity ("
-             << point.momentum / point.mass << ") m/s";
+             << " at (" << point.position << ")";
+        if (own.empty())
+          first = text.str();
+        text << " with velocity (" << point.momentum / point.mass << ") m/s";
         own.push_back(text.str());
       }
     for (const auto &texts : dealii::Utilities::MPI::gather(communicator, own))
@@ -416,14 +443,12 @@ namespace limber
     totals.points = n_points_at_start - lost;
     if (lost > problem.method.lost_points_limit * n_points_at_start)
       {
-        throw ComputationError(
-          std::to_string(lost) + " of " + std::to_string(n_points_at_start) +
-            " points are lost at time " + brief(state.time) + " s" +
-            (own.empty() ? "." : ": " + own.front() + "."),
-          FailureKind::lost_points,
-          "Close the side in 'Boundaries' with slip, or raise 'Method/Lost "
-          "points limit' above " +
-            brief(double(lost) / n_points_at_start) + ".");
+        throw ComputationError(std::to_string(lost) + " of " +
+                                 std::to_string(n_points_at_start) +
+                                 " points are lost at time " +
+                                 brief(state.time) + " s" +
+                                 (first.empty() ? "." : ": " + first + "."),
+                               FailureKind::lost_points);
       }
   }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 /**
@@ -199,25 +198,16 @@ namespace limber
       return;
 
     const std::string where = " at time " + brief(time) + " s.";
-    const double      good_step =
-      0.4 * grid.smallest_edge / (wave_speed + point_speed);
-    const std::string remedy =
-      "Usually the step is too long for the stiffness. Set 'Method/Courant "
-      "number' to 0.4 or below, or 'Method/Time step' to " +
-      brief(good_step) + ".";
     if (cells >= 1e300)
-      throw ComputationError("The run is unstable: the velocity of a node is "
-                             "not finite," +
-                               where,
-                             FailureKind::not_finite,
-                             remedy);
+      throw ComputationError(
+        "The run is unstable: the velocity of a node is not finite," + where,
+        FailureKind::not_finite);
     throw ComputationError("The run is unstable: a node moves by " +
                              brief(cells) + " cells in one step of " +
                              brief(step) + " s, at " +
                              brief(cells * grid.smallest_edge / step) +
                              " m/s," + where,
-                           FailureKind::growing_energy,
-                           remedy);
+                           FailureKind::growing_energy);
   }
 
 

@@ -65,7 +65,7 @@ def on_words(outcome):
 
 def on_length(text):
     """What is wrong with the form of one message."""
-    words = text.split()
+    words = text.partition(": ")[2].split() or [""]
     found = []
     if len(words) >= MOST_WORDS:
         found.append(f"message of {len(words)} words: {text[:600]}")

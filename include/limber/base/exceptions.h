@@ -91,21 +91,13 @@ namespace limber
   class ComputationError : public Failure
   {
   public:
-    /**
-     * @p remedy: the usual cause and what to change. Apart, as whoever finds
-     * the cause of this very failure tells that instead.
-     */
-    explicit ComputationError(const std::string &what_happened,
-                              const FailureKind  kind   = FailureKind::other,
-                              const std::string &remedy = "")
-      : Failure(ExitCode::computation_failed,
-                what_happened + (remedy.empty() ? "" : " " + remedy))
+    explicit ComputationError(const std::string &message,
+                              const FailureKind  kind = FailureKind::other)
+      : Failure(ExitCode::computation_failed, message)
       , kind(kind)
-      , what_happened(what_happened)
     {}
 
     const FailureKind kind;
-    const std::string what_happened;
   };
 
 
