@@ -13,6 +13,7 @@
 
 #include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
+#include <limber/grid/order_of_trees.h>
 
 #include <malloc.h>
 
@@ -71,6 +72,7 @@ namespace limber
         communicator,
         dealii::Triangulation<dim>::limit_level_difference_at_vertices)
   {
+    order_trees_quickly();
     std::vector<unsigned int> coarse(description.cells.begin(),
                                      description.cells.end());
     unsigned int              refinements = 0;
