@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 
 #include <limber/base/exceptions.h>
+#include <limber/base/text.h>
 #include <limber/fem/fitted_mesh.h>
+#include <limber/fem/mesh_file.h>
+#include <limber/problem/size_estimate.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <optional>
 #include <sstream>
 
@@ -111,25 +114,54 @@ namespace limber
 
 
 
+    /** On all ranks, as one of them has read it. */
+    std::string
+    mesh_text(const std::string &path, const MPI_Comm communicator)
+    {
+      std::ostringstream text;
+      if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+        text << std::ifstream(path).rdbuf();
+      const std::string result =
+        dealii::Utilities::MPI::broadcast(communicator, text.str());
+      if (result.empty())
+        throw FileError("The mesh " + in_quotes(path) +
+                        " of 'Reference/Mesh file' cannot be read or is empty. "
+                        "Usually the path is wrong or relative to another "
+                        "folder. Give an existing file, for instance "
+                        "'panel.msh'.");
+      return result;
+    }
+
+
+
     template <int dim>
     std::unique_ptr<Mesh<dim>>
-    read_mesh(const std::string &path, MPI_Comm communicator)
+    read_mesh(const Problem<dim> &problem, MPI_Comm communicator)
     {
+      const std::string &path = problem.reference.mesh_file;
+      CoarseMesh<dim>    coarse =
+        read_mesh_text<dim>(mesh_text(path, communicator), path);
+      check_size(problem,
+                 Task::reference,
+                 this_machine(communicator),
+                 coarse.cells.size());
       auto mesh = std::make_unique<Mesh<dim>>(communicator);
       try
         {
-          dealii::GridIn<dim>(*mesh).read(path);
+          dealii::GridTools::consistently_order_cells(coarse.cells);
+          mesh->create_triangulation(coarse.vertices,
+                                     coarse.cells,
+                                     dealii::SubCellData());
         }
       catch (const dealii::ExceptionBase &failure)
         {
           std::ostringstream reason;
           failure.print_info(reason);
-          throw FileError("The mesh '" + path +
-                          "' of 'Reference/Mesh file' cannot be read. "
-                          "Usually the path is wrong, the ending does not "
-                          "name the format, or there are triangles or "
-                          "tetrahedra in it. deal.II says: " +
-                          reason.str());
+          throw InputError("The elements of the mesh " + in_quotes(path) +
+                           " of 'Reference/Mesh file' do not fit together. "
+                           "Usually they fold into a strip with one side. "
+                           "deal.II says: " +
+                           printable(trimmed(reason.str())));
         }
       return mesh;
     }
@@ -186,7 +218,7 @@ namespace limber
     std::unique_ptr<Mesh<dim>> mesh;
     if (!request.mesh_file.empty())
       {
-        mesh = read_mesh<dim>(request.mesh_file, communicator);
+        mesh = read_mesh<dim>(problem, communicator);
         mark_faces<dim>(corners, *mesh);
       }
     else if (corners)
@@ -200,8 +232,8 @@ namespace limber
       }
     else
       throw InputError(
-        "The body '" + body.name +
-        "' is neither a box nor a block, and no mesh is known that fits "
+        "The body " + in_quotes(body.name) +
+        " is neither a box nor a block, and no mesh is known that fits "
         "it. "
         "Make one of quadrilaterals or hexahedra, for instance "
         "with Gmsh, and name it in section 'Reference', entry "

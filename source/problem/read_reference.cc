@@ -38,8 +38,8 @@ namespace limber
                        admissible::text("path of a mesh file, or empty",
                                         "panel.msh"),
                        "Mesh of quadrilaterals or hexahedra that fits the "
-                       "body, in a format that deal.II reads (msh, inp, vtk, "
-                       "unv, exo and others, by ending); empty: a box.");
+                       "body: msh (Gmsh 2 or 4.1, ASCII), inp (UCD) or vtk "
+                       "(legacy, ASCII), by ending; empty: a box.");
     parameters.declare("Refinements",
                        "0",
                        admissible::non_negative_integer("1"),

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_mesh_file_h
+#define limber_fem_mesh_file_h
+
+#include <deal.II/base/point.h>
+
+#include <deal.II/grid/tria_description.h>
+
+#include <string>
+#include <vector>
+
+/** @file Meshes of quadrilaterals or hexahedra from files of other programs. */
+namespace limber
+{
+  /** Places of nodes, m, and elements by these; in deal.II's order. */
+  template <int dim>
+  struct CoarseMesh
+  {
+    std::vector<dealii::Point<dim>>    vertices;
+    std::vector<dealii::CellData<dim>> cells;
+  };
+
+
+
+  /**
+   * The mesh that a text holds; @p path is its name, whose ending tells the
+   * format: msh (Gmsh's 2 and 4.1, ASCII), inp (AVS UCD) or vtk (legacy,
+   * ASCII). Elements of lower dimension are left out. Each count, node and
+   * element is looked at before it is used; throws InputError with line and
+   * number of the first that is wrong: another shape of element, nodes that
+   * are missing, given twice or not finite, elements that are twisted, flat or
+   * given twice, faces of more than two elements.
+   */
+  template <int dim>
+  CoarseMesh<dim>
+  read_mesh_text(const std::string &text, const std::string &path);
+} // namespace limber
+
+#endif
