@@ -3,8 +3,10 @@
 
 #include <limber/base/console.h>
 #include <limber/base/run_info.h>
+#include <limber/base/unforeseen.h>
 #include <limber/output/run_folder.h>
 #include <limber/problem/read_problem.h>
+#include <limber/problem/size_estimate.h>
 #include <limber/simulation/command_line.h>
 #include <limber/simulation/reference_run.h>
 #include <limber/simulation/signals.h>
@@ -25,6 +27,7 @@ namespace
   run(const SceneFile &scene, const CommandLine &command, Console &console)
   {
     const Problem<dim> problem = read_problem<dim>(scene);
+    check_size(problem, Task::run, this_machine(MPI_COMM_WORLD));
     for (const std::string &warning : scene.warnings())
       console.warn(warning);
     for (const std::string &note : problem.notes)
@@ -129,11 +132,19 @@ main(int argc, char *argv[])
         std::cerr << "Error: " << failure.what() << std::endl;
         return int(failure.code);
       }
+    catch (const std::exception &unforeseen)
+      {
+        const auto failure = as_failure(unforeseen);
+        std::cerr << "Error: " << failure.what() << std::endl;
+        return int(failure.code);
+      }
 
   tune_open_mpi();
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+
+  end_all_ranks_without_memory();
 
   // Failures are the same on every rank, so one speaks and all end. What is
   // not foreseen may concern one rank alone: it speaks and ends the others.
@@ -156,9 +167,12 @@ main(int argc, char *argv[])
         MPI_Abort(MPI_COMM_WORLD, int(failure.code));
       return int(failure.code);
     }
-  catch (const std::exception &failure)
+  catch (const std::exception &unforeseen)
     {
+      const auto failure = as_failure(unforeseen);
       std::cerr << "Error: " << failure.what() << std::endl;
-      MPI_Abort(MPI_COMM_WORLD, int(ExitCode::computation_failed));
+      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+        MPI_Abort(MPI_COMM_WORLD, int(failure.code));
+      return int(failure.code);
     }
 }

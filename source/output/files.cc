@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/base/unforeseen.h>
 #include <limber/output/files.h>
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 
 namespace limber
@@ -87,9 +89,14 @@ namespace limber
         {
           failure.emplace(caught);
         }
+      catch (const std::filesystem::filesystem_error &caught)
+        {
+          failure.emplace(
+            cannot_write(caught.path1().string(), caught.code().message()));
+        }
       catch (const std::exception &caught)
         {
-          failure.emplace(ExitCode::file_error, caught.what());
+          failure.emplace(as_failure(caught));
         }
     throw_together(failure, communicator);
   }

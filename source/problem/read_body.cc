@@ -205,7 +205,7 @@ namespace limber
           longest = std::max(longest, std::sqrt(square));
         }
       // Decimal fractions need not meet exactly.
-      return std::max(1L, std::lround(std::ceil(longest - 1e-6)));
+      return std::lround(std::clamp(std::ceil(longest - 1e-6), 1., 1e9));
     }
 
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/read_problem.h>
+
+#include <algorithm>
 
 namespace limber
 {
@@ -49,7 +52,7 @@ namespace limber
       std::vector<std::string> result;
       for (const auto &[name, value] : parameters.entries())
         if (name != "End time" && name != "End step" &&
-            name.rfind("Output/", 0) != 0 &&
+            name != "Memory limit" && name.rfind("Output/", 0) != 0 &&
             name.rfind("Checkpoint/", 0) != 0 &&
             name.rfind("Reference/", 0) != 0 &&
             name.rfind("Exact solution/", 0) != 0)
@@ -76,7 +79,9 @@ namespace limber
     Problem<dim> problem;
     problem.end_time = root.number("End time");
     problem.end_step = static_cast<unsigned long>(root.number("End step"));
-    problem.grid     = read_grid<dim>(root.subsection("Grid"));
+    if (root.text("Memory limit") != "auto")
+      problem.memory_limit = 1e9 * root.number("Memory limit");
+    problem.grid = read_grid<dim>(root.subsection("Grid"));
     read_boundaries(root.subsection("Boundaries"), problem);
     read_volume_loads(loads, problem);
     read_bodies(root, problem);

@@ -9,6 +9,7 @@
 #include <limber/output/run_folder.h>
 #include <limber/output/summary.h>
 #include <limber/problem/read_problem.h>
+#include <limber/problem/size_estimate.h>
 #include <limber/simulation/reference_fields.h>
 #include <limber/simulation/reference_observables.h>
 #include <limber/simulation/reference_run.h>
@@ -42,7 +43,7 @@ namespace limber
       const auto is_idle = [](const auto &entry) {
         const std::string &name = entry.first;
         return name == "Output/Directory" || name == "Output/Replace" ||
-               name == "Output/Progress interval" ||
+               name == "Output/Progress interval" || name == "Memory limit" ||
                name.rfind("Checkpoint/", 0) == 0 ||
                name.rfind("Method/", 0) == 0;
       };
@@ -119,6 +120,7 @@ namespace limber
         , checks(problem.checks, observables.names())
         , targets(checks.times())
       {
+        check_steps(problem, Task::reference, solver.longest_step());
         targets.push_back(problem.end_time);
         for (unsigned int k = 1; problem.output.time_interval > 0 &&
                                  k * problem.output.time_interval <
@@ -370,6 +372,7 @@ namespace limber
     run(const SceneFile &scene, const CommandLine &command, Console &console)
     {
       const Problem<dim> problem = read_problem<dim>(scene);
+      check_size(problem, Task::reference, this_machine(MPI_COMM_WORLD));
       for (const std::string &warning : scene.warnings())
         console.warn(warning);
       const std::string &folder = problem.output.directory;

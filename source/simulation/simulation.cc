@@ -403,8 +403,13 @@ namespace limber
       return;
     const double before = cpu_time();
     writer.write(state);
-    while (next_pictures <= state.time * (1 + same_time))
+    const double passed = state.time * (1 + same_time);
+    if (next_pictures <= passed)
       next_pictures += interval;
+    // Steps that are longer than the interval skip pictures.
+    if (next_pictures <= passed)
+      next_pictures +=
+        interval * (std::floor((passed - next_pictures) / interval) + 1);
     output_cpu += cpu_time() - before;
   }
 

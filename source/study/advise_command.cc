@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/read_problem.h>
+#include <limber/problem/size_estimate.h>
 #include <limber/simulation/command_line.h>
 #include <limber/study/advice.h>
 #include <limber/study/child_process.h>
@@ -76,8 +78,9 @@ save; runs nothing.
                 const double                    error)
     {
       const Problem<dim> problem = read_problem<dim>(scene);
-      const RunSize      size    = size_of(path, overrides);
-      const auto advice = advise<dim>(scene, problem, error, size.first_step);
+      check_size(problem, Task::run, this_machine());
+      const RunSize size = size_of(path, overrides);
+      const auto advice  = advise<dim>(scene, problem, error, size.first_step);
       for (const Advice &piece : advice)
         {
           double factor = piece.factor;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/base/memory.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
 #include <limber/study/inf_sup.h>
@@ -81,6 +82,27 @@ square, no velocity on its boundary.
 
 
 
+    /** The matrices of the test are full. */
+    void
+    check_memory_of(const unsigned int cells)
+    {
+      const double velocities = 2. * cells * cells;
+      const double pressures  = (cells + 1.) * (cells + 1.);
+      const double bytes =
+        sizeof(double) * (velocities * velocities + 2 * velocities * pressures +
+                          3 * pressures * pressures);
+      const double there = machine_memory(1);
+      if (bytes > there)
+        throw InputError("The test with " + std::to_string(cells) +
+                         " cells per edge ('--cells' on the command line) "
+                         "needs some " +
+                         brief(bytes / 1e9) + " GB of memory; there are " +
+                         brief(there / 1e9) +
+                         ". Its matrices are full. Write '--cells 4,8,12'.");
+    }
+
+
+
     void
     take_inf_sup_option(const std::string &option,
                         const std::string &value,
@@ -150,6 +172,8 @@ square, no velocity on its boundary.
         }
       if (call.fill < 1 && call.points == 0)
         call.points = 3;
+      for (const unsigned int cells : call.cells)
+        check_memory_of(cells);
       return call;
     }
 

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/problem/read_problem.h>
+#include <limber/problem/size_estimate.h>
 #include <limber/study/variants.h>
 
 #include <cctype>
@@ -80,10 +81,12 @@ namespace limber
       try
         {
           const SceneFile scene(study.scene, variant.settings);
+          const Task      task =
+            variant.runner == Runner::reference ? Task::reference : Task::run;
           if (scene.dimension() == 2)
-            read_problem<2>(scene);
+            check_size(read_problem<2>(scene), task, this_machine());
           else
-            read_problem<3>(scene);
+            check_size(read_problem<3>(scene), task, this_machine());
           std::ostringstream text;
           print_parameters(text, PrintStyle::prm, &scene);
           return text.str();
@@ -98,9 +101,35 @@ namespace limber
 
 
 
+  namespace
+  {
+    constexpr double most_variants = 1e4;
+
+
+
+    /** Each is read, and is a folder. */
+    void
+    check_number(const StudyFile &study)
+    {
+      double n = study.methods.size();
+      for (const Variation &variation : study.variations)
+        n *= variation.choices.size();
+      if (n > most_variants)
+        throw InputError("The study " + in_quotes(study.path) + " has " +
+                         brief(n) + " variants, at most " +
+                         brief(most_variants) +
+                         " are run. Usually two variations should go "
+                         "together. Name one of them in the entry 'With' of "
+                         "the other, or take values out.");
+    }
+  } // namespace
+
+
+
   std::vector<Variant>
   expand(const StudyFile &study)
   {
+    check_number(study);
     std::vector<Variant>  variants;
     std::set<std::string> folders;
     for (std::size_t method = 0; method < study.methods.size(); ++method)

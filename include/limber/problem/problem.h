@@ -285,8 +285,9 @@ namespace limber
   template <int dim>
   struct Problem
   {
-    double                         end_time = 1; // s
-    unsigned long                  end_step = 0; // 0: the time alone counts
+    double        end_time     = 1; // s
+    unsigned long end_step     = 0; // 0: the time alone counts
+    double        memory_limit = 0; // bytes, all ranks; 0: what the machine has
     std::vector<Body<dim>>         bodies;
     GridDescription<dim>           grid;
     std::array<Side<dim>, 2 * dim> sides;
