@@ -7,9 +7,11 @@
 #include <limber/base/text.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cfenv>
 #include <cmath>
 #include <iostream>
+#include <new>
 #include <sstream>
 
 namespace limber
@@ -91,6 +93,73 @@ namespace limber
 
 
 
+    bool
+    is_letter_of_name(const char letter)
+    {
+      return std::isalnum(static_cast<unsigned char>(letter)) || letter == '_';
+    }
+
+
+
+    /** The function @p name is called somewhere in the formula. */
+    bool
+    calls(const std::string &expression, const std::string &name)
+    {
+      for (auto at = expression.find(name); at != std::string::npos;
+           at      = expression.find(name, at + 1))
+        {
+               const std::size_t end = at + name.size();
+               const std::size_t next =
+                 std::min(expression.find_first_not_of(" \t", end),
+                     expression.size());
+               if ((at == 0 || !is_letter_of_name(expression[at - 1])) &&
+              next < expression.size() && expression[next] == '(')
+            return true;
+        }
+      return false;
+    }
+
+
+
+    /**
+     * The next number of a sequence depends on how often and in which order
+     * ranks have asked before, with a seed too.
+     */
+    void
+    check_reproducible(const std::string &expression, const std::string &where)
+    {
+      for (const std::string name : {"rand", "rand_seed"})
+        if (calls(expression, name))
+          throw InputError(
+            "The formula " + in_quotes(expression) + " calls " +
+            in_quotes(name) + " in " + where +
+            ". Random numbers depend on the order of evaluation, so no run "
+            "could be repeated. Write a fixed pattern, for instance "
+            "'sin(12.9898*x + 78.233*y)', or 'Placement = jittered'.");
+    }
+
+
+
+    // The parser calls itself for every bracket that is opened.
+    constexpr std::size_t longest_formula = 10000; // letters
+
+
+
+    void
+    check_length(const std::string &expression, const std::string &where)
+    {
+      if (expression.size() > longest_formula)
+        throw InputError("The formula " + in_quotes(expression) + " has " +
+                         std::to_string(expression.size()) + " letters in " +
+                         where +
+                         ". Usually a file was pasted in by mistake. "
+                         "Write at most " +
+                         std::to_string(longest_formula) +
+                         " letters, for instance 'sin(pi*x)'.");
+    }
+
+
+
     /** What muparser says, without deal.II's frame around it. */
     std::string
     complaint_of(const dealii::ExceptionBase &exception)
@@ -110,9 +179,31 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** A letter, then letters, digits and '_'. */
+    bool
+    is_name(const std::string &name)
+    {
+      constexpr std::size_t longest = 60;
+      return !name.empty() && name.size() <= longest &&
+             !std::isdigit(static_cast<unsigned char>(name.front())) &&
+             std::all_of(name.begin(), name.end(), is_letter_of_name);
+    }
+  } // namespace
+
+
+
   void
   check_constants(const Constants &constants, const std::string &where)
   {
+    for (const auto &[name, value] : constants)
+      if (!is_name(name))
+        throw InputError("The constant " + in_quotes(name) + " = " +
+                         brief(value) + " in " + where +
+                         " has no name that formulas can use. Write up to 60 "
+                         "letters, digits and '_', a letter first, for "
+                         "instance 'v0 = 1'.");
     for (const std::string reserved : {"x", "y", "z", "t", "pi"})
       if (constants.count(reserved) > 0)
         throw InputError("The constant " + in_quotes(reserved) +
@@ -134,6 +225,8 @@ namespace limber
     , components(n_components)
   {
     check_constants(constants, where);
+    check_length(text, where);
+    check_reproducible(text, where);
     const std::vector<std::string> parts = split(text, ';');
     check_components(parts, n_components, text, where);
 
@@ -157,9 +250,9 @@ namespace limber
       {
         throw InputError(
           "The formula " + in_quotes(text) +
-          " cannot be read: " + complaint_of(exception) + ", in " + where +
-          ". Usually a name or a bracket is wrong. Use " + variables<dim>() +
-          ", pi and 'Constants', as in 'sin(pi*x)'.");
+          " cannot be read: " + printable(complaint_of(exception)) + ", in " +
+          where + ". Usually a name or a bracket is wrong. Use " +
+          variables<dim>() + ", pi and 'Constants', as in 'sin(pi*x)'.");
       }
   }
 

@@ -9,21 +9,6 @@ namespace limber
 {
   namespace
   {
-    std::string
-    json_text(const std::string &text)
-    {
-      std::string result = "\"";
-      for (const char c : text)
-        {
-          if (c == '"' || c == '\\')
-            result += '\\';
-          result += c == '\t' ? ' ' : c;
-        }
-      return result + '"';
-    }
-
-
-
     /** Nested objects, written while one walks through the sections. */
     class JsonWriter
     {
@@ -46,7 +31,7 @@ namespace limber
         while (path.size() < target.size())
           {
             new_line();
-            out << json_text(target[path.size()]) << ": {";
+            out << json_quoted(target[path.size()]) << ": {";
             first = true;
             path.push_back(target[path.size()]);
           }
@@ -56,7 +41,7 @@ namespace limber
       entry(const std::string &name, const std::string &value)
       {
         new_line();
-        out << json_text(name) << ": " << json_text(value);
+        out << json_quoted(name) << ": " << json_quoted(value);
       }
 
       void

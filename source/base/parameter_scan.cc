@@ -18,6 +18,52 @@ namespace limber
 {
   namespace
   {
+    // Deeper than any scene; what takes a file apart calls itself.
+    constexpr std::size_t deepest = 16;
+
+
+
+    std::string
+    at_line(const std::size_t line, const std::string &origin)
+    {
+      return " (line " + std::to_string(line) + " of " + printable(origin) +
+             ")";
+    }
+
+
+
+    [[noreturn]] void
+    refuse_depth(const std::size_t line, const std::string &origin)
+    {
+      throw InputError("The sections are nested more than " +
+                       std::to_string(deepest) + " deep" +
+                       at_line(line, origin) +
+                       ". Usually a closing 'end' or bracket is missing. Close "
+                       "each section behind its entries; a scene needs 4 "
+                       "levels at most.");
+    }
+
+
+
+    /** Neither a text editor nor Python writes these unasked. */
+    void
+    check_letters(const std::string &text, const std::string &origin)
+    {
+      std::size_t line = 1;
+      for (const char letter : text)
+        if (letter == '\n')
+          ++line;
+        else if (is_control(letter) && letter != '\t' && letter != '\r')
+          throw InputError("There is the control character " +
+                           in_quotes(std::string(1, letter)) +
+                           at_line(line, origin) +
+                           ". Usually the file is not a text or was damaged. "
+                           "Remove the character; a scene holds letters, "
+                           "blanks, tabs and line ends only.");
+    }
+
+
+
     /** The prm language, line by line. */
     class PrmScanner
     {
@@ -72,6 +118,8 @@ namespace limber
         const std::string rest = trimmed(statement.substr(word.size()));
         if (word == "subsection" && !rest.empty())
           {
+            if (path.size() == deepest)
+              refuse_depth(line, scan.origin);
             path.push_back(rest);
             scan.sections.push_back({path, line});
           }
@@ -108,8 +156,8 @@ namespace limber
       [[noreturn]] void
       refuse(const std::string &what, const std::string &cause_and_remedy) const
       {
-        throw InputError(what + " (line " + std::to_string(line) + " of " +
-                         scan.origin + "). " + cause_and_remedy);
+        throw InputError(what + at_line(line, scan.origin) + ". " +
+                         cause_and_remedy);
       }
 
       std::istringstream input;
@@ -135,11 +183,21 @@ namespace limber
 
 
     std::string
-    comma_list(const Tree &array)
+    comma_list(const Tree        &array,
+               const std::string &name,
+               const std::string &origin)
     {
       std::vector<std::string> values;
       for (const auto &child : array)
-        values.push_back(child.second.data());
+        {
+          if (!child.second.empty())
+            throw InputError("The array " + in_quotes(name) + " in " +
+                             printable(origin) +
+                             " holds an array or an object. Arrays stand for "
+                             "lists of numbers or words. Write '[1, 2]', for "
+                             "instance, and sections as objects with names.");
+          values.push_back(child.second.data());
+        }
       return join(values, ", ");
     }
 
@@ -153,7 +211,8 @@ namespace limber
           scan.entries.push_back(
             {path,
              trimmed(name),
-             trimmed(node.empty() ? node.data() : comma_list(node)),
+             trimmed(node.empty() ? node.data() :
+                                    comma_list(node, name, scan.origin)),
              0});
         else
           {
@@ -166,9 +225,38 @@ namespace limber
 
 
 
+    /** Before it is read by calls that nest as deep as the text does. */
+    void
+    check_depth_of_json(const std::string &text, const std::string &origin)
+    {
+      std::size_t depth = 0, line = 1;
+      bool        in_string = false;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        {
+          const char letter = text[i];
+          if (letter == '\n')
+            ++line;
+          if (in_string && letter == '\\')
+            ++i;
+          else if (letter == '"')
+            in_string = !in_string;
+          else if (!in_string && (letter == '{' || letter == '['))
+            {
+              // a list in the innermost section in the whole file's object
+              if (++depth > deepest + 2)
+                refuse_depth(line, origin);
+            }
+          else if (!in_string && (letter == '}' || letter == ']') && depth > 0)
+            --depth;
+        }
+    }
+
+
+
     Scan
     scan_json(const std::string &text, const std::string &origin)
     {
+      check_depth_of_json(text, origin);
       Tree               tree;
       std::istringstream input(text);
       try
@@ -178,9 +266,8 @@ namespace limber
       catch (const boost::property_tree::json_parser_error &error)
         {
           throw InputError("The file is not valid JSON: " + error.message() +
-                           " (line " + std::to_string(error.line()) + " of " +
-                           origin +
-                           "). Usually a comma or quotation mark is missing. "
+                           at_line(error.line(), origin) +
+                           ". Usually a comma or quotation mark is missing. "
                            "Write '\"End time\": \"1\"', for instance.");
         }
       Scan scan;
@@ -249,6 +336,7 @@ namespace limber
                   const FileFormat   format,
                   const std::string &origin)
   {
+    check_letters(text, origin);
     return format == FileFormat::json ? scan_json(text, origin) :
                                         PrmScanner(text, origin).run();
   }

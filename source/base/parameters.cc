@@ -31,8 +31,9 @@ namespace limber
     std::string
     place_of(const unsigned int line, const std::string &origin)
     {
-      return line == 0 ? origin :
-                         "line " + std::to_string(line) + " of " + origin;
+      return line == 0 ?
+               printable(origin) :
+               "line " + std::to_string(line) + " of " + printable(origin);
     }
 
 
@@ -64,6 +65,44 @@ namespace limber
           entry.section.pop_back();
         }
       return entry;
+    }
+
+
+
+    /** What keeps a prm file from holding this value; empty: nothing. */
+    std::string
+    hindrance(const std::string &value)
+    {
+      if (value.find('#') != std::string::npos)
+        return "'#', which begins a comment";
+      if (!value.empty() && value.back() == '\\')
+        return "a backslash at its end, which joins lines";
+      for (std::size_t i = 0, n = 0; i < value.size(); i += n)
+        {
+          n = utf8_length(value, i);
+          if (n == 0)
+            return "a byte that is not UTF-8";
+          if (is_control(value[i]) && value[i] != '\t')
+            return "a control character";
+        }
+      return "";
+    }
+
+
+
+    /** Files of the run folder repeat the run, so they must hold its values. */
+    void
+    check_letters(const ScannedEntry &entry, const std::string &place)
+    {
+      const std::string found = hindrance(entry.value);
+      if (!found.empty())
+        throw InputError("The value " + in_quotes(entry.value) + " of entry " +
+                         in_quotes(entry.name) + " " +
+                         in_section(entry.section) + " (" + place + ") holds " +
+                         found +
+                         ". 'parameters.prm', which repeats a run, could not "
+                         "hold it. Write it without, for instance with '_' or "
+                         "'-' instead.");
     }
 
 
@@ -194,6 +233,7 @@ namespace limber
                   const ScannedEntry &entry,
                   const std::string  &place)
   {
+    check_letters(entry, place);
     if (!declaration.admissible.match(entry.value))
       throw InputError(
         "The value " + in_quotes(entry.value) + " of entry " +
@@ -233,7 +273,7 @@ namespace limber
         throw InputError(
           start + "belongs to no name in the list " + in_quotes(list.entry) +
           ". Usually it was forgotten there. Write 'set " + list.entry + " = " +
-          trimmed(name.substr(list.prefix.size())) +
+          printable(trimmed(name.substr(list.prefix.size()))) +
           "', after any other names.");
 
     std::vector<std::string> siblings;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <sstream>
 
@@ -92,10 +93,166 @@ namespace limber
 
 
 
+  bool
+  is_control(const char letter)
+  {
+    return static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f;
+  }
+
+
+
+  std::size_t
+  utf8_length(const std::string &text, const std::size_t i)
+  {
+    const auto byte = [&](const std::size_t k) {
+      return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u;
+    };
+    const unsigned int first  = byte(i);
+    const std::size_t  length = first < 0x80           ? 1 :
+                                first >> 5 == 0b110u   ? 2 :
+                                first >> 4 == 0b1110u  ? 3 :
+                                first >> 3 == 0b11110u ? 4 :
+                                                         0;
+    for (std::size_t k = 1; k < length; ++k)
+      if (byte(i + k) >> 6 != 0b10u)
+        return 0;
+    // longer than needed, surrogates, beyond the last code point
+    const bool forbidden = first == 0xc0 || first == 0xc1 || first > 0xf4 ||
+                           (first == 0xe0 && byte(i + 1) < 0xa0) ||
+                           (first == 0xed && byte(i + 1) > 0x9f) ||
+                           (first == 0xf0 && byte(i + 1) < 0x90) ||
+                           (first == 0xf4 && byte(i + 1) > 0x8f);
+    return forbidden ? 0 : length;
+  }
+
+
+
+  namespace
+  {
+    std::string
+    escaped(const char letter)
+    {
+      if (letter == '\n')
+        return "\\n";
+      if (letter == '\t')
+        return "\\t";
+      const char digits[] = "0123456789abcdef";
+      const auto byte     = static_cast<unsigned char>(letter);
+      return std::string("\\x") + digits[byte / 16] + digits[byte % 16];
+    }
+  } // namespace
+
+
+
+  std::string
+  printable(const std::string &text)
+  {
+    const bool is_path = text.find('/') != std::string::npos &&
+                         text.find_first_of(" \t\n") == std::string::npos;
+    const std::size_t longest = is_path ? 200 : 60;
+    std::string       result;
+    std::size_t       shown = 0;
+    for (std::size_t i = 0; i < text.size(); ++shown)
+      {
+        if (shown == longest)
+          return result + "...";
+        const std::size_t n = utf8_length(text, i);
+        result +=
+          n == 0 || is_control(text[i]) ? escaped(text[i]) : text.substr(i, n);
+        i += std::max<std::size_t>(n, 1);
+      }
+    return result;
+  }
+
+
+
   std::string
   in_quotes(const std::string &text)
   {
-    return "'" + text + "'";
+    return "'" + printable(text) + "'";
+  }
+
+
+
+  namespace
+  {
+    std::string
+    escaped_for_json(const char c)
+    {
+      switch (c)
+        {
+          case '"':
+            return "\\\"";
+          case '\\':
+            return "\\\\";
+          case '\n':
+            return "\\n";
+          case '\r':
+            return "\\r";
+          case '\t':
+            return "\\t";
+          default:
+            break;
+        }
+      if (static_cast<unsigned char>(c) >= 0x20)
+        return std::string(1, c);
+      char code[8];
+      std::snprintf(code,
+                    sizeof(code),
+                    "\\u%04x",
+                    static_cast<unsigned int>(c));
+      return code;
+    }
+  } // namespace
+
+
+
+  std::string
+  json_quoted(const std::string &text)
+  {
+    std::string result = "\"";
+    for (std::size_t i = 0; i < text.size();)
+      {
+        const std::size_t length = utf8_length(text, i);
+        if (length == 0)
+          result += "\\ufffd";
+        else if (length == 1)
+          result += escaped_for_json(text[i]);
+        else
+          result += text.substr(i, length);
+        i += length == 0 ? 1 : length;
+      }
+    return result + '"';
+  }
+
+
+
+  std::string
+  escaped_for_xml(const std::string &text)
+  {
+    std::string result;
+    for (const char letter : text)
+      switch (letter)
+        {
+          case '&':
+            result += "&amp;";
+            break;
+          case '<':
+            result += "&lt;";
+            break;
+          case '>':
+            result += "&gt;";
+            break;
+          case '"':
+            result += "&quot;";
+            break;
+          case '\'':
+            result += "&apos;";
+            break;
+          default:
+            result += letter;
+        }
+    return result;
   }
 
 
@@ -145,8 +302,14 @@ namespace limber
   {
     std::optional<std::string> result;
     std::size_t                best = std::string::npos;
+    // Nobody misspells a word of that length; finding out would take long.
+    constexpr std::size_t longest = 200;
+    if (word.size() > longest)
+      return result;
     for (const std::string &candidate : candidates)
       {
+        if (candidate.size() > longest)
+          continue;
         const std::size_t distance =
           edit_distance(lower_case(word), lower_case(candidate));
         // A third of the letters may be wrong; beyond, a hint only confuses.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
 #include <limber/output/files.h>
 #include <limber/output/vtu.h>
 
@@ -23,6 +24,23 @@ namespace limber
       int  length = 0;
       MPI_Error_string(mpi_error, text, &length);
       return std::string(text, length);
+    }
+
+
+
+    /** deal.II writes names into attributes as they are. */
+    PictureFields
+    named_for_xml(PictureFields fields)
+    {
+      for (std::string &name : fields.names)
+        name = escaped_for_xml(name);
+      for (auto &range : fields.ranges)
+        std::get<2>(range) = escaped_for_xml(std::get<2>(range));
+      std::map<std::string, std::string> units;
+      for (const auto &[name, unit] : fields.units)
+        units[escaped_for_xml(name)] = escaped_for_xml(unit);
+      fields.units = units;
+      return fields;
     }
 
 
@@ -144,10 +162,11 @@ namespace limber
     const double                                                   time,
     const MPI_Comm                                                 communicator)
   {
-    const std::string partial = path + ".part";
-    const int         error   = write_pieces(
+    const std::string   partial = path + ".part";
+    const PictureFields named   = named_for_xml(fields);
+    const int           error   = write_pieces(
       partial,
-      piece_of_file(patches, fields, flags_for(fields, time), communicator),
+      piece_of_file(patches, named, flags_for(named, time), communicator),
       communicator);
     std::optional<Failure> failure;
     if (error != MPI_SUCCESS)

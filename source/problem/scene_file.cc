@@ -10,6 +10,40 @@ namespace limber
 {
   namespace
   {
+    /**
+     * Names become sections of the scene and of --set, columns of tables and
+     * fields of pictures. The letters that one of these cannot hold are left
+     * to them.
+     */
+    void
+    check_name_form(const std::string &name,
+                    const std::string &list,
+                    const std::string &origin)
+    {
+      constexpr std::size_t longest = 60; // letters
+      const auto            bad =
+        std::find_if(name.begin(), name.end(), [](const char letter) {
+          return is_control(letter) ||
+                 std::string("/\\#[]").find(letter) != std::string::npos;
+        });
+      bool is_text = true;
+      for (std::size_t i = 0, n = 0; i < name.size() && is_text; i += n)
+        is_text = (n = utf8_length(name, i)) > 0;
+      if (bad == name.end() && name.size() <= longest && is_text)
+        return;
+      throw InputError("The name " + in_quotes(name) + " in the list " +
+                       in_quotes(list) + " of " + printable(origin) +
+                       (bad != name.end() ?
+                          " holds " + in_quotes(std::string(1, *bad)) :
+                        is_text ? " is longer than 60 letters" :
+                                  " is not UTF-8") +
+                       ". Names head sections, columns and fields. Write "
+                       "letters, digits, blanks and signs like '-', '_' or "
+                       "'&' only.");
+    }
+
+
+
     /** Finds the names in a scene before anything is declared. */
     class NameReader
     {
@@ -32,10 +66,11 @@ namespace limber
             if (std::find(names.begin(), name, *name) != name)
               throw InputError(
                 "The name " + in_quotes(*name) + " stands twice in the list " +
-                in_quotes(list) + " of " + scan.origin +
+                in_quotes(list) + " of " + printable(scan.origin) +
                 ". Usually a line was copied. Remove one or "
                 "call it " +
                 in_quotes(*name + " 2") + ", with a section of its own.");
+            check_name_form(*name, list, scan.origin);
             check_section(section, list, prefix + *name);
           }
         return names;
@@ -48,7 +83,8 @@ namespace limber
           scanned_value(scan, overrides, {}, "Dimension", "2");
         if (text != "2" && text != "3")
           throw InputError("The value " + in_quotes(text) +
-                           " of entry 'Dimension' in " + scan.origin +
+                           " of entry 'Dimension' in " +
+                           printable(scan.origin) +
                            " is not admissible. Plane strain has 2 dimensions, "
                            "space has 3. Write 'set Dimension = 2'.");
         return text == "2" ? 2 : 3;
@@ -73,10 +109,11 @@ namespace limber
         const auto meant = nearest(name, present);
         throw InputError(
           "There is no section " + in_quotes(to_text(path)) + " in " +
-          scan.origin + ", but the list " + in_quotes(list) +
+          printable(scan.origin) + ", but the list " + in_quotes(list) +
           " has its name. Usually one of them is misspelt. " +
-          (meant ? "Did you mean " + in_quotes(*meant) + "?" :
-                   "Write 'subsection " + name + "', entries, 'end'."));
+          (meant ?
+             "Did you mean " + in_quotes(*meant) + "?" :
+             "Write 'subsection " + printable(name) + "', entries, 'end'."));
       }
 
       const Scan                     &scan;
@@ -118,6 +155,12 @@ namespace limber
                          admissible::non_negative_integer("1000"),
                          "Number of steps after which the run ends if the time "
                          "has not come; 0: the time alone counts.");
+      parameters.declare("Memory limit",
+                         "auto",
+                         admissible::positive_number("16").or_word("auto"),
+                         "Memory that all ranks may take together, GB; a scene "
+                         "that is estimated to need more is refused before it "
+                         "is built. 'auto' is what the machine has.");
       declare_constants(parameters);
       parameters.declare_list("Bodies",
                               "",
@@ -178,7 +221,8 @@ namespace limber
 
     notes = values.warnings();
     for (const std::string &override_text : overrides)
-      notes.push_back("From the command line: " + override_text + ".");
+      notes.push_back("From the command line: " + printable(override_text) +
+                      ".");
   }
 
 

@@ -101,6 +101,20 @@ namespace limber
 
 
 
+    /** Values in scenes have no blanks at their ends. */
+    void
+    check_folder(const std::string &folder)
+    {
+      if (folder != trimmed(folder) || folder.empty())
+        throw InputError("The folder " + in_quotes(folder) +
+                         " of '--output-directory' on the command line is "
+                         "empty or has a blank at one of its ends. Usually "
+                         "quotation marks are misplaced. Write "
+                         "'--output-directory runs/first', for instance.");
+    }
+
+
+
     void
     take_scene(const std::string &word, CommandLine &result)
     {
@@ -154,6 +168,7 @@ namespace limber
           {
             result.output_directory =
               arguments.take_value(option, "runs/first");
+            check_folder(*result.output_directory);
             result.overrides.push_back("Output/Directory=" +
                                        *result.output_directory);
           }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/time/explicit_integrator.h>
 #include <limber/transfer/chequerboard.h>

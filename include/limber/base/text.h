@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-/** @file Small tools for words: cutting, joining, and guessing the meant one.
+/** @file Small tools for words: cutting, joining, showing, guessing the meant
+ * one.
  */
 namespace limber
 {
@@ -21,13 +22,37 @@ namespace limber
   std::string
   join(const std::vector<std::string> &parts, const std::string &separator);
 
-  /** 'text' in single quotes, as names and values stand in messages. */
+  /** Whether it is a control character, which no entry and no name may hold. */
+  bool
+  is_control(const char letter);
+
+  /**
+   * @p text as a message may show it: control characters and what is not
+   * UTF-8 as \x00, \n or \t, and of a long text the first 60 characters and
+   * '...'; a path, which has no blanks, keeps 200.
+   */
+  std::string
+  printable(const std::string &text);
+
+  /** The printable text in single quotes, as values stand in messages. */
   std::string
   in_quotes(const std::string &text);
 
   /** The finite number that @p text is as a whole, if it is one. */
   std::optional<double>
   to_number(const std::string &text);
+
+  /** Length of the UTF-8 character that begins at @p i; 0: none does. */
+  std::size_t
+  utf8_length(const std::string &text, const std::size_t i);
+
+  /** In double quotes, as JSON wants it; what is not UTF-8 is replaced. */
+  std::string
+  json_quoted(const std::string &text);
+
+  /** As it may stand in XML, in texts and in quoted attributes. */
+  std::string
+  escaped_for_xml(const std::string &text);
 
   /** The shortest decimal form that reads back as the same number. */
   std::string
