@@ -16,7 +16,7 @@ namespace
 {
   /** Cells of a plane lattice, each with all that touch it. */
   dealii::DynamicSparsityPattern
-  lattice(const int nx, const int ny)
+  cells_of_lattice(const int nx, const int ny)
   {
     dealii::DynamicSparsityPattern graph(nx * ny, nx * ny);
     for (int j = 0; j < ny; ++j)
@@ -45,7 +45,7 @@ TEST(OrderOfTrees, IsThatOfDealII)
   const Order places = {0,  1,  4,  5,  20, 21, 24, 2,  3,  6,  7,  22,
                         23, 25, 8,  9,  12, 13, 26, 27, 30, 10, 11, 14,
                         15, 28, 29, 31, 16, 17, 18, 19, 32, 33, 34};
-  const Order order  = hierarchical_order(lattice(7, 5));
+  const Order order  = hierarchical_order(cells_of_lattice(7, 5));
   ASSERT_EQ(order.size(), places.size());
   for (unsigned int i = 0; i < order.size(); ++i)
     EXPECT_EQ(places[order[i]], i);

@@ -24,9 +24,9 @@ namespace
 
 
   SceneFile
-  scene_of(const std::string              &text,
-           const std::vector<std::string> &changes = {},
-           const FileFormat                format  = FileFormat::prm)
+  door_scene(const std::string              &text,
+             const std::vector<std::string> &changes = {},
+             const FileFormat                format  = FileFormat::prm)
   {
     return SceneFile(ParameterText{text, format, "door"}, changes);
   }
@@ -41,7 +41,7 @@ namespace
   {
     try
       {
-        read_problem<2>(scene_of(text, changes, format));
+        read_problem<2>(door_scene(text, changes, format));
       }
     catch (const InputError &error)
       {
@@ -60,7 +60,7 @@ namespace
   {
     try
       {
-        check_size(read_problem<2>(scene_of(plain_scene, changes)),
+        check_size(read_problem<2>(door_scene(plain_scene, changes)),
                    task,
                    there);
       }
@@ -208,16 +208,16 @@ TEST(GuardedDoor, PrintedParametersAreReadAgain)
                                    "$HOME/{x}"})
     {
       const SceneFile scene =
-        scene_of(plain_scene, {"Output/Directory=" + folder});
+        door_scene(plain_scene, {"Output/Directory=" + folder});
       for (const PrintStyle style : {PrintStyle::prm, PrintStyle::json})
         {
           std::ostringstream text;
           print_parameters(text, style, &scene);
           const SceneFile again =
-            scene_of(text.str(),
-                     {},
-                     style == PrintStyle::prm ? FileFormat::prm :
-                                                FileFormat::json);
+            door_scene(text.str(),
+                       {},
+                       style == PrintStyle::prm ? FileFormat::prm :
+                                                  FileFormat::json);
           EXPECT_EQ(again.parameters().entries(), scene.parameters().entries());
         }
     }
@@ -313,7 +313,7 @@ TEST(GuardedDoor, PicturesAndStepsHaveAnEnd)
 TEST(GuardedDoor, RanksHaveTheirShare)
 {
   const auto problem =
-    read_problem<2>(scene_of(plain_scene, {"Grid/Cells=1001, 1003"}));
+    read_problem<2>(door_scene(plain_scene, {"Grid/Cells=1001, 1003"}));
   const double one  = estimate_size(problem, Task::run, 1).bytes();
   const double four = estimate_size(problem, Task::run, 4).bytes();
   // every rank holds the whole coarse mesh
