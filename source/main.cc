@@ -42,14 +42,20 @@ namespace
       }
 
     const std::string &folder = problem.output.directory;
+    const FolderLock   lock =
+      command.resume ?
+          reopen_run_folder(folder, MPI_COMM_WORLD) :
+          prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
+    if (!lock.warning().empty())
+      console.warn(lock.warning());
     if (command.resume)
       simulation.resume();
-    else
-      prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
     write_run_texts(folder, run_texts(scene), MPI_COMM_WORLD);
     console.open_log(folder + "/log.txt", command.resume);
     catch_signals();
-    return simulation.run();
+    const int code = simulation.run();
+    console.close_log();
+    return code;
   }
 
 
@@ -121,6 +127,7 @@ namespace
 int
 main(int argc, char *argv[])
 {
+  prepare_signals();
   // Before MPI: the runs of a study are processes with an MPI of their own.
   if (is_study_command(argc, argv))
     try
@@ -140,6 +147,9 @@ main(int argc, char *argv[])
       }
 
   tune_open_mpi();
+  // Run folders have a lock of their own; that of HDF5 fails where the file
+  // system has none.
+  setenv("HDF5_USE_FILE_LOCKING", "FALSE", 0);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;

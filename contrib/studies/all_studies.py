@@ -28,7 +28,8 @@ def command_for(name, arguments):
     # relative paths, so that captions say nothing of the machine's folders
     folder = ["--output-directory", str(Path(arguments.results) / name)]
     if name in INF_SUP:
-        return [arguments.limber, "inf-sup", *INF_SUP[name], *folder]
+        return [arguments.limber, "inf-sup", *INF_SUP[name], *folder,
+                "--replace"]
     kind = "stability" if name in STABILITY else "study"
     command = [arguments.limber, kind, f"prm/studies/{name}.prm", *folder,
                "--resume"]

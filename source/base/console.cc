@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/console.h>
-#include <limber/base/exceptions.h>
-#include <limber/base/text.h>
 
 #include <ostream>
 
@@ -19,15 +17,35 @@ namespace limber
   {
     if (!speaks)
       return;
-    log.open(path, append ? std::ios::app : std::ios::trunc);
-    if (!log)
-      throw FileError(
-        "The log " + in_quotes(path) +
-        " in the run folder cannot be written. Usually the disk "
-        "is full or the folder belongs to someone else. Choose "
-        "another with --output-directory, for instance /tmp/run.");
-    log << said_before_log << std::flush;
+    log.emplace(path, append ? TextFile::Mode::append : TextFile::Mode::create);
+    write_to_log(said_before_log);
     said_before_log.clear();
+  }
+
+
+
+  void
+  Console::close_log()
+  {
+    if (log)
+      log->close();
+    log.reset();
+  }
+
+
+
+  void
+  Console::write_to_log(const std::string &text)
+  {
+    try
+      {
+        log->write(text);
+      }
+    catch (const FileError &)
+      {
+        log.reset(); // what is said about this failure cannot be logged
+        throw;
+      }
   }
 
 
@@ -39,8 +57,8 @@ namespace limber
     if (!speaks)
       return;
     // A run that is killed must leave a complete log.
-    if (log.is_open())
-      log << text << std::endl;
+    if (log)
+      write_to_log(text + "\n");
     else
       said_before_log += text + "\n";
   }

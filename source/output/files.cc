@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/base/text.h>
 #include <limber/base/unforeseen.h>
 #include <limber/output/files.h>
 
@@ -8,31 +7,26 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 
 namespace limber
 {
-  FileError
-  cannot_write(const std::string &path, const std::string &reason)
-  {
-    return FileError("The file " + in_quotes(path) +
-                     " could not be written: " + reason +
-                     ". Usually the disk or the quota is full, or writing is "
-                     "not permitted there. Make room, or set "
-                     "'Output/Directory' to another folder.");
-  }
-
-
-
   void
   write_whole_file(const std::string &path, const std::string &text)
   {
     const std::string partial = path + ".part";
-    errno                     = 0;
-    std::ofstream file(partial, std::ios::binary);
-    file << text;
-    file.close();
-    if (!file || std::rename(partial.c_str(), path.c_str()) != 0)
+    std::remove(partial.c_str()); // of a run that was killed
+    try
+      {
+        TextFile file(partial, TextFile::Mode::fresh);
+        file.write(text);
+        file.close();
+      }
+    catch (const FileError &)
+      {
+        std::remove(partial.c_str());
+        throw;
+      }
+    if (std::rename(partial.c_str(), path.c_str()) != 0)
       throw cannot_write(path, std::strerror(errno));
   }
 

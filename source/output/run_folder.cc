@@ -4,48 +4,14 @@
 #include <limber/output/run_folder.h>
 
 #include <filesystem>
+#include <fstream>
 #include <sstream>
-#include <system_error>
-#include <vector>
 
 namespace limber
 {
   namespace
   {
     using Path = std::filesystem::path;
-
-
-
-    bool
-    is_there(const Path &path)
-    {
-      std::error_code error;
-      return std::filesystem::exists(
-        std::filesystem::symlink_status(path, error));
-    }
-
-
-
-    /** The first of the files by which a run is known, if one is there. */
-    std::string
-    trace_of_run(const Path &folder)
-    {
-      for (const char *const name :
-           {"statistics", "summary.json", "parameters.prm"})
-        if (is_there(folder / name))
-          return name;
-      return "";
-    }
-
-
-
-    /** Every run writes one of these first of all. */
-    bool
-    is_run_folder(const Path &folder)
-    {
-      return is_there(folder / "original.prm") ||
-             is_there(folder / "original.json");
-    }
 
 
 
@@ -64,114 +30,168 @@ namespace limber
 
 
 
-    /** Pieces only; the folder itself if nothing else is in it. */
+    bool
+    is_real_folder(const Path &path)
+    {
+      return std::filesystem::is_directory(
+        std::filesystem::symlink_status(path));
+    }
+
+
+
     void
-    remove_pieces(const Path &folder, const std::string &series)
+    add_pieces(const Path &folder, const std::string &series, OwnPaths &own)
     {
       const Path pieces = folder / series;
-      if (!std::filesystem::is_directory(
-            std::filesystem::symlink_status(pieces)))
-        return;
-      std::vector<Path> old;
-      for (const auto &entry : std::filesystem::directory_iterator(pieces))
-        if (is_piece(entry.path().filename().string(), series))
-          old.push_back(entry.path());
-      for (const Path &piece : old)
-        std::filesystem::remove(piece);
-      if (std::filesystem::is_empty(pieces))
-        std::filesystem::remove(pieces);
+      own.add_folder(pieces);
+      if (is_real_folder(pieces))
+        for (const auto &entry : std::filesystem::directory_iterator(pieces))
+          if (is_piece(entry.path().filename().string(), series))
+            own.files.push_back(entry.path());
     }
 
 
 
     void
-    remove_former_run(const Path &folder)
+    add_checkpoint(const Path &folder, OwnPaths &own)
     {
-      remove_pieces(folder, "points");
-      remove_pieces(folder, "grid");
-      remove_pieces(folder, "nodes");
-      std::filesystem::remove_all(folder / "checkpoint");
-      // The names by which a run is known go last: what is left after an
-      // interruption is still a run folder.
-      for (const char *const name : {"points.pvd",
-                                     "grid.pvd",
-                                     "log.txt",
-                                     "parameters.json",
+      const Path checkpoint = folder / "checkpoint";
+      own.add_folder(checkpoint);
+      if (is_real_folder(checkpoint))
+        for (const char *const name :
+             {"slot_0.h5", "slot_1.h5", "good_slot.txt"})
+          own.add_file(checkpoint / name);
+    }
+
+
+
+    /** What a run, a reference or a comparison with it has written. */
+    OwnPaths
+    paths_of_run(const std::string &folder)
+    {
+      OwnPaths own;
+      // What runs are best known by comes first, for messages.
+      for (const char *const name : {"statistics",
                                      "summary.json",
-                                     "statistics",
+                                     "parameters.prm",
+                                     "parameters.json",
+                                     "original.prm",
+                                     "original.json",
+                                     "log.txt",
+                                     "points.pvd",
+                                     "grid.pvd",
                                      "frequencies",
                                      "comparison",
-                                     "comparison.json",
-                                     "parameters.prm",
-                                     "original.json",
-                                     "original.prm"})
-        {
-          std::filesystem::remove(folder / (std::string(name) + ".part"));
-          if (!std::filesystem::is_directory(
-                std::filesystem::symlink_status(folder / name)))
-            std::filesystem::remove(folder / name);
-        }
+                                     "comparison.json"})
+        own.add_file(Path(folder) / name);
+      for (const char *const series : {"points", "grid", "nodes"})
+        add_pieces(folder, series, own);
+      add_checkpoint(folder, own);
+      return own;
+    }
+
+
+
+    /** Every run writes these three first of all. */
+    bool
+    has_texts_of_run(const std::string &folder)
+    {
+      const auto is_file = [&](const char *const name) {
+        return std::filesystem::is_regular_file(
+          std::filesystem::symlink_status(Path(folder) / name));
+      };
+      return (is_file("original.prm") || is_file("original.json")) &&
+             is_file("parameters.prm") && is_file("parameters.json");
     }
 
 
 
     void
-    refuse(const std::string &folder, const std::string &trace)
+    refuse_to_resume(const std::string &folder)
     {
       throw InputError("The folder " + in_quotes(folder) +
-                       " holds a run: " + in_quotes(trace) +
-                       " is in it ('Output/Directory'). Usually the scene has "
-                       "been run before. Choose another 'Output/Directory', "
-                       "set 'Output/Replace = true' to overwrite it, or go on "
-                       "from its checkpoint with --resume.");
+                       " has no checkpoint to go on from: it is not that of a "
+                       "run ('Output/Directory'). Usually --output-directory "
+                       "is another one. Name the folder of the run, or run "
+                       "without --resume.");
     }
 
 
 
+    /** A table or an object with other results may be written anew. */
     void
-    refuse_foreign(const std::string &folder, const std::string &trace)
+    check_former_result(const Path &path, const std::string &begins_with)
     {
-      throw InputError("The folder " + in_quotes(folder) + " holds " +
-                       in_quotes(trace) +
-                       ", but no original.prm, and is not replaced "
-                       "('Output/Directory'). Usually it is a folder of your "
-                       "own files, not of a run. Choose another "
-                       "'Output/Directory', for instance 'output'.");
-    }
-
-
-
-    void
-    make_ready(const std::string &folder, const bool replace)
-    {
-      try
-        {
-          const std::string trace = trace_of_run(folder);
-          if (!trace.empty() && !replace)
-            refuse(folder, trace);
-          if (!trace.empty() && !is_run_folder(folder))
-            refuse_foreign(folder, trace);
-          if (is_run_folder(folder) && replace)
-            remove_former_run(folder);
-          std::filesystem::create_directories(folder);
-        }
-      catch (const std::filesystem::filesystem_error &caught)
-        {
-          throw cannot_write(caught.path1().empty() ? folder :
-                                                      caught.path1().string(),
-                             caught.code().message());
-        }
+      const auto status = std::filesystem::symlink_status(path);
+      if (!std::filesystem::exists(status))
+        return;
+      const bool is_file = std::filesystem::is_regular_file(status);
+      if (is_file && std::filesystem::file_size(path) == 0)
+        return; // of a comparison that was killed
+      std::string begin(begins_with.size(), ' ');
+      if (is_file)
+        std::ifstream(path).read(&begin[0], begin.size());
+      if (begin != begins_with)
+        throw InputError("The file " + in_quotes(path.string()) +
+                         " would be overwritten, but no comparison wrote it. "
+                         "Usually it was put there by hand. Give it another "
+                         "name, then compare again.");
     }
   } // namespace
 
 
 
-  void
+  const FolderKind &
+  run_folder_kind()
+  {
+    static const FolderKind kind = {"run",
+                                    "Output/Directory",
+                                    "'Output/Replace = true'",
+                                    ", or go on with it by --resume",
+                                    paths_of_run,
+                                    has_texts_of_run};
+    return kind;
+  }
+
+
+
+  FolderLock
   prepare_run_folder(const std::string &folder,
                      const bool         replace,
                      const MPI_Comm     communicator)
   {
-    on_first_rank(communicator, [&]() { make_ready(folder, replace); });
+    FolderLock lock;
+    on_first_rank(communicator, [&]() {
+      lock = claim_folder(folder,
+                          run_folder_kind(),
+                          replace ? FolderUse::replace : FolderUse::fresh);
+    });
+    return lock;
+  }
+
+
+
+  FolderLock
+  reopen_run_folder(const std::string &folder, const MPI_Comm communicator)
+  {
+    FolderLock lock;
+    on_first_rank(communicator, [&]() {
+      if (!is_made(folder, run_folder_kind()))
+        refuse_to_resume(folder);
+      lock = claim_folder(folder, run_folder_kind(), FolderUse::resume);
+    });
+    return lock;
+  }
+
+
+
+  FolderLock
+  lock_for_comparison(const std::string &folder)
+  {
+    FolderLock lock(folder);
+    check_former_result(Path(folder) / "comparison", "# 1: time [s]\n");
+    check_former_result(Path(folder) / "comparison.json", "{\n  \"run\": ");
+    return lock;
   }
 
 

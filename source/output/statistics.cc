@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/output/files.h>
 #include <limber/output/statistics.h>
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
@@ -25,15 +22,32 @@ namespace limber
       const auto end = std::to_chars(digits, digits + sizeof(digits), value);
       text.append(digits, end.ptr);
     }
+
+
+
+    /** The path of a table that has the rows a checkpoint counts on. */
+    const std::string &
+    with_rows(const std::string &path, const std::uintmax_t length)
+    {
+      std::error_code      error;
+      const std::uintmax_t present = std::filesystem::file_size(path, error);
+      if (error || present < length)
+        throw FileError("The table '" + path + "' has fewer than the " +
+                        std::to_string(length) +
+                        " bytes that the checkpoint counts on. Usually it was "
+                        "edited or removed after the checkpoint. Restore it, "
+                        "or start the run anew in another "
+                        "'Output/Directory'.");
+      return path;
+    }
   } // namespace
 
 
 
   Statistics::Statistics(const std::string         &path,
                          const std::vector<Column> &columns)
-    : path(path)
-    , n_columns(columns.size())
-    , file(path, std::ios::binary | std::ios::trunc)
+    : n_columns(columns.size())
+    , file(path, TextFile::Mode::create)
     , last_flush(std::chrono::steady_clock::now())
   {
     for (std::size_t c = 0; c < columns.size(); ++c)
@@ -51,30 +65,24 @@ namespace limber
   Statistics::Statistics(const std::string   &path,
                          const std::uintmax_t length,
                          const unsigned int   n_columns)
-    : path(path)
-    , n_columns(n_columns)
+    : n_columns(n_columns)
+    , file(with_rows(path, length), TextFile::Mode::append)
     , written(length)
     , last_flush(std::chrono::steady_clock::now())
   {
-    std::error_code      error;
-    const std::uintmax_t present = std::filesystem::file_size(path, error);
-    if (error || present < length)
-      throw FileError("The table '" + path + "' has fewer than the " +
-                      std::to_string(length) +
-                      " bytes that the checkpoint counts on. Usually it was "
-                      "edited or removed after the checkpoint. Restore it, or "
-                      "start the run anew in another 'Output/Directory'.");
-    std::filesystem::resize_file(path, length, error);
-    if (error)
-      throw cannot_write(path, error.message());
-    file.open(path, std::ios::binary | std::ios::app);
+    file.shorten(length);
   }
 
 
 
   Statistics::~Statistics()
   {
-    file << buffer;
+    try
+      {
+        flush();
+      }
+    catch (const FileError &)
+      {} // another failure is on its way
   }
 
 
@@ -104,14 +112,21 @@ namespace limber
   void
   Statistics::flush()
   {
-    errno = 0;
-    file << buffer;
-    file.flush();
-    if (!file)
-      throw cannot_write(path, std::strerror(errno));
+    if (buffer.empty())
+      return;
+    file.write(buffer);
     written += buffer.size();
     buffer.clear();
     last_flush = std::chrono::steady_clock::now();
+  }
+
+
+
+  void
+  Statistics::close()
+  {
+    flush();
+    file.close();
   }
 
 

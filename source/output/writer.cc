@@ -29,7 +29,7 @@ namespace limber
     make_folder(const std::string &folder)
     {
       std::error_code error;
-      std::filesystem::create_directories(folder, error);
+      std::filesystem::create_directory(folder, error);
       if (error)
         throw cannot_write(folder, error.message());
     }

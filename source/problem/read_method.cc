@@ -211,6 +211,11 @@ namespace limber
                        admissible::non_negative_number("3500"),
                        "Wall time after which the run writes a checkpoint and "
                        "ends with exit code 143, s; 0: none.");
+    parameters.declare("At the end",
+                       "true",
+                       admissible::flag(),
+                       "Whether a run that has finished writes one as well, "
+                       "so that --resume with a later 'End time' extends it.");
     parameters.leave_subsection();
   }
 
@@ -223,6 +228,7 @@ namespace limber
     checkpoint.interval = section.number("Interval");
     checkpoint.steps    = static_cast<unsigned int>(section.number("Steps"));
     checkpoint.wall_time_limit = section.number("Wall time limit");
+    checkpoint.at_the_end      = section.flag("At the end");
     return checkpoint;
   }
 } // namespace limber

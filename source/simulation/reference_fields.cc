@@ -20,7 +20,7 @@ namespace limber
   {
     on_first_rank(model.communicator, [&]() {
       std::error_code error;
-      std::filesystem::create_directories(folder + "/nodes", error);
+      std::filesystem::create_directory(folder + "/nodes", error);
       if (error)
         throw cannot_write(folder + "/nodes", error.message());
     });

@@ -292,7 +292,7 @@ namespace limber
           summary.warnings.push_back(text + ": " + std::to_string(count));
         if (statistics)
           {
-            statistics->flush();
+            statistics->close();
             write_summary(problem.output.directory, summary);
           }
 
@@ -385,15 +385,21 @@ namespace limber
                                               ExitCode::check_missed);
         }
 
+      FolderLock lock;
       const auto begin = [&]() {
-        prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
+        lock =
+          prepare_run_folder(folder, problem.output.replace, MPI_COMM_WORLD);
+        if (!lock.warning().empty())
+          console.warn(lock.warning());
         write_run_texts(folder, run_texts(scene), MPI_COMM_WORLD);
         console.open_log(folder + "/log.txt");
       };
       if (problem.reference.frequencies > 0 && !command.validate)
         {
           begin();
-          return find_frequencies(problem, console);
+          const int code = find_frequencies(problem, console);
+          console.close_log();
+          return code;
         }
       ReferenceRun<dim> reference(problem, console);
       reference.describe();
@@ -403,7 +409,9 @@ namespace limber
           return int(ExitCode::success);
         }
       begin();
-      return reference.run();
+      const int code = reference.run();
+      console.close_log();
+      return code;
     }
   } // namespace
 

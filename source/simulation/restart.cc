@@ -85,6 +85,37 @@ namespace limber
 
 
 
+  // All results are there by now, whatever happens to the checkpoint.
+  template <int dim>
+  void
+  Simulation<dim>::prepare_extension()
+  {
+    const auto is_saved = [&]() {
+      return !checkpoints.good_file().empty() && saved_step == state.step;
+    };
+    if (problem.checkpoint.at_the_end && !is_saved())
+      try
+        {
+          write_checkpoint();
+        }
+      catch (const FileError &failure)
+        {
+          throw FileError("The run has finished and its results are complete, "
+                          "but not its last checkpoint. " +
+                          std::string(failure.what()));
+        }
+    if (!is_saved())
+      return;
+    const bool         by_time = state.time >= problem.end_time;
+    std::ostringstream text;
+    text << "To extend this run: --resume --set \"End "
+         << (by_time ? "time=" : "step=")
+         << (by_time ? 2 * problem.end_time : 2. * problem.end_step) << '"';
+    console.say(text.str());
+  }
+
+
+
   template void
   Simulation<2>::resume();
   template void
@@ -93,4 +124,8 @@ namespace limber
   Simulation<2>::write_checkpoint();
   template void
   Simulation<3>::write_checkpoint();
+  template void
+  Simulation<2>::prepare_extension();
+  template void
+  Simulation<3>::prepare_extension();
 } // namespace limber

@@ -142,9 +142,6 @@ namespace limber
 
     if (stop != 0)
       return finish_stopped();
-    // A run that has checkpoints may be continued to a later end time.
-    if (!checkpoints.good_file().empty() && saved_step != state.step)
-      write_checkpoint();
     const auto results = checks.results();
     const bool passed =
       std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
@@ -159,6 +156,7 @@ namespace limber
           console.say(in_words(suspected));
         finish("check missed", in_words(suspected), "", suspected.mode);
       }
+    prepare_extension();
     return int(passed ? ExitCode::success : ExitCode::check_missed);
   }
 
@@ -175,10 +173,11 @@ namespace limber
         finish("wall time", "the limit of the scene; go on with --resume", "");
         return int(ExitCode::stopped_by_signal) + SIGTERM;
       }
+    const int signal = stop - any_signal;
     finish("stopped",
-           "by signal " + std::to_string(stop) + "; go on with --resume",
+           "by signal " + std::to_string(signal) + "; go on with --resume",
            "");
-    return int(ExitCode::stopped_by_signal) + stop;
+    return int(ExitCode::stopped_by_signal) + signal;
   }
 
 
@@ -187,19 +186,25 @@ namespace limber
   void
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
-    const Diagnosis   suspected = look_for_cause(/*unstable=*/true);
-    const std::string message =
-      std::string(failure.what()) + " " +
-      (suspected.mode.empty() ? usual_cause(failure.kind) :
-                                in_words(suspected)) +
-      " " + describe_last_state();
-    const std::string checkpoint = describe_last_checkpoint();
-    if (!checkpoint.empty())
-      console.say(checkpoint);
-    finish("unstable",
-           message + (checkpoint.empty() ? "" : " " + checkpoint),
-           word_for(failure.kind),
-           suspected.mode);
+    const Diagnosis suspected = look_for_cause(/*unstable=*/true);
+    std::string     message   = std::string(failure.what()) + " " +
+                          (suspected.mode.empty() ? usual_cause(failure.kind) :
+                                                    in_words(suspected)) +
+                          " " + describe_last_state();
+    try
+      {
+        const std::string checkpoint = describe_last_checkpoint();
+        if (!checkpoint.empty())
+          console.say(checkpoint);
+        finish("unstable",
+               message + (checkpoint.empty() ? "" : " " + checkpoint),
+               word_for(failure.kind),
+               suspected.mode);
+      }
+    catch (const FileError &)
+      {
+        message += " Log or summary could not be written.";
+      }
     throw ComputationError(message, failure.kind);
   }
 
@@ -491,10 +496,10 @@ namespace limber
     const int                signal = caught_signal();
     std::array<int, 2>       wanted{};
     wanted[0] =
-      signal >= first_signal ? signal :
+      signal > 0 ? any_signal + signal :
       asked.wall_time_limit > 0 && now - start_wall > asked.wall_time_limit ?
-                               wall_time_limit :
-                               0;
+                   wall_time_limit :
+                   0;
     wanted[1] = asked.interval > 0 && now - last_checkpoint > asked.interval;
     if (!alone)
       MPI_Allreduce(
@@ -584,7 +589,7 @@ namespace limber
                           const std::string &suspected)
   {
     if (statistics)
-      statistics->flush();
+      statistics->close();
     Summary summary   = summarize();
     summary.verdict   = verdict;
     summary.message   = message;

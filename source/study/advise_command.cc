@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/base/text_file.h>
 #include <limber/problem/read_problem.h>
 #include <limber/problem/size_estimate.h>
 #include <limber/simulation/command_line.h>
@@ -10,7 +11,10 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -43,13 +47,16 @@ save; runs nothing.
     RunSize
     size_of(const std::string &scene, const std::vector<std::string> &settings)
     {
-      namespace fs       = std::filesystem;
-      const fs::path log = fs::temp_directory_path() /
-                           ("limber-advise-" + std::to_string(getpid()));
+      namespace fs    = std::filesystem;
+      std::string log = fs::temp_directory_path() / "limber-advise-XXXXXX";
+      const int   own = mkstemp(&log[0]); // a name that nobody else has
+      if (own < 0)
+        throw cannot_write(log, std::strerror(errno));
+      close(own);
       std::vector<std::string> command = {this_program(), scene, "--validate"};
       for (const std::string &setting : settings)
         command.insert(command.end(), {"--set", setting});
-      const ChildEnd     end = run_child(command, log.string(), 600);
+      const ChildEnd     end = run_child(command, log, 600);
       std::ostringstream text;
       text << std::ifstream(log).rdbuf();
       fs::remove(log);

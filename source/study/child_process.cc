@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
+#include <limber/simulation/signals.h>
 #include <limber/study/child_process.h>
 
 #include <fcntl.h>
@@ -41,7 +42,8 @@ namespace limber
       posix_spawn_file_actions_addopen(&actions,
                                        STDOUT_FILENO,
                                        log.c_str(),
-                                       O_WRONLY | O_CREAT | O_TRUNC,
+                                       O_WRONLY | O_CREAT | O_TRUNC |
+                                         O_NOFOLLOW,
                                        0644);
       posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
       pid_t     child  = 0;
@@ -79,7 +81,7 @@ namespace limber
     constexpr double grace = 10; // s, from termination to killing
     const double     start = wall_time();
     const pid_t      child = spawn(command, log);
-    int              sent  = 0;
+    int              sent = 0, passed_on = 0;
     int              status;
     for (useconds_t pause = 1000;;)
       {
@@ -90,6 +92,9 @@ namespace limber
           throw FileError("The end of the program " +
                           in_quotes(command.front()) +
                           " was not reported: " + std::strerror(errno) + ".");
+        // Who stops this process alone means its child as well.
+        if (caught_signal() != passed_on)
+          kill(child, passed_on = caught_signal());
         const double elapsed = wall_time() - start;
         if (sent == 0 && elapsed > time_limit)
           kill(child, sent = SIGTERM);

@@ -3,6 +3,7 @@
 #include <limber/base/text.h>
 #include <limber/output/files.h>
 #include <limber/output/json.h>
+#include <limber/output/run_folder.h>
 #include <limber/output/statistics.h>
 #include <limber/problem/read_problem.h>
 #include <limber/study/compare.h>
@@ -248,7 +249,8 @@ namespace limber
           columns.push_back({quantity + ", relative L2", ""});
           columns.push_back({quantity + ", relative maximum", ""});
         }
-      Statistics table(run + "/comparison", columns);
+      const FolderLock lock = lock_for_comparison(run);
+      Statistics       table(run + "/comparison", columns);
 
       Differences  all;
       std::size_t  n_missed = 0;
@@ -280,7 +282,7 @@ namespace limber
           table.add(row);
           ++n_times;
         }
-      table.flush();
+      table.close();
       if (n_times == 0)
         throw InputError("No time at which " + in_quotes(run) +
                          " was written is one of " + source->description() +

@@ -5,10 +5,10 @@
 #include <limber/base/timing.h>
 #include <limber/study/inf_sup.h>
 #include <limber/study/study_commands.h>
+#include <limber/study/study_folder.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -32,6 +32,7 @@ square, no velocity on its boundary.
                             there, default 1
   --samples n               random fillings; smallest and mean beta are told
   --output-directory path   also write study.csv, study.md and a chart there
+  --replace                 also if there are such results of a former call
 )";
 
     struct InfSupCall
@@ -43,7 +44,7 @@ square, no velocity on its boundary.
       double                     fill      = 1;
       unsigned int               samples   = 1;
       std::string                directory;
-      bool                       help = false;
+      bool                       replace = false, help = false;
     };
 
 
@@ -144,14 +145,15 @@ square, no velocity on its boundary.
                                               "--fill",
                                               "--samples",
                                               "--output-directory",
+                                              "--replace",
                                               "--help"};
       InfSupCall                     call;
       for (int i = 2; i < argc; ++i)
         {
           const std::string option = argv[i];
-          if (option == "--help")
+          if (option == "--help" || option == "--replace")
             {
-              call.help = true;
+              (option == "--help" ? call.help : call.replace) = true;
               continue;
             }
           if (std::find(known.begin(), known.end(), option) == known.end())
@@ -235,9 +237,20 @@ square, no velocity on its boundary.
     for (int i = 1; i < argc; ++i)
       if (argv[i] == std::string("--output-directory"))
         ++i;
-      else
+      else if (argv[i] != std::string("--replace"))
         command += std::string(" ") + argv[i];
     StudyReport report = report_frame(call, command);
+    FolderKind  kind   = study_folder_kind();
+    kind.entry         = "--output-directory";
+    kind.replace_by    = "--replace";
+    kind.go_on_by      = "";
+    FolderLock lock;
+    if (!call.directory.empty())
+      lock = claim_folder(call.directory,
+                          kind,
+                          call.replace ? FolderUse::replace : FolderUse::fresh);
+    if (!lock.warning().empty())
+      std::cout << "Warning: " << lock.warning() << std::endl;
 
     std::cout
       << "pressure      cells   beta     mean     n beta   zero modes\n";
@@ -275,8 +288,6 @@ square, no velocity on its boundary.
         }
     if (!call.directory.empty())
       {
-        std::error_code error;
-        std::filesystem::create_directories(call.directory, error);
         write_report(report, "");
         std::cout << draw_chart(report.study) << std::endl;
       }

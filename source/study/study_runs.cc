@@ -5,6 +5,7 @@
 #include <limber/output/files.h>
 #include <limber/simulation/signals.h>
 #include <limber/study/run_result.h>
+#include <limber/study/study_folder.h>
 #include <limber/study/study_runs.h>
 
 #include <csignal>
@@ -91,26 +92,29 @@ namespace limber
   void
   StudyRuns::prepare_folder()
   {
-    namespace fs        = std::filesystem;
-    const fs::path runs = fs::path(study.directory) / "runs";
-    if (fs::exists(runs) && !call.resume && !study.replace)
-      throw InputError("The folder " + in_quotes(study.directory) +
-                       " holds a study already. Usually the same one was "
-                       "started before. Go on with it by '--resume', choose "
-                       "another '--output-directory', or overwrite it with "
-                       "--set Replace=true.");
-    std::error_code error;
-    if (!call.resume)
-      fs::remove_all(runs, error);
-    if (!error && !call.resume && standard)
-      fs::remove_all(standard->folder, error);
-    if (!error)
-      fs::create_directories(runs, error);
+    const FolderKind &kind         = study_folder_kind();
+    const bool        made         = is_made(study.directory, kind);
+    const FolderUse   use          = call.resume   ? FolderUse::resume :
+                                     study.replace ? FolderUse::replace :
+                                                     FolderUse::fresh;
+    const auto        check_places = [&]() {
+      for (const Variant &variant : all)
+        refuse_taken_run(variant.folder);
+      if (standard)
+        refuse_taken_run(standard->folder);
+    };
+    if (!made)
+      check_places();
+    lock = claim_folder(study.directory, kind, use);
+    if (use == FolderUse::fresh)
+      check_places();
+    if (!lock.warning().empty())
+      console.warn(lock.warning());
+    const std::string runs = study.directory + "/runs";
+    std::error_code   error;
+    std::filesystem::create_directory(runs, error);
     if (error)
-      throw FileError("The folder " + in_quotes(runs.string()) +
-                      " cannot be made: " + error.message() +
-                      ". Usually writing is not permitted there. Choose "
-                      "another '--output-directory'.");
+      throw cannot_write(runs, error.message());
   }
 
 
@@ -144,12 +148,13 @@ namespace limber
         return former;
 
     // Nothing of a former run may be taken for a result of this one.
-    std::filesystem::remove(done);
-    std::filesystem::remove_all(folder);
+    remove_run_of_study(folder);
     std::vector<std::string> command = {this_program()};
     if (variant.runner == Runner::reference)
       command.push_back("reference");
     command.push_back(study.scene);
+    // Nobody extends the runs of a study, unless it says so itself.
+    command.insert(command.end(), {"--set", "Checkpoint/At the end=false"});
     for (const auto *const list : {&variant.settings, &settings})
       for (const std::string &setting : *list)
         command.insert(command.end(), {"--set", setting});

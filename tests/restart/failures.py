@@ -60,7 +60,8 @@ def check(holds, what):
 def folder_is_taken(runs):
     runs.folder.mkdir()
     (runs.folder / "checkpoint").write_text("not a folder")
-    runs.expect(3, "checkpoint' could not be written", "Checkpoint/Steps=5")
+    runs.expect(1, "'checkpoint' belongs to something that a run does not "
+                "write", "Checkpoint/Steps=5")
 
 
 def disk_is_full(runs):

@@ -2,9 +2,11 @@
 #ifndef limber_base_console_h
 #define limber_base_console_h
 
-#include <fstream>
+#include <limber/base/text_file.h>
+
 #include <iosfwd>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace limber
@@ -23,10 +25,15 @@ namespace limber
     /**
      * Continue in a file as well, which also receives what was said before;
      * @p append keeps what stands there, for a run that is resumed. Throws
-     * FileError.
+     * FileError. So does, once, whatever is said when the log can no longer be
+     * written; it is then on the screen alone.
      */
     void
     open_log(const std::string &path, const bool append = false);
+
+    /** Nothing more is said. Throws FileError if the log is not whole. */
+    void
+    close_log();
 
     /** A line, or several. */
     void
@@ -56,9 +63,12 @@ namespace limber
     restore_counts(const std::map<std::string, unsigned int> &former);
 
   private:
+    void
+    write_to_log(const std::string &text);
+
     const bool                          speaks;
     std::ostream                       &screen;
-    std::ofstream                       log;
+    std::optional<TextFile>             log;
     std::string                         said_before_log;
     std::map<std::string, unsigned int> counts;
   };

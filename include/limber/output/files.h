@@ -4,7 +4,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include <limber/base/exceptions.h>
+#include <limber/base/text_file.h>
 
 #include <functional>
 #include <optional>
@@ -14,16 +14,11 @@ namespace limber
 {
   /**
    * Make @p path hold @p text and nothing else. It is written under another
-   * name and then renamed, so that a reader never sees half of it. Throws
-   * FileError.
+   * name and then renamed, so that a reader never sees half of it, and a
+   * symbolic link is replaced rather than followed. Throws FileError.
    */
   void
   write_whole_file(const std::string &path, const std::string &text);
-
-  /** What to throw where writing to @p path failed; names the system's reason.
-   */
-  FileError
-  cannot_write(const std::string &path, const std::string &reason);
 
   /**
    * The failure of any rank, thrown on all of them: of several, that of the

@@ -4,6 +4,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <limber/output/own_folder.h>
 #include <limber/problem/read_problem.h>
 
 #include <string>
@@ -21,17 +22,33 @@ namespace limber
 
 
 
+  /** The folder of a run or of a reference. */
+  const FolderKind &
+  run_folder_kind();
+
   /**
-   * Create the folder of a run, with those above it. A folder that holds a
-   * run already is refused with an InputError unless @p replace; then what
-   * the former run wrote is deleted, and nothing else. Throws FileError where
-   * the system does not permit it. Collective: the first rank works, and all
-   * ranks throw what it throws.
+   * Create the folder of a run, with those above it, and lock it while the
+   * result lives. What is refused, and what @p replace removes, says
+   * claim_folder(). Throws InputError, FileError. Collective: the first rank
+   * works and holds the lock, and all ranks throw what it throws.
    */
-  void
+  FolderLock
   prepare_run_folder(const std::string &folder,
                      const bool         replace,
                      MPI_Comm           communicator);
+
+  /** Lock the folder of a run that is to go on; collective likewise. */
+  FolderLock
+  reopen_run_folder(const std::string &folder, MPI_Comm communicator);
+
+  /**
+   * Lock the folder of a run that is compared. Throws InputError if a process
+   * is at work there, or if what stands under the names of the two results,
+   * comparison and comparison.json, is not that of a former comparison. For
+   * one rank.
+   */
+  FolderLock
+  lock_for_comparison(const std::string &folder);
 
   /** Those of a scene. */
   RunTexts

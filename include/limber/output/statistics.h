@@ -2,11 +2,11 @@
 #ifndef limber_output_statistics_h
 #define limber_output_statistics_h
 
+#include <limber/base/text_file.h>
 #include <limber/output/observables.h>
 
 #include <chrono>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -45,6 +45,10 @@ namespace limber
     void
     flush();
 
+    /** The table is complete. */
+    void
+    close();
+
     /** Bytes in the file after flush(), for checkpoints. */
     std::uintmax_t
     length() const
@@ -53,9 +57,8 @@ namespace limber
     }
 
   private:
-    const std::string                     path;
     const std::size_t                     n_columns;
-    std::ofstream                         file;
+    TextFile                              file;
     std::string                           buffer;
     std::uintmax_t                        written = 0;
     std::chrono::steady_clock::time_point last_flush;

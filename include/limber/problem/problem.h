@@ -197,6 +197,7 @@ namespace limber
     double       interval        = 3600; // s of wall time; 0: none
     unsigned int steps           = 0;    // between checkpoints; 0: none
     double       wall_time_limit = 0;    // s; 0: none
+    bool         at_the_end      = true; // of a run that has finished
   };
 
   enum class ReferenceElement

@@ -52,8 +52,9 @@ namespace limber
     describe() const;
 
   private:
-    /** Why the loop ends before the end time; the larger one prevails. */
-    static constexpr int wall_time_limit = 1, first_signal = 2;
+    /** Why the loop ends before the end time; the larger one prevails. A
+     * signal adds its number. */
+    static constexpr int wall_time_limit = 1, any_signal = 1000;
 
     void
     loop();
@@ -77,6 +78,8 @@ namespace limber
     write_pictures();
     void
     write_checkpoint();
+    void
+    prepare_extension();
     void
     report_lost_points();
     void

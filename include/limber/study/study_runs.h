@@ -2,6 +2,7 @@
 #ifndef limber_study_study_runs_h
 #define limber_study_study_runs_h
 
+#include <limber/output/folder_lock.h>
 #include <limber/study/child_process.h>
 #include <limber/study/study.h>
 #include <limber/study/variants.h>
@@ -77,6 +78,7 @@ namespace limber
     const StudyCall       &call;
     Console               &console;
     std::vector<Variant>   all;
+    FolderLock             lock;
     std::optional<Variant> standard; // what variants are compared with
     std::vector<double>    seconds;  // wall time of the variants done; 0: kept
     double                 present = 0; // of the one that is being done

@@ -56,6 +56,40 @@ TEST(Console, OtherRanksAreSilent)
 
 
 
+/** One message, and what is said about it is on the screen. */
+TEST(Console, LogOnAFullDiskIsAFileErrorOnce)
+{
+  if (access("/dev/full", W_OK) != 0)
+    GTEST_SKIP();
+  std::ostringstream screen;
+  Console            console(true, screen);
+  console.open_log("/dev/full");
+  EXPECT_THROW(console.say("first"), FileError);
+  EXPECT_NO_THROW(console.say("second"));
+  EXPECT_EQ(screen.str(), "first\nsecond\n");
+}
+
+
+
+TEST(Console, RemovedLogIsAFileError)
+{
+  const std::string  path = "console_" + std::to_string(getpid()) + ".txt";
+  std::ostringstream screen;
+  for (const bool at_the_end : {false, true})
+    {
+      Console console(true, screen);
+      console.open_log(path);
+      console.say("first");
+      std::remove(path.c_str());
+      if (at_the_end)
+        EXPECT_THROW(console.close_log(), FileError);
+      else
+        EXPECT_THROW(console.say("second"), FileError);
+    }
+}
+
+
+
 TEST(Console, UnwritableLogIsAFileError)
 {
   std::ostringstream screen;

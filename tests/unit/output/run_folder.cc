@@ -79,10 +79,12 @@ namespace limber::test
                                    "grid.pvd",
                                    "points/points_00000.vtu",
                                    "grid/grid_00012.vtu",
-                                   "checkpoint/slot",
+                                   "checkpoint/slot_0.h5",
+                                   "checkpoint/good_slot.txt.part",
                                    // not ours
                                    "notes.txt",
                                    "snapshots.png",
+                                   "checkpoint/keys",
                                    "points/points_of_interest.txt",
                                    "points/points_1.vtu.bak"})
       touch(folder + "/" + name);
@@ -92,11 +94,13 @@ namespace limber::test
     for (const auto &entry :
          std::filesystem::recursive_directory_iterator(folder))
       n_left += entry.is_regular_file();
-    EXPECT_EQ(n_left, 4u);
+    EXPECT_EQ(n_left, 6u); // with the mark
+    EXPECT_EQ(maker_of(folder), "run");
     EXPECT_TRUE(exists(folder + "/notes.txt"));
     EXPECT_TRUE(exists(folder + "/points/points_of_interest.txt"));
     EXPECT_FALSE(exists(folder + "/grid"));
-    EXPECT_FALSE(exists(folder + "/checkpoint"));
+    EXPECT_FALSE(exists(folder + "/checkpoint/slot_0.h5"));
+    EXPECT_TRUE(exists(folder + "/checkpoint/keys"));
   }
 
 
@@ -108,6 +112,33 @@ namespace limber::test
     touch(folder + "/parameters.prm");
     EXPECT_THROW(prepare_run_folder(folder, true, MPI_COMM_WORLD), InputError);
     EXPECT_TRUE(exists(folder + "/parameters.prm"));
+  }
+
+
+
+  TEST(RunFolder, BelongsToOneAtATime)
+  {
+    const std::string folder = fresh_folder("folder.dir");
+    {
+      const FolderLock lock = prepare_run_folder(folder, false, MPI_COMM_WORLD);
+      EXPECT_EQ(lock.warning(), "");
+      for (const bool replace : {false, true})
+        EXPECT_THROW(prepare_run_folder(folder, replace, MPI_COMM_WORLD),
+                     InputError);
+      try
+        {
+          reopen_run_folder(folder, MPI_COMM_WORLD);
+          FAIL() << "nothing was thrown";
+        }
+      catch (const InputError &error)
+        {
+          EXPECT_NE(std::string(error.what()).find("is in use by process "),
+                    std::string::npos)
+            << error.what();
+        }
+    }
+    EXPECT_NO_THROW(reopen_run_folder(folder, MPI_COMM_WORLD));
+    EXPECT_NO_THROW(prepare_run_folder(folder, true, MPI_COMM_WORLD));
   }
 
 
