@@ -17,6 +17,18 @@ namespace limber
                            {"tolerance", json::number(check.tolerance)},
                            {"passed", json::boolean(check.passed)}});
     }
+
+
+
+    json::Value
+    health_to_json(const HealthLine &line)
+    {
+      return json::object({{"name", json::string(line.name)},
+                           {"verdict", json::string(name_of(line.verdict))},
+                           {"value", json::number(line.value)},
+                           {"text", json::string(line.text)},
+                           {"entry", json::string(line.entry)}});
+    }
   } // namespace
 
 
@@ -29,9 +41,11 @@ namespace limber
       verbs.emplace_back(name, json::number(share));
     for (const auto &[name, share] : summary.memory)
       memory.emplace_back(name, json::number(share));
-    std::vector<json::Value> checks, warnings;
+    std::vector<json::Value> checks, health, warnings;
     for (const CheckResult &check : summary.checks)
       checks.push_back(check_to_json(check));
+    for (const HealthLine &line : summary.health)
+      health.push_back(health_to_json(line));
     for (const std::string &warning : summary.warnings)
       warnings.push_back(json::string(warning));
 
@@ -55,6 +69,7 @@ namespace limber
               {"verbs", json::object(verbs)},
               {"memory", json::object(memory)},
               {"checks", json::array(checks)},
+              {"health", json::array(health)},
               {"warnings", json::array(warnings)}})
              .text +
            "\n";

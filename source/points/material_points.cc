@@ -20,7 +20,7 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
-             (layout.reference ? dim : 0);
+             (layout.crossings ? 1 : 0) + (layout.reference ? dim : 0);
     }
   } // namespace
 
@@ -111,6 +111,8 @@ namespace limber
     if (layout.affine)
       for (auto &array : result.affine)
         array = fields[f++].data();
+    if (layout.crossings)
+      result.crossings = fields[f++].data();
     result.volumetric = layout.volumetric < 0 ?
                           result.pressure :
                           result.history[layout.volumetric];
@@ -174,6 +176,8 @@ namespace limber
     numbered("deviator", layout.deviator ? n_deviator<dim> : 0);
     numbered("history", layout.n_history);
     numbered("affine", layout.affine ? dim * dim : 0);
+    if (layout.crossings)
+      names.push_back("crossings");
     if (layout.reference)
       components("reference position", axes);
     return names;

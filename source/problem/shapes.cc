@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
 #include <deal.II/base/quadrature_lib.h>
 
 #include <limber/problem/shapes.h>
@@ -8,6 +9,7 @@
 namespace limber
 {
   using dealii::GeometryInfo;
+  namespace numbers = dealii::numbers;
   using dealii::Point;
   using dealii::QGauss;
   using dealii::Tensor;
@@ -117,6 +119,18 @@ namespace limber
 
 
 
+  template <int dim>
+  std::optional<double>
+  BlockShape<dim>::exact_volume() const
+  {
+    Point<dim> upper;
+    for (unsigned int d = 0; d < dim; ++d)
+      upper[d] = 1;
+    return volume({Point<dim>(), upper});
+  }
+
+
+
   namespace
   {
     template <int dim>
@@ -187,6 +201,16 @@ namespace limber
 
 
   template <int dim>
+  std::optional<double>
+  BallShape<dim>::exact_volume() const
+  {
+    return numbers::PI *
+           (dim == 2 ? radius * radius : 4. / 3 * radius * radius * radius);
+  }
+
+
+
+  template <int dim>
   CylinderShape<dim>::CylinderShape(const unsigned int axis,
                                     const Point<dim>  &centre,
                                     const double       radius,
@@ -221,6 +245,15 @@ namespace limber
     box.first[axis]  = lower;
     box.second[axis] = upper;
     return box;
+  }
+
+
+
+  template <int dim>
+  std::optional<double>
+  CylinderShape<dim>::exact_volume() const
+  {
+    return numbers::PI * radius * radius * (upper - lower);
   }
 
 

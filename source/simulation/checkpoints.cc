@@ -118,7 +118,7 @@ namespace limber
   namespace
   {
     // To be raised when the content of the files changes.
-    constexpr std::uint64_t checkpoint_format = 2;
+    constexpr std::uint64_t checkpoint_format = 3;
 
     constexpr const char *slots[] = {"slot_0.h5", "slot_1.h5"};
     constexpr const char *note    = "good_slot.txt";

@@ -108,6 +108,7 @@ namespace limber
         layout.n_history  = stress->n_history();
         layout.volumetric = stress->volumetric();
         layout.affine     = problem.method.transfer == Transfer::apic;
+        layout.crossings  = !body.is_liquid;
         layout.reference =
           problem.output.time_interval > 0 &&
           std::find(fields.begin(), fields.end(), "displacement") !=

@@ -85,6 +85,7 @@ namespace limber
     , state{problem, grid, nodes, bodies, 0, 0, 0, {}}
     , integrator(problem, grid, nodes, bodies, state.ledger)
     , balance_of_start(state)
+    , health(state)
     , observables(state)
     , checks(problem.checks, observables.names())
     , writer(problem.output.directory)
@@ -595,6 +596,8 @@ namespace limber
     summary.message   = message;
     summary.failure   = failure;
     summary.suspected = suspected;
+    summary.health =
+      judge(health.look(state, totals, balance_of_start.state().energy_scale));
     if (statistics)
       write_summary(problem.output.directory, summary);
     show_summary(summary);
@@ -623,7 +626,8 @@ namespace limber
       text << "  check " << check.name << ": " << check.value << ", reference "
            << check.reference << " +- " << check.tolerance
            << (check.passed ? ", passed\n" : ", MISSED\n");
-    text << "results in " << problem.output.directory;
+    text << health_text(summary.health) << "results in "
+         << problem.output.directory;
     console.say(text.str());
   }
 

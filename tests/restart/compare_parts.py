@@ -8,7 +8,8 @@ A part is a number of ranks and what ends it: the wall time limit of the
 scene ('limit'), a signal ('terminate', 'interrupt'), or the loss of the
 machine ('kill'); signals are for one rank. The last part runs to the end. All
 rows of the statistics have to agree with those of the run at one go, within
-the tolerance of tests/mpi/compare_ranks.py; so have the series of pictures.
+the tolerance of tests/mpi/compare_ranks.py; so have the series of pictures and
+the lines of health.
 """
 
 import argparse
@@ -108,6 +109,17 @@ def run_part(arguments, folder, number, part, seconds):
     shutil.rmtree(former, ignore_errors=True)
 
 
+def compare_health(whole, parts):
+    """Lines that differ: what is counted since the start counts on."""
+    read = [json.loads((folder / "summary.json").read_text())["health"]
+            for folder in (whole, parts)]
+    for one, other in zip(*read, strict=True):
+        bound = 1e-3 * abs(one["value"]) + 1e-9
+        if one["name"] != other["name"] or one["verdict"] != other["verdict"] \
+                or not abs(one["value"] - other["value"]) <= bound:
+            yield f"health: {other} instead of {one}"
+
+
 def compare(arguments, whole, parts):
     names, reference = read_table(whole)
     other_names, rows = read_table(parts)
@@ -116,6 +128,7 @@ def compare(arguments, whole, parts):
         return
     for row, name, difference in differences(names, reference, rows):
         yield f"row {row}, {name}: {difference:.1e}"
+    yield from compare_health(whole, parts)
     if read_series(parts) != read_series(whole):
         yield "another series of pictures"
     if (parts / "log.txt").read_text().count("Resumed after step") != \

@@ -3,6 +3,7 @@
 #define limber_output_summary_h
 
 #include <limber/output/checks.h>
+#include <limber/output/health.h>
 
 #include <string>
 #include <utility>
@@ -36,6 +37,7 @@ namespace limber
     // Share of the time that each verb of the step took
     std::vector<std::pair<std::string, double>> verbs;
     std::vector<CheckResult>                    checks;
+    std::vector<HealthLine>                     health;
     std::vector<std::string>                    warnings;
   };
 

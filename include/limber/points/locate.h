@@ -8,8 +8,9 @@ namespace limber
 {
   /**
    * Give the points [begin, end), known to have been in @p cell, the number
-   * of the cell that holds them now, and report cells that come to life. A
-   * point outside the grid gets invalid_cell; MaterialPoints deals with it.
+   * of the cell that holds them now, count their crossings where asked for,
+   * and report cells that come to life. A point outside the grid gets
+   * invalid_cell; MaterialPoints deals with it.
    */
   template <int dim>
   __attribute__((noinline, cold)) inline void
@@ -37,6 +38,8 @@ namespace limber
           x[d] = points.position[d][p];
         const std::uint32_t next = grid.bins.cell_at(x);
         points.cell[p]           = next;
+        if (points.crossings != nullptr && next != cell)
+          ++points.crossings[p];
         if (next == invalid_cell)
           *grid.left = true;
         else if (!grid.occupied[next])

@@ -20,6 +20,7 @@ namespace limber
     unsigned int n_history  = 0;
     int          volumetric = -1; // history variable; -1: the pressure
     bool         affine     = false;
+    bool         crossings  = false; // how many cells it has entered
     bool         reference  = false; // reference position, for displacements
   };
 
@@ -189,8 +190,8 @@ namespace limber
     const BackgroundGrid<dim> &grid;
     const PointLayout          layout;
 
-    // Position, velocity, mass, pressure, deviator, history, affine part; the
-    // reference position, if asked for, comes last.
+    // Position, velocity, mass, pressure, deviator, history, affine part,
+    // crossings; the reference position, if asked for, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;

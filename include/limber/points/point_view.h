@@ -41,6 +41,7 @@ namespace limber
     // one of the arrays above.
     double        *volumetric = nullptr;
     std::uint32_t *cell       = nullptr;
+    double        *crossings  = nullptr; // cells entered since the start
   };
 } // namespace limber
 

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,13 @@ namespace limber
     /** A box that holds the whole shape, as tight as is cheaply known. */
     virtual Corners<dim>
     bounding_box() const = 0;
+
+    /** m^dim, where a formula gives it. */
+    virtual std::optional<double>
+    exact_volume() const
+    {
+      return std::nullopt;
+    }
   };
 
 
@@ -71,6 +79,9 @@ namespace limber
     Corners<dim>
     bounding_box() const override;
 
+    std::optional<double>
+    exact_volume() const override;
+
     const Vertices vertices;
   };
 
@@ -104,6 +115,9 @@ namespace limber
     Corners<dim>
     bounding_box() const override;
 
+    std::optional<double>
+    exact_volume() const override;
+
   private:
     dealii::Point<dim> centre;
     double             radius;
@@ -130,6 +144,9 @@ namespace limber
 
     Corners<dim>
     bounding_box() const override;
+
+    std::optional<double>
+    exact_volume() const override;
 
   private:
     unsigned int       axis;

@@ -7,6 +7,7 @@
 #include <limber/base/memory.h>
 #include <limber/output/checks.h>
 #include <limber/output/diagnosis.h>
+#include <limber/output/health_figures.h>
 #include <limber/output/observables.h>
 #include <limber/output/statistics.h>
 #include <limber/output/summary.h>
@@ -113,6 +114,7 @@ namespace limber
     State<dim>                state;
     ExplicitIntegrator<dim>   integrator;
     Balance<dim>              balance_of_start;
+    const Health<dim>         health;
     Observables<dim>          observables;
     Checks                    checks;
     Writer<dim>               writer;

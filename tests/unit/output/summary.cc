@@ -50,6 +50,7 @@ namespace limber::test
     check.value      = std::numeric_limits<double>::quiet_NaN();
     summary.checks   = {check};
     summary.warnings = {"one", "two"};
+    summary.health   = {{"mass", Verdict::bad, -0.1, "lost", "Grid/Cells"}};
 
     const std::string folder = fresh_folder("summary.dir");
     if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
@@ -66,6 +67,10 @@ namespace limber::test
               "null");
     EXPECT_FALSE(tree.get_child("checks").front().second.get<bool>("passed"));
     EXPECT_EQ(tree.get_child("warnings").size(), 2u);
+    const auto &health = tree.get_child("health").front().second;
+    EXPECT_EQ(health.get<std::string>("verdict"), "bad");
+    EXPECT_EQ(health.get<double>("value"), -0.1);
+    EXPECT_EQ(health.get<std::string>("entry"), "Grid/Cells");
     EXPECT_FALSE(std::filesystem::exists(folder + "/summary.json.part"));
   }
 } // namespace limber::test

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_health_h
+#define limber_output_health_h
+
+#include <string>
+#include <vector>
+
+/**
+ * @file How far a run can be trusted: figures of its end, each with a verdict,
+ * what it means and the entry to change (doc/guide/health.md).
+ */
+namespace limber
+{
+  enum class Verdict
+  {
+    good,
+    look, // may be meant; the text says what to look at
+    bad   // results are wrong by about as much as the value says
+  };
+
+  const char *
+  name_of(Verdict verdict);
+
+
+
+  /** One answer. */
+  struct HealthLine
+  {
+    std::string name; // a word: "energy"
+    Verdict     verdict = Verdict::good;
+    double      value   = 0; // without dimension; not finite: not to be had
+    std::string text;        // the figure with its unit, and what it means
+    std::string entry;       // to be changed, as "Section/Name"
+  };
+
+
+
+  /** Figures of one body; volumes in m^dim, energies in J. */
+  struct BodyFigures
+  {
+    std::string  name;
+    bool         is_liquid       = false;
+    unsigned int points_per_edge = 2; // the smallest of all directions
+
+    // At the start
+    unsigned long points       = 0;
+    double        volume       = 0; // of its points
+    double        shape_volume = 0;
+    bool          is_cut       = false; // 'Placement' is 'cut' or 'fitted'
+    double        overlap      = 0;     // share that lies in another body
+    std::string   overlaps_with;        // the name of that body
+    std::string   overlap_place;        // its centre, as "0.5, 1"
+    unsigned long gaps_at_start = 0;
+
+    // At the end
+    double        unseen_energy = 0; // kinetic, that the grid does not hold
+    double        strain_energy = 0;
+    double        crossings     = 0; // cells entered, mean over the points
+    double        crossings_under_strain = 0; // the mean by strain energy
+    double        most_crossings         = 0; // of one point
+    unsigned long cells                  = 0; // that hold points of it
+    unsigned long inner_cells     = 0; // of them, amid others along all axes
+    unsigned long single_cells    = 0; // of these, with one point
+    unsigned long gaps            = 0; // empty cells between two of the body
+    double        smallest_volume = 1, largest_volume = 1; // of all J
+  };
+
+
+
+  /** Those of a run; energies in J. */
+  struct HealthFigures
+  {
+    std::vector<BodyFigures> bodies;
+    unsigned int             dim          = 2;
+    double                   energy_scale = 0; // see Balance
+    double                   kinetic      = 0; // energy of all points
+    double                   drift        = 0; // over the scale
+    // Taken or given on record
+    double transfer = 0, viscous = 0, history = 0, sides = 0, loads = 0;
+  };
+
+
+
+  /** All lines, in the order of the table of checks in health.cc. */
+  std::vector<HealthLine>
+  judge(const HealthFigures &figures);
+
+  /** For the screen: what is good in one line, all else in one line each. */
+  std::string
+  health_text(const std::vector<HealthLine> &lines);
+
+  /**
+   * The share of elastic strain that linear functions turn into permanent one
+   * for each cell that a point enters, by the points along the edge of a cell.
+   */
+  double
+  creep_per_crossing(unsigned int points_per_edge);
+} // namespace limber
+
+#endif

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_output_health_figures_h
+#define limber_output_health_figures_h
+
+#include <limber/output/health.h>
+#include <limber/output/totals.h>
+
+#include <cstdint>
+
+/** @file What the points themselves say about the health of a run. */
+namespace limber
+{
+  /**
+   * The kinetic energy of each body that no motion of the grid holds, J: that
+   * of v - sum N_i w_i with the nodal velocities w, common to all bodies, for
+   * which it is smallest. Collective; as many passes over the points as
+   * it takes to find w, at most some thirty for each component.
+   */
+  template <int dim>
+  std::vector<double>
+  unseen_energy(const State<dim> &state);
+
+  /**
+   * What of volume and shape of the bodies can be told at the start only, for
+   * their points have not moved yet. Collective.
+   */
+  template <int dim>
+  void
+  look_at_seeding(const State<dim> &start, std::vector<BodyFigures> &bodies);
+
+  /** How many cells the points of solids have entered. Collective. */
+  template <int dim>
+  void
+  look_at_crossings(const State<dim> &state, std::vector<BodyFigures> &bodies);
+
+  /**
+   * How the points are spread over cells. Collective; only the first rank gets
+   * the answer.
+   */
+  template <int dim>
+  void
+  look_at_cells(const State<dim> &state, std::vector<BodyFigures> &bodies);
+
+
+
+  /** Cells of a lattice that hold points of a body, and how many each. */
+  struct CellCounts
+  {
+    // By place in the lattice, x fastest; ascending
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> cells;
+
+    std::uint64_t
+    in(std::uint64_t place) const; // points, 0: none
+  };
+
+  /**
+   * Inner, single and gap cells of the body @p b from the counts of all, on a
+   * lattice with @p n cells along each axis. A gap is an empty cell, or two
+   * side by side, between two cells of the body along an axis.
+   */
+  template <int dim>
+  void
+  look_at_counts(const std::vector<CellCounts>       &counts,
+                 const std::array<unsigned int, dim> &n,
+                 std::size_t                          b,
+                 BodyFigures                         &body);
+
+
+
+  /** From a run's start to its end. */
+  template <int dim>
+  class Health
+  {
+  public:
+    /** Looks at the points where the scene has put them; collective. */
+    explicit Health(const State<dim> &start);
+
+    /**
+     * @p totals and @p energy_scale (J) of the present state. Collective; costs
+     * as much as some hundred steps. Only the first rank gets all figures.
+     */
+    HealthFigures
+    look(const State<dim>  &state,
+         const Totals<dim> &totals,
+         double             energy_scale) const;
+
+  private:
+    std::vector<BodyFigures> at_start;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/output/health.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limber
+{
+  namespace
+  {
+    struct HealthCheck;
+    using Judge = HealthLine (*)(const HealthFigures &, const HealthCheck &);
+
+    /** A line of the table: above which size a value is no longer good. */
+    struct HealthCheck
+    {
+      const char *name;
+      double      look, bad;
+      Judge       judge;
+
+      Verdict
+      verdict(const double value) const
+      {
+        if (!(std::abs(value) <= bad)) // nor is what is not a number good
+          return Verdict::bad;
+        return std::abs(value) <= look ? Verdict::good : Verdict::look;
+      }
+    };
+
+
+
+    std::string
+    percent(const double share)
+    {
+      return brief(100 * share) + " %";
+    }
+
+
+
+    std::string
+    of_body(const BodyFigures &body, const std::string &entry)
+    {
+      return "Body " + body.name + "/" + entry;
+    }
+
+
+
+    /** The body for which @p value is largest in size; there is one. */
+    template <class Value>
+    const BodyFigures &
+    worst(const HealthFigures &figures, const Value &value)
+    {
+      const BodyFigures *found = &figures.bodies.front();
+      for (const BodyFigures &body : figures.bodies)
+        if (!(std::abs(value(body)) <= std::abs(value(*found))))
+          found = &body;
+      return *found;
+    }
+
+
+
+    // What is less than this share of the energy scale of the run is no part of
+    // its result: the last motion of a body that has come to rest.
+    constexpr double negligible = 0.01;
+
+
+
+    HealthLine
+    judge_unseen(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const auto energy = [](const BodyFigures &b) { return b.unseen_energy; };
+      double     all    = 0;
+      for (const BodyFigures &body : figures.bodies)
+        all += body.unseen_energy;
+      HealthLine line;
+      line.value = figures.kinetic > 0 ? all / figures.kinetic : all;
+      line.text  = brief(all) + " J of " + brief(figures.kinetic) +
+                  " J kinetic energy are motion of points against each other "
+                  "that no node sees";
+      line.entry = "Method/Damping time";
+      if (all <= negligible * figures.energy_scale)
+        return line;
+      line.verdict = check.verdict(line.value);
+      if (line.verdict != Verdict::good)
+        line.text +=
+          ", most in body '" + worst(figures, energy).name +
+          "'; set 'Damping time' to the shortest time of interest, as "
+          "that of an impact";
+      return line;
+    }
+
+
+
+    HealthLine
+    judge_energy(const HealthFigures &figures, const HealthCheck &check)
+    {
+      HealthLine line;
+      line.value   = figures.drift;
+      line.verdict = check.verdict(line.value);
+      line.text    = "the balance of energy leaves " + percent(figures.drift) +
+                  " of its scale, " + brief(figures.energy_scale) + " J";
+      if (line.verdict != Verdict::good)
+        line.text += "; on record are " + brief(figures.loads) +
+                     " J from loads, " + brief(figures.sides) +
+                     " J from sides, and as taken out " +
+                     brief(figures.viscous) + " J by viscosity, " +
+                     brief(figures.transfer) + " J by the transfer, " +
+                     brief(figures.history) + " J with histories";
+      line.entry = "Method/Courant number";
+      return line;
+    }
+
+
+
+    HealthLine
+    judge_mass(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const auto error = [](const BodyFigures &b) {
+        return b.shape_volume > 0 ? b.volume / b.shape_volume - 1 : 0;
+      };
+      const BodyFigures &body = worst(figures, error);
+      HealthLine         line;
+      line.value   = error(body);
+      line.verdict = check.verdict(line.value);
+      line.text    = "the points of body '" + body.name + "' fill " +
+                  percent(1 + line.value) + " of its shape";
+      line.entry =
+        of_body(body, body.is_cut ? "Points per cell edge" : "Placement");
+      if (line.verdict != Verdict::good)
+        line.text += body.is_cut ?
+                       ": it is too thin for the parts of cells that points "
+                       "stand for; take more points per cell edge" :
+                       ", and so of its mass and load: places in cells are in "
+                       "or out as a whole; set 'cut', or 'fitted' for a box "
+                       "or block";
+      return line;
+    }
+
+
+
+    HealthLine
+    judge_overlap(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const BodyFigures &body =
+        worst(figures, [](const BodyFigures &b) { return b.overlap; });
+      HealthLine line;
+      line.value   = body.overlap;
+      line.verdict = check.verdict(line.value);
+      line.entry   = of_body(body, "Shape");
+      line.text    = body.overlap > 0 ?
+                       percent(body.overlap) + " of body '" + body.name +
+                      "' lay in body '" + body.overlaps_with +
+                      "' at the start, around (" + body.overlap_place +
+                      "): there are two masses in one place" :
+                       "no body lay in another one at the start";
+      return line;
+    }
+
+
+
+    /** What creep has come to, as a share of the strain. */
+    double
+    expected_creep(const BodyFigures &body)
+    {
+      return body.is_liquid ? 0 :
+                              creep_per_crossing(body.points_per_edge) *
+                                body.crossings_under_strain;
+    }
+
+
+
+    // A body that is hardly strained has nothing to creep.
+    bool
+    is_strained(const BodyFigures &body, const HealthFigures &figures)
+    {
+      constexpr double rigid = 1e-3;
+      return !(body.strain_energy <= rigid * figures.energy_scale);
+    }
+
+
+
+    HealthLine
+    judge_crossings(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const auto creep = [&](const BodyFigures &body) {
+        return is_strained(body, figures) ? expected_creep(body) : 0;
+      };
+      const BodyFigures &body = worst(figures, creep);
+      HealthLine         line;
+      line.value   = creep(body);
+      line.verdict = check.verdict(line.value);
+      // What creep takes, the work of loads, is missing from the balance; in
+      // swings about zero it goes to and fro.
+      constexpr double balance_holds = 0.01;
+      if (line.verdict == Verdict::bad &&
+          std::abs(figures.drift) <= balance_holds)
+        line.verdict = Verdict::look;
+      line.entry = of_body(body, "Points per cell edge");
+      line.text  = "a point of body '" + body.name + "' has entered " +
+                  brief(body.crossings) + " cells on average, " +
+                  brief(body.crossings_under_strain) +
+                  " where it is strained, at most " +
+                  brief(body.most_crossings);
+      if (line.verdict != Verdict::good)
+        line.text += "; each makes about " +
+                     percent(creep_per_crossing(body.points_per_edge)) +
+                     " of the strain permanent. More points per cell edge or "
+                     "coarser cells creep less, finer cells and 'apic' do not";
+      return line;
+    }
+
+
+
+    /** Cells that have lost their points, as a share of those that have any. */
+    double
+    share_of_gaps(const BodyFigures &body)
+    {
+      const double opened = double(body.gaps) - double(body.gaps_at_start);
+      return body.is_liquid || body.cells == 0 ?
+               0 :
+               std::max(0., opened) / body.cells;
+    }
+
+
+
+    HealthLine
+    judge_gaps(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const BodyFigures &body = worst(figures, share_of_gaps);
+      HealthLine         line;
+      line.value   = share_of_gaps(body);
+      line.verdict = check.verdict(line.value);
+      line.entry   = of_body(body, "Points per cell edge");
+      line.text =
+        line.value > 0 ?
+          "body '" + body.name + "' has come apart on the grid: " +
+            std::to_string(body.gaps - body.gaps_at_start) +
+            " empty cells have opened between its " +
+            std::to_string(body.cells) +
+            ". Points that stand further apart than a cell do not hold "
+            "together" :
+          "no cell within a solid has lost its points";
+      return line;
+    }
+
+
+
+    double
+    share_of_single(const BodyFigures &body)
+    {
+      return body.inner_cells == 0 ?
+               0 :
+               double(body.single_cells) / body.inner_cells;
+    }
+
+
+
+    HealthLine
+    judge_points(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const BodyFigures &body = worst(figures, share_of_single);
+      HealthLine         line;
+      line.value   = share_of_single(body);
+      line.verdict = check.verdict(line.value);
+      line.text    = std::to_string(body.single_cells) + " of " +
+                  std::to_string(body.inner_cells) + " inner cells of body '" +
+                  body.name + "' hold one point alone";
+
+      const BodyFigures &smallest =
+        *std::min_element(figures.bodies.begin(),
+                          figures.bodies.end(),
+                          [](const BodyFigures &a, const BodyFigures &b) {
+                            return a.points < b.points;
+                          });
+      // A body of four points across resolves hardly more than its motion.
+      const unsigned long few = figures.dim == 2 ? 16 : 64;
+      if (line.verdict == Verdict::good && smallest.points < few)
+        {
+          line.verdict = Verdict::look;
+          line.text    = "body '" + smallest.name + "' has only " +
+                      std::to_string(smallest.points) +
+                      " points, too few for more than its motion as a whole";
+          line.entry = of_body(smallest, "Points per cell edge");
+        }
+      else
+        line.entry = of_body(body, "Points per cell edge");
+      return line;
+    }
+
+
+
+    /** How far a volume has gone from the initial one, by its logarithm. */
+    double
+    change_of_volume(const BodyFigures &body)
+    {
+      if (!(body.smallest_volume > 0))
+        return std::numeric_limits<double>::infinity();
+      return std::max(-std::log(body.smallest_volume),
+                      std::log(body.largest_volume));
+    }
+
+
+
+    HealthLine
+    judge_volume(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const BodyFigures &body = worst(figures, change_of_volume);
+      HealthLine         line;
+      line.value   = change_of_volume(body);
+      line.verdict = check.verdict(line.value);
+      line.text    = "the points of body '" + body.name + "' have " +
+                  brief(body.smallest_volume) + " to " +
+                  brief(body.largest_volume) + " times their first volume";
+      line.entry = "Grid/Cells";
+      return line;
+    }
+
+
+
+    // The one list of checks, in the order of their lines. Bounds:
+    // unseen     A tenth of the energy is a twentieth of the speed; above three
+    //            tenths, energies and heights are those of noise.
+    // energy     Scenes with a reference keep 1 %; above 5 % amplitudes and
+    //            deflections err by as much.
+    // mass       A frequency changes by half of it; 'cut' errs by < 1 %.
+    // overlap    Rounding of surfaces by parts of cells comes to some 0.1 %.
+    // crossings  Deflections err by as much, see creep_per_crossing().
+    // gaps       One cell in a hundred may be a crack that is meant.
+    // points     The gradient of one point alone carries no rotation.
+    // volume     Laws are measured to about a third and three; e^2.3 = 10.
+    constexpr HealthCheck checks[] = {
+      {"unseen", 0.1, 0.3, judge_unseen},
+      {"energy", 0.01, 0.05, judge_energy},
+      {"mass", 0.02, 0.05, judge_mass},
+      {"overlap", 0.005, 0.05, judge_overlap},
+      {"crossings", 0.02, 0.1, judge_crossings},
+      {"gaps", 0.01, 0.05, judge_gaps},
+      {"points", 0.1, 0.5, judge_points},
+      {"volume", 1.1, 2.3, judge_volume},
+    };
+  } // namespace
+
+
+
+  const char *
+  name_of(const Verdict verdict)
+  {
+    switch (verdict)
+      {
+        case Verdict::good:
+          return "good";
+        case Verdict::look:
+          return "look";
+        case Verdict::bad:
+          return "bad";
+      }
+    return "";
+  }
+
+
+
+  double
+  creep_per_crossing(const unsigned int points_per_edge)
+  {
+    // tests/runs/health/slow_cantilever.prm with 2, 3 and 4 points along an
+    // edge: what its tip sinks beyond 0.498 m, over the cells that its points
+    // enter, are 1.5, 1.2 and 1.0 %. Bent strips that are only carried through
+    // the grid creep by half of that, bars under tension by 4 to 23 %.
+    return 0.021 / std::sqrt(points_per_edge);
+  }
+
+
+
+  std::vector<HealthLine>
+  judge(const HealthFigures &figures)
+  {
+    std::vector<HealthLine> lines;
+    for (const HealthCheck &check : checks)
+      {
+        lines.push_back(check.judge(figures, check));
+        lines.back().name = check.name;
+      }
+    return lines;
+  }
+
+
+
+  std::string
+  health_text(const std::vector<HealthLine> &lines)
+  {
+    std::vector<std::string> good;
+    std::string              rest;
+    for (const HealthLine &line : lines)
+      if (line.verdict == Verdict::good)
+        good.push_back(line.name);
+      else
+        rest += "  health " + std::string(name_of(line.verdict)) + ": " +
+                line.name + ": " + line.text + ". Entry: '" + line.entry +
+                "'.\n";
+    return (good.empty() ? "" : "  health good: " + join(good, ", ") + "\n") +
+           rest;
+  }
+} // namespace limber

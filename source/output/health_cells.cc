@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/health_figures.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    // A gap that has opened is first one cell wide, then two; what is wider is
+    // space between parts, which a scene may have as well.
+    constexpr unsigned int widest_gap = 2;
+
+
+
+    template <int dim>
+    std::uint64_t
+    place_of(const std::array<unsigned int, dim> &at,
+             const std::array<unsigned int, dim> &n)
+    {
+      std::uint64_t place = 0;
+      for (int d = dim - 1; d >= 0; --d)
+        place = place * n[d] + at[d];
+      return place;
+    }
+
+
+
+    template <int dim>
+    std::array<unsigned int, dim>
+    indices_of(std::uint64_t place, const std::array<unsigned int, dim> &n)
+    {
+      std::array<unsigned int, dim> at;
+      for (int d = 0; d < dim; ++d, place /= n[d - 1])
+        at[d] = place % n[d];
+      return at;
+    }
+
+
+
+    /** Equal places of an ascending list become one entry with their sum. */
+    void
+    merge_equal(std::vector<std::pair<std::uint64_t, std::uint64_t>> &cells)
+    {
+      std::sort(cells.begin(), cells.end());
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        if (kept > 0 && cells[kept - 1].first == cells[i].first)
+          cells[kept - 1].second += cells[i].second;
+        else
+          cells[kept++] = cells[i];
+      cells.resize(kept);
+    }
+
+
+
+    template <int dim>
+    CellCounts
+    count_own(const State<dim> &state, const MaterialBody<dim> &body)
+    {
+      const GridDescription<dim> &grid   = state.problem.grid;
+      const PointView<dim>        points = body.points.view();
+      CellCounts                  counts;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          if (points.cell[p] == invalid_cell)
+            continue;
+          const auto &cell = state.grid.geometry[points.cell[p]];
+          std::array<unsigned int, dim> at;
+          for (int d = 0; d < dim; ++d)
+            at[d] =
+              std::lround((cell.origin[d] - grid.lower[d]) / grid.edge(d));
+          const std::uint64_t place = place_of<dim>(at, grid.cells);
+          auto               &cells = counts.cells;
+          if (!cells.empty() && cells.back().first == place)
+            ++cells.back().second;
+          else
+            cells.emplace_back(place, 1);
+        }
+      merge_equal(counts.cells);
+      return counts;
+    }
+
+
+
+    /** Whether the body goes on behind a gap that begins next to @p at. */
+    template <int dim>
+    unsigned int
+    width_of_gap(const CellCounts                    &own,
+                 const std::array<unsigned int, dim> &n,
+                 std::array<unsigned int, dim>        at,
+                 const unsigned int                   d)
+    {
+      for (unsigned int width = 0; width <= widest_gap; ++width)
+        {
+          if (++at[d] >= n[d])
+            return 0;
+          if (own.in(place_of<dim>(at, n)) > 0)
+            return width;
+        }
+      return 0;
+    }
+
+
+
+    template <int dim>
+    bool
+    is_inner(const CellCounts                    &own,
+             const std::array<unsigned int, dim> &n,
+             const std::array<unsigned int, dim> &at)
+    {
+      for (unsigned int d = 0; d < dim; ++d)
+        for (const int step : {-1, 1})
+          {
+            auto other = at;
+            other[d] += step; // below zero: beyond the last, too
+            if (other[d] >= n[d] || own.in(place_of<dim>(other, n)) == 0)
+              return false;
+          }
+      return true;
+    }
+  } // namespace
+
+
+
+  std::uint64_t
+  CellCounts::in(const std::uint64_t place) const
+  {
+    const auto found =
+      std::lower_bound(cells.begin(),
+                       cells.end(),
+                       std::make_pair(place, std::uint64_t(0)));
+    return found != cells.end() && found->first == place ? found->second : 0;
+  }
+
+
+
+  template <int dim>
+  void
+  look_at_counts(const std::vector<CellCounts>       &counts,
+                 const std::array<unsigned int, dim> &n,
+                 const std::size_t                    b,
+                 BodyFigures                         &body)
+  {
+    const CellCounts          &own = counts[b];
+    std::vector<std::uint64_t> gaps;
+    body.cells       = own.cells.size();
+    body.inner_cells = body.single_cells = 0;
+    for (const auto &[place, points] : own.cells)
+      {
+        const auto at    = indices_of<dim>(place, n);
+        const bool inner = is_inner<dim>(own, n, at);
+        body.inner_cells += inner;
+        body.single_cells += inner && points == 1;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            auto empty = at;
+            for (unsigned int w = width_of_gap<dim>(own, n, at, d); w > 0; --w)
+              {
+                ++empty[d];
+                gaps.push_back(place_of<dim>(empty, n));
+              }
+          }
+      }
+    std::sort(gaps.begin(), gaps.end());
+    gaps.erase(std::unique(gaps.begin(), gaps.end()), gaps.end());
+    // What another body fills is no gap.
+    body.gaps =
+      std::count_if(gaps.begin(), gaps.end(), [&](const std::uint64_t place) {
+        return std::all_of(counts.begin(),
+                           counts.end(),
+                           [&](const CellCounts &all) {
+                             return all.in(place) == 0;
+                           });
+      });
+  }
+
+
+
+  template <int dim>
+  void
+  look_at_cells(const State<dim> &state, std::vector<BodyFigures> &bodies)
+  {
+    std::vector<CellCounts> counts;
+    for (const auto &body : state.bodies)
+      {
+        const auto parts =
+          dealii::Utilities::MPI::gather(state.grid.communicator,
+                                         count_own(state, *body).cells);
+        counts.emplace_back();
+        auto &all = counts.back().cells;
+        for (const auto &part : parts)
+          all.insert(all.end(), part.begin(), part.end());
+        merge_equal(all);
+      }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      look_at_counts<dim>(counts, state.problem.grid.cells, b, bodies[b]);
+  }
+
+
+
+  template void
+  look_at_counts<2>(const std::vector<CellCounts> &,
+                    const std::array<unsigned int, 2> &,
+                    std::size_t,
+                    BodyFigures &);
+  template void
+  look_at_counts<3>(const std::vector<CellCounts> &,
+                    const std::array<unsigned int, 3> &,
+                    std::size_t,
+                    BodyFigures &);
+  template void
+  look_at_cells(const State<2> &, std::vector<BodyFigures> &);
+  template void
+  look_at_cells(const State<3> &, std::vector<BodyFigures> &);
+} // namespace limber

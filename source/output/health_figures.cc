@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/output/health_figures.h>
+#include <limber/points/shape_volume.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    using dealii::Utilities::MPI::max;
+    using dealii::Utilities::MPI::sum;
+
+
+
+    template <int dim>
+    bool
+    boxes_meet(const Shape<dim> &one, const Shape<dim> &other)
+    {
+      const Corners<dim> a = one.bounding_box(), b = other.bounding_box();
+      for (unsigned int d = 0; d < dim; ++d)
+        if (a.second[d] <= b.first[d] || b.second[d] <= a.first[d])
+          return false;
+      return true;
+    }
+
+
+
+    template <int dim>
+    std::string
+    centre_of(const dealii::Tensor<1, dim> &moment, const double volume)
+    {
+      std::vector<std::string> numbers;
+      for (unsigned int d = 0; d < dim; ++d)
+        numbers.push_back(brief(moment[d] / volume));
+      return join(numbers, ", ");
+    }
+
+
+
+    /** Keep the largest overlap of a body with another one. */
+    template <int dim>
+    void
+    look_at_overlap(const State<dim> &start,
+                    const std::size_t a,
+                    const std::size_t b,
+                    BodyFigures      &body)
+    {
+      const Body<dim> &own   = start.problem.bodies[a],
+                      &other = start.problem.bodies[b];
+      if (!boxes_meet(*own.shape, *other.shape))
+        return;
+      const VolumeInside<dim> here =
+        volume_inside<dim>(start.bodies[a]->points.view(),
+                           own.density(),
+                           *other.shape);
+      const double volume = sum(here.volume, start.grid.communicator);
+      const auto   moment = sum(here.moment, start.grid.communicator);
+      if (volume <= body.overlap * body.volume)
+        return;
+      body.overlap       = volume / body.volume;
+      body.overlaps_with = other.name;
+      body.overlap_place = centre_of<dim>(moment, volume);
+    }
+
+
+
+    /** The arrays of point p alone. */
+    template <int dim>
+    PointView<dim>
+    only(const PointView<dim> &points, const std::size_t p)
+    {
+      PointView<dim> one  = points;
+      one.size            = 1;
+      const auto move_all = [p](auto &arrays) {
+        for (auto &array : arrays)
+          if (array != nullptr)
+            array += p;
+      };
+      move_all(one.position);
+      move_all(one.velocity);
+      move_all(one.deviator);
+      move_all(one.history);
+      move_all(one.affine);
+      one.mass += p;
+      one.pressure += p;
+      one.volumetric += p;
+      one.cell += p;
+      return one;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  look_at_seeding(const State<dim> &start, std::vector<BodyFigures> &bodies)
+  {
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        const Body<dim>     &description = start.problem.bodies[b];
+        const auto          &own         = *start.bodies[b];
+        const PointView<dim> points      = own.points.view();
+        BodyFigures         &body        = bodies[b];
+        std::vector<double>  ratio(points.size);
+        own.stress->volume_ratio(points, ratio.data());
+        double volume = 0;
+        for (std::size_t p = 0; p < points.size; ++p)
+          volume += points.mass[p] * ratio[p] / description.density();
+        body.volume       = sum(volume, start.grid.communicator);
+        body.points       = own.points.n_global();
+        body.shape_volume = shape_volume(*description.shape);
+      }
+    for (std::size_t a = 0; a < bodies.size(); ++a)
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        if (a != b)
+          look_at_overlap(start, a, b, bodies[a]);
+  }
+
+
+
+  // Under strain: points that bear nothing, as the tip of a beam, may cross
+  // what they like.
+  template <int dim>
+  void
+  look_at_crossings(const State<dim> &state, std::vector<BodyFigures> &bodies)
+  {
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        const auto          &own    = *state.bodies[b];
+        const PointView<dim> points = own.points.view();
+        if (points.crossings == nullptr)
+          continue;
+        double                all = 0, most = 0;
+        std::array<double, 2> strained{};
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const double energy =
+              own.stress->summarize(only(points, p)).strain_energy;
+            all += points.crossings[p];
+            most = std::max(most, points.crossings[p]);
+            strained[0] += energy;
+            strained[1] += energy * points.crossings[p];
+          }
+        const MPI_Comm ranks  = state.grid.communicator;
+        const double   n      = sum(double(points.size), ranks);
+        const double   energy = sum(strained[0], ranks);
+        BodyFigures   &body   = bodies[b];
+        body.crossings        = n > 0 ? sum(all, ranks) / n : 0;
+        body.most_crossings   = max(most, ranks);
+        const double weighted = sum(strained[1], ranks);
+        body.crossings_under_strain =
+          energy > 0 ? weighted / energy : body.crossings;
+      }
+  }
+
+
+
+  template <int dim>
+  Health<dim>::Health(const State<dim> &start)
+  {
+    for (const Body<dim> &body : start.problem.bodies)
+      {
+        BodyFigures figures;
+        figures.name      = body.name;
+        figures.is_liquid = body.is_liquid;
+        figures.points_per_edge =
+          *std::min_element(body.points_per_cell_edge.begin(),
+                            body.points_per_cell_edge.end());
+        figures.is_cut = body.placement == Placement::cut ||
+                         body.placement == Placement::fitted;
+        at_start.push_back(figures);
+      }
+    look_at_seeding(start, at_start);
+    look_at_cells(start, at_start);
+    for (BodyFigures &body : at_start)
+      body.gaps_at_start = body.gaps;
+  }
+
+
+
+  template <int dim>
+  HealthFigures
+  Health<dim>::look(const State<dim>  &state,
+                    const Totals<dim> &totals,
+                    const double       energy_scale) const
+  {
+    HealthFigures figures;
+    figures.bodies       = at_start;
+    figures.dim          = dim;
+    figures.energy_scale = energy_scale;
+    figures.kinetic      = totals.all.kinetic_energy;
+    figures.drift        = totals.energy_drift;
+    figures.transfer     = totals.removed_by_transfer;
+    figures.viscous      = totals.dissipated;
+    figures.history      = totals.removed_with_history;
+    figures.sides        = totals.boundary_work;
+    figures.loads        = totals.load_work;
+
+    const auto unseen = unseen_energy(state);
+    for (std::size_t b = 0; b < unseen.size(); ++b)
+      {
+        const auto summary =
+          state.bodies[b]->stress->summarize(state.bodies[b]->points.view());
+        BodyFigures &body  = figures.bodies[b];
+        body.unseen_energy = unseen[b];
+        body.strain_energy = totals.bodies[b].strain_energy;
+        body.smallest_volume =
+          -max(-summary.smallest_volume, state.grid.communicator);
+        body.largest_volume =
+          max(summary.largest_volume, state.grid.communicator);
+      }
+    look_at_crossings(state, figures.bodies);
+    look_at_cells(state, figures.bodies);
+    return figures;
+  }
+
+
+
+  template void
+  look_at_seeding(const State<2> &, std::vector<BodyFigures> &);
+  template void
+  look_at_seeding(const State<3> &, std::vector<BodyFigures> &);
+  template void
+  look_at_crossings(const State<2> &, std::vector<BodyFigures> &);
+  template void
+  look_at_crossings(const State<3> &, std::vector<BodyFigures> &);
+  template class Health<2>;
+  template class Health<3>;
+} // namespace limber

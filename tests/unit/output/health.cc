@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/output/health.h>
+#include <limber/output/health_figures.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "sample_run.h"
+#include "support/scene_run.h"
+
+/** @file What is judged good and bad, and the figures behind it. */
+namespace limber::test
+{
+  namespace
+  {
+    /** A body with nothing to be said against it. */
+    HealthFigures
+    sound()
+    {
+      BodyFigures body;
+      body.name   = "beam";
+      body.points = 400;
+      body.volume = body.shape_volume = 1;
+      body.cells                      = 100;
+      body.inner_cells                = 64;
+      body.strain_energy              = 20;
+      HealthFigures figures;
+      figures.bodies       = {body};
+      figures.energy_scale = 100;
+      figures.kinetic      = 50;
+      return figures;
+    }
+
+
+
+    HealthLine
+    line(const std::string &name, const HealthFigures &figures)
+    {
+      const auto lines = judge(figures);
+      const auto found =
+        std::find_if(lines.begin(), lines.end(), [&](const HealthLine &line) {
+          return line.name == name;
+        });
+      EXPECT_NE(found, lines.end()) << name;
+      return found == lines.end() ? HealthLine() : *found;
+    }
+
+
+
+    unsigned int
+    n_words(const std::string &text)
+    {
+      std::istringstream words(text);
+      unsigned int       n = 0;
+      for (std::string word; words >> word; ++n)
+        ;
+      return n;
+    }
+
+
+
+    /** The line is bad, says so briefly and names an entry with these words. */
+    void
+    expect_bad(const std::string   &name,
+               const HealthFigures &figures,
+               const std::string   &entry)
+    {
+      const HealthLine bad = line(name, figures);
+      EXPECT_EQ(bad.verdict, Verdict::bad) << name << ": " << bad.text;
+      EXPECT_NE(bad.entry.find(entry), std::string::npos) << bad.entry;
+      EXPECT_LT(n_words(bad.text), 60u) << bad.text;
+      EXPECT_EQ(bad.text.find("nan"), std::string::npos) << bad.text;
+      for (const HealthLine &other : judge(figures))
+        EXPECT_TRUE(other.name == name || other.verdict == Verdict::good)
+          << other.name << ": " << other.text;
+    }
+  } // namespace
+
+
+
+  TEST(Health, NothingIsSaidAgainstASoundBody)
+  {
+    const auto lines = judge(sound());
+    EXPECT_EQ(lines.size(), 8u);
+    for (const HealthLine &line : lines)
+      EXPECT_EQ(line.verdict, Verdict::good) << line.name << ": " << line.text;
+    const std::string text = health_text(lines);
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_NE(text.find("health good: unseen, energy, mass"),
+              std::string::npos);
+  }
+
+
+
+  TEST(Health, EveryLineCanBeBad)
+  {
+    HealthFigures figures = sound();
+
+    figures.bodies[0].unseen_energy = 30; // of 50 J
+    expect_bad("unseen", figures, "Damping time");
+
+    figures       = sound();
+    figures.drift = -0.2;
+    expect_bad("energy", figures, "Courant number");
+
+    figures                  = sound();
+    figures.bodies[0].volume = 0.904;
+    expect_bad("mass", figures, "Body beam/Placement");
+
+    figures                         = sound();
+    figures.bodies[0].overlap       = 0.3;
+    figures.bodies[0].overlaps_with = "floor";
+    expect_bad("overlap", figures, "Body beam/Shape");
+
+    figures                = sound();
+    figures.bodies[0].gaps = 10;
+    expect_bad("gaps", figures, "Points per cell edge");
+
+    figures                        = sound();
+    figures.bodies[0].single_cells = 40;
+    expect_bad("points", figures, "Points per cell edge");
+
+    figures                           = sound();
+    figures.bodies[0].smallest_volume = 0.05;
+    expect_bad("volume", figures, "Grid/Cells");
+  }
+
+
+
+  TEST(Health, CreepIsBadWhereTheBalanceMissesWhatItTakes)
+  {
+    HealthFigures figures                    = sound();
+    figures.bodies[0].crossings_under_strain = 40;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+    figures.drift        = -0.03;
+    const HealthLine bad = line("crossings", figures);
+    EXPECT_EQ(bad.verdict, Verdict::bad);
+    EXPECT_EQ(bad.entry, "Body beam/Points per cell edge");
+    EXPECT_LT(n_words(bad.text), 60u) << bad.text;
+  }
+
+
+
+  TEST(Health, BetweenGoodAndBadThereIsLook)
+  {
+    HealthFigures figures = sound();
+    figures.drift         = 0.03;
+    EXPECT_EQ(line("energy", figures).verdict, Verdict::look);
+    figures.bodies[0].points = 9;
+    EXPECT_EQ(line("points", figures).verdict, Verdict::look);
+    const std::string text = health_text(judge(figures));
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << text;
+    EXPECT_NE(text.find("health look: energy: "), std::string::npos) << text;
+  }
+
+
+
+  TEST(Health, WhatIsNotANumberIsBad)
+  {
+    HealthFigures figures           = sound();
+    figures.drift                   = std::numeric_limits<double>::quiet_NaN();
+    figures.bodies[0].unseen_energy = figures.drift;
+    EXPECT_EQ(line("energy", figures).verdict, Verdict::bad);
+    EXPECT_EQ(line("unseen", figures).verdict, Verdict::bad);
+  }
+
+
+
+  TEST(Health, LiquidsMayCrossAndPart)
+  {
+    HealthFigures figures                    = sound();
+    figures.bodies[0].is_liquid              = true;
+    figures.bodies[0].crossings_under_strain = 1000;
+    figures.bodies[0].gaps                   = 50;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::good);
+    EXPECT_EQ(line("gaps", figures).verdict, Verdict::good);
+  }
+
+
+
+  TEST(Health, WhatIsRigidDoesNotCreepAndWhatRestsIsNotNoisy)
+  {
+    HealthFigures figures                    = sound();
+    figures.bodies[0].crossings_under_strain = 1000;
+    figures.bodies[0].strain_energy          = 1e-6;
+    figures.kinetic                          = 0.01;
+    figures.bodies[0].unseen_energy          = 0.009;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::good);
+    EXPECT_EQ(line("unseen", figures).verdict, Verdict::good);
+  }
+
+
+
+  TEST(Health, TheWorstBodyIsNamed)
+  {
+    HealthFigures figures = sound();
+    figures.bodies.push_back(figures.bodies[0]);
+    figures.bodies[1].name   = "plate";
+    figures.bodies[1].volume = 1.2;
+    EXPECT_NE(line("mass", figures).text.find("'plate'"), std::string::npos);
+    EXPECT_NEAR(line("mass", figures).value, 0.2, 1e-12);
+  }
+
+
+
+  // Linear motion is a function of the grid; what alternates within cells is
+  // none, but for the free ends.
+  TEST(Health, TheGridHoldsLinearMotionAndNoAlternatingOne)
+  {
+    SampleRun<2>       run(/*projected=*/true);
+    const PointView<2> points  = run.points().view();
+    const auto         kinetic = [&]() {
+      double result = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        for (int d = 0; d < 2; ++d)
+          result += 0.5 * points.mass[p] * points.velocity[d][p] *
+                    points.velocity[d][p];
+      return dealii::Utilities::MPI::sum(result, MPI_COMM_WORLD);
+    };
+    EXPECT_EQ(unseen_energy(run.state)[0], 0);
+
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.velocity[0][p] = 3 - 2 * points.position[1][p];
+        points.velocity[1][p] = 1 + 2 * points.position[0][p];
+      }
+    EXPECT_LT(unseen_energy(run.state)[0], 1e-3 * kinetic());
+
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.velocity[0][p] =
+          std::fmod(points.position[0][p], 0.25) < 0.125 ? 1 : -1;
+        points.velocity[1][p] = 0;
+      }
+    const double unseen = unseen_energy(run.state)[0];
+    EXPECT_GT(unseen, 0.6 * kinetic());
+    EXPECT_LE(unseen, kinetic() * (1 + 1e-12));
+  }
+
+
+
+  namespace
+  {
+    /** Two boxes of rubber in a unit box of 10 x 10 cells. */
+    std::string
+    two_boxes(const std::string &left_of_second)
+    {
+      const auto body = [](const std::string &name,
+                           const std::string &corners) {
+        return "subsection Body " + name +
+               "\n set Shape = box\n subsection Box\n" + corners +
+               " end\n set Material = linear elastic\n subsection Linear "
+               "elastic\n set Young's modulus = 100\n set Poisson's ratio = "
+               "0.3\n end\nend\n";
+      };
+      return "set Bodies = one, two\n" +
+             body("one",
+                  " set Lower corner = 0.1, 0.1\n set Upper corner = 0.4, "
+                  "0.5\n") +
+             body("two",
+                  " set Lower corner = " + left_of_second +
+                    ", 0.1\n set Upper corner = 0.7, 0.5\n") +
+             "subsection Grid\n set Cells = 10, 10\nend\nsubsection "
+             "Boundaries\n set left = free\n set right = free\n set bottom = "
+             "free\n set top = free\nend\n";
+    }
+
+
+
+    BodyFigures
+    at_start(SceneRun<2> &run)
+    {
+      const auto state = run.state();
+      return Health<2>(state).look(state, run.totals(), 1.).bodies[0];
+    }
+  } // namespace
+
+
+
+  TEST(Health, BodiesThatTouchDoNotOverlap)
+  {
+    SceneRun<2>       touching(two_boxes("0.4")), common(two_boxes("0.3"));
+    const BodyFigures none = at_start(touching), third = at_start(common);
+    EXPECT_EQ(none.overlap, 0);
+    EXPECT_NEAR(none.volume, none.shape_volume, 1e-12);
+    EXPECT_NEAR(third.overlap, 1. / 3, 1e-12);
+    EXPECT_EQ(third.overlaps_with, "two");
+    EXPECT_EQ(third.overlap_place, "0.35, 0.3");
+  }
+
+
+
+  // Two and a half cells along x and a third along y, there and back again.
+  TEST(Health, CrossingsAreCountedAlsoOnTheWayBack)
+  {
+    SceneRun<2> run(two_boxes("0.4"));
+    const auto  set_velocity = [&](const double x, const double y) {
+      for (unsigned int b = 0; b < 2; ++b)
+        for (std::size_t p = 0; p < run.points(b).size; ++p)
+          {
+            run.points(b).velocity[0][p] = x;
+            run.points(b).velocity[1][p] = y;
+          }
+    };
+    set_velocity(0.25, 0.0333);
+    run.advance(0.05, 20);
+    set_velocity(-0.25, -0.0333);
+    run.advance(0.05, 20);
+    const BodyFigures body = at_start(run);
+    // points at 1/4 and 3/4 of a cell: 2 or 3 crossings along x, 0 or 1 along
+    // y, in each direction
+    EXPECT_NEAR(body.crossings, 2 * (2.5 + 0.5), 1e-12);
+    EXPECT_EQ(body.most_crossings, 8);
+  }
+
+
+
+  TEST(Health, GapsAreWhatIsEmptyBetweenPointsOfTheBody)
+  {
+    // # # . # . . # # . . . # in one row, and # below the first
+    const std::array<unsigned int, 2> n{{12, 3}};
+    CellCounts                        own, other;
+    for (const unsigned int i : {0, 1, 3, 6, 7, 11})
+      own.cells.emplace_back(12 + i, 4);
+    own.cells.insert(own.cells.begin(), {0, 1});
+    BodyFigures body;
+    look_at_counts<2>({own, other}, n, 0, body);
+    EXPECT_EQ(body.cells, 7u);
+    EXPECT_EQ(body.gaps, 3u);
+    other.cells.emplace_back(12 + 2, 4); // the other body fills the first one
+    look_at_counts<2>({own, other}, n, 0, body);
+    EXPECT_EQ(body.gaps, 2u);
+  }
+
+
+
+  TEST(Health, InnerCellsWithOnePointAreCounted)
+  {
+    const std::array<unsigned int, 3> n{{3, 3, 3}};
+    CellCounts                        own;
+    for (unsigned int place = 0; place < 27; ++place)
+      own.cells.emplace_back(place, place == 13 ? 1 : 8);
+    BodyFigures body;
+    look_at_counts<3>({own}, n, 0, body);
+    EXPECT_EQ(body.inner_cells, 1u);
+    EXPECT_EQ(body.single_cells, 1u);
+    EXPECT_EQ(body.gaps, 0u);
+  }
+} // namespace limber::test
