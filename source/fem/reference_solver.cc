@@ -236,6 +236,7 @@ namespace limber
     moved -= former;
     state.load_work += 0.5 * (moved * load + moved * former_load);
     state.boundary_work += 0.5 * (moved * support + moved * former_support);
+    state.outer_power = state.velocity * load + state.velocity * support;
     state.load_impulse +=
       0.5 * step *
       (sum_over_nodes(model, load) + sum_over_nodes(model, former_load));

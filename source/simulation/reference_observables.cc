@@ -22,6 +22,21 @@ namespace limber
              kind == ObservableKind::pressure ||
              kind == ObservableKind::volume_ratio;
     }
+
+
+
+    /**
+     * J: laws take the difference of numbers of the size of one, so energies
+     * are known to some last bits of the stiffness.
+     */
+    template <int dim>
+    double
+    energy_of_round_off(const SolidModel<dim> &model)
+    {
+      const double speed = model.element->pressure_wave_speed;
+      return 16 * std::numeric_limits<double>::epsilon() * total_mass(model) *
+             speed * speed;
+    }
   } // namespace
 
 
@@ -136,6 +151,7 @@ namespace limber
         has_start        = true;
         energy_at_start  = balance;
         gravity_at_start = result.gravitational_energy;
+        energy_scale     = energy_of_round_off(model);
       }
     energy_scale =
       std::max(energy_scale,
@@ -144,9 +160,12 @@ namespace limber
                  std::abs(motion.boundary_work) + std::abs(motion.load_work));
     // Gravity that grows with the load steps has no potential.
     result.energy_drift =
-      problem.reference.method == ReferenceMethod::quasi_static ? not_known :
-      energy_scale > 0 ? (balance - energy_at_start) / energy_scale :
-                         0;
+      problem.reference.method == ReferenceMethod::quasi_static ?
+        not_known :
+        (balance - energy_at_start) / energy_scale;
+    constexpr double share_of_a_step = 0.3; // a quarter, and a margin
+    result.unresolved                = share_of_a_step * motion.step_size *
+                        std::abs(motion.outer_power) / energy_scale;
     return result;
   }
 

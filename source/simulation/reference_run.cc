@@ -199,10 +199,15 @@ namespace limber
       }
 
       bool
+      is_explicit() const
+      {
+        return problem.reference.method == ReferenceMethod::explicit_steps;
+      }
+
+      bool
       row_is_due(const bool at_target) const
       {
-        return at_target ||
-               problem.reference.method != ReferenceMethod::explicit_steps ||
+        return at_target || !is_explicit() ||
                solver.motion().step % problem.output.statistics_interval == 0;
       }
 
@@ -225,17 +230,29 @@ namespace limber
         checks.add(solver.motion().time, observed);
         if (statistics)
           statistics->add(observables.row(totals, observed));
-        const bool grows = totals.energy_drift > admitted_growth;
+        const bool grows =
+          totals.energy_drift > admitted_growth + totals.unresolved;
         if (std::isfinite(totals.kinetic_energy) && !grows)
           return;
+        refuse_growth();
+      }
+
+      [[noreturn]] void
+      refuse_growth() const
+      {
         std::ostringstream text;
         text << "The energy of the finite element reference has grown by "
              << totals.energy_drift << " of its scale at time "
-             << solver.motion().time
-             << " s. Usually the step is too long: Newmark's method is not "
-                "stable in large rotations. Set 'Reference/Time step' below "
-             << solver.motion().step_size
-             << ", or 'Reference/Method = explicit'.";
+             << solver.motion().time << " s. Usually the step is too long"
+             << (is_explicit() ?
+                   "" :
+                   ": Newmark's method is not stable in large rotations")
+             << ". Set 'Reference/Time step = ";
+        if (is_explicit())
+          text << "0', which takes a stable one.";
+        else
+          text << 0.5 * solver.motion().step_size
+               << "', or 'Reference/Method = explicit'.";
         throw ComputationError(text.str());
       }
 

@@ -122,6 +122,60 @@ def exact(folder):
                "what the scene does not give is not compared")
 
 
+def ramp(folder):
+    """A load that grows from zero on a body at rest is no instability."""
+    loaded = folder / "loaded.prm"
+    loaded.write_text(CANTILEVER.read_text() + """
+subsection Loads
+  set Face loads = shear
+  subsection Face load shear
+    set Body     = beam
+    set Face     = right
+    set Traction = 0; t
+  end
+end
+""")
+    scene = (loaded, "--output-directory")
+    rest = ("Body beam/Initial velocity=0; 0", "Output/Replace=true",
+            "Check first mode/Observable=tip", "Check first mode/Tolerance=1e9")
+
+    def drifts(name, words, *changes, code=0):
+        limber(*words, *scene, folder / name, changes=(*rest, *changes),
+               code=code)
+        rows = (folder / name / "statistics").read_text().splitlines()
+        heads = [row for row in rows if row.startswith("#")]
+        column = next(i for i, head in enumerate(heads) if "drift" in head)
+        return [float(row.split()[column])
+                for row in rows if not row.startswith("#")]
+
+    for traction in ("0; t", "0; 1000*t", "0; 1e-3*t", "0; 100*t^3",
+                     "0; if(t < 0.4, 0, t - 0.4)"):
+        load = "Loads/Face load shear/Traction=" + traction
+        for method in ("implicit", "explicit"):
+            found = drifts("fem", ("reference",), load, "End time=1",
+                           "Reference/Method=" + method)
+            expect(abs(found[-1]) < 1e-3,
+                   f"{method}, {traction}: drift {found[-1]:.2g} at the end")
+            # Steps are not cut because round-off is taken for a force.
+            expect(method == "explicit" or len(found) < 120,
+                   f"{method}, {traction}: {len(found) - 1} steps")
+        for order in ("first", "both ends"):
+            found = drifts("run", (), load, "End time=0.8",
+                           "Method/Stress update=" + order)
+            worst = max(map(abs, found))
+            expect(worst < 0.3, f"run, {order}, {traction}: {worst:.2g} of 1")
+
+    # Steps beyond the limit grow from the same load, and are stopped.
+    load = "Loads/Face load shear/Traction=0; 1000*t"
+    for step in ("0.004", "0.01"):
+        found = drifts("fem", ("reference",), load, "End time=20",
+                       "Reference/Method=explicit",
+                       "Reference/Time step=" + step, code=2)
+        expect(len(found) < 30, f"explicit, {step} s: after {len(found)} steps")
+    found = drifts("run", (), load, "Method/Courant number=2.5", code=2)
+    expect(len(found) < 60, f"run, unstable: after {len(found)} steps")
+
+
 def refusals(folder):
     """What references cannot do is said."""
     water = TOP / "prm/dam_break.prm"

@@ -23,6 +23,7 @@ namespace limber
 
     double                                      load_work     = 0; // J
     double                                      boundary_work = 0; // J
+    double                                      outer_power   = 0; // W, now
     dealii::Tensor<1, dim>                      load_impulse;      // kg m/s
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_force;   // on the body, N
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse; // kg m/s
@@ -96,6 +97,8 @@ namespace limber
     fail(const double time, const std::string &entry) const;
     void
     follow_held(const NodalVector &former);
+    double
+    round_off_of_forces() const;
     double
     unbalance(const double time, const double mass_factor);
     void

@@ -12,7 +12,16 @@
 
 namespace limber
 {
-  /** Sums over the body and how well energy is conserved; as Totals. */
+  /**
+   * Sums over the body and how well energy is conserved; as Totals.
+   *
+   * A body at rest whose loads begin to grow has no energy to hold a gain
+   * against: the balance of the first step by central differences is all
+   * kinetic energy, dt f.v / 4 with the forces f from outside, and no work. So
+   * where they have the power f.v, a gain of 0.3 dt |f.v| is not resolved. It
+   * is a share of 1.2 / n of the energy after n steps of a load that grows
+   * evenly, and grows but with the amplitude of a motion that is unstable.
+   */
   template <int dim>
   struct ReferenceTotals
   {
@@ -23,6 +32,7 @@ namespace limber
     double                 gravitational_energy = 0; // -m g.x, J
     StrainTotals           strain;
     double                 energy_drift  = 0; // gain over the scale of energy
+    double                 unresolved    = 0; // drift that may come and go
     double                 largest_speed = 0; // m/s
   };
 
