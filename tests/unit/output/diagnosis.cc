@@ -85,7 +85,16 @@ namespace limber::test
     if (!speaks())
       return;
     EXPECT_NEAR(seen.bodies[0].chequerboard, 2, 1e-4);
-    EXPECT_EQ(diagnose(seen, run.problem, false).mode, "chequerboard");
+    const Diagnosis found = diagnose(seen, run.problem, false);
+    EXPECT_EQ(found.mode, "chequerboard");
+    EXPECT_NE(found.text.find("/Chequerboard control = 0.5'"),
+              std::string::npos);
+    // what is set already is no remedy
+    run.problem.bodies[0].chequerboard_control = 0.5;
+    run.problem.bodies[0].hourglass_control    = 0.1;
+    EXPECT_NE(
+      diagnose(seen, run.problem, false).text.find("/Hourglass control = 0.2'"),
+      std::string::npos);
   }
 
 
@@ -101,7 +110,20 @@ namespace limber::test
     if (!speaks())
       return;
     EXPECT_GT(seen.unseen_energy, 0.8); // all but at the free ends
-    EXPECT_EQ(diagnose(seen, run.problem, false).mode, "null space");
+    const Diagnosis found = diagnose(seen, run.problem, false);
+    EXPECT_EQ(found.mode, "null space");
+    EXPECT_NE(found.text.find("Method/Damping time = 0.05'"), std::string::npos)
+      << found.text;
+    EXPECT_EQ(found.text.find("apic"), std::string::npos);
+
+    // a liquid that its control would have held
+    run.problem.bodies[0].is_liquid = true;
+    EXPECT_NE(diagnose(seen, run.problem, false)
+                .text.find("Body block/Hourglass control = 0.1'"),
+              std::string::npos);
+    run.problem.bodies[0].hourglass_control = 0.1;
+    EXPECT_NE(diagnose(seen, run.problem, false).text.find("Damping time"),
+              std::string::npos);
   }
 
 
