@@ -6,18 +6,20 @@
 #include <limber/problem/size_estimate.h>
 #include <limber/simulation/command_line.h>
 #include <limber/study/advice.h>
+#include <limber/study/advice_runs.h>
 #include <limber/study/child_process.h>
 #include <limber/study/study_commands.h>
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <sstream>
 
 namespace limber
@@ -26,26 +28,28 @@ namespace limber
   {
     const std::string advise_usage = R"(limber advise [options] scene.prm
 
-Says what a scene could do without, and the factor in CPU time that each would
-save; runs nothing.
+Runs a scene with and without what it could perhaps spare, and says what each
+saves, what it changes, and whether that is advisable.
 
-  --for-error number         relative error that is asked for, default 0.01
+  --for-error number         relative change that is admitted, default 0.01
+  --seconds number           wall time that a run may take, default 60; of
+                             longer scenes the beginning is compared
   --set "Section/Name=value" change an entry first; may be repeated
 )";
 
 
 
-    /** What --validate tells about the size of a run. */
-    struct RunSize
+    struct AdviseOptions
     {
-      double points = 0, first_step = 0;
+      double error = 0.01, seconds = 60;
     };
 
 
 
     /** Builds a scene in a process of its own, which brings its own MPI. */
-    RunSize
-    size_of(const std::string &scene, const std::vector<std::string> &settings)
+    double
+    first_step_of(const std::string              &scene,
+                  const std::vector<std::string> &settings)
     {
       namespace fs    = std::filesystem;
       std::string log = fs::temp_directory_path() / "limber-advise-XXXXXX";
@@ -62,54 +66,156 @@ save; runs nothing.
       fs::remove(log);
 
       // "... 512 points of 1 body in 720 cells of 0.25 m; first step 0.0027 s"
-      RunSize    size;
-      const auto points = text.str().find(" points of ");
-      const auto step   = text.str().find("first step ");
-      if (end.exit_code != 0 || points == std::string::npos ||
-          step == std::string::npos)
+      const auto step = text.str().find("first step ");
+      if (end.exit_code != 0 || step == std::string::npos)
         throw InputError("The scene " + in_quotes(scene) +
                          " cannot be built. " + text.str());
-      const auto line = text.str().rfind('\n', points) + 1;
-      size.points     = std::stod(text.str().substr(line, points - line));
-      size.first_step = std::stod(text.str().substr(step + 11));
-      return size;
+      return std::stod(text.str().substr(step + 11));
     }
 
 
 
+    void
+    refuse_failed(const Trial &trial, const std::string &scene)
+    {
+      if (trial.until > 0 &&
+          (trial.outcome == "finished" || trial.outcome == "time limit"))
+        return;
+      throw ComputationError("The scene " + in_quotes(scene) +
+                             " itself does not run: it ends with '" +
+                             trial.outcome +
+                             "', so that nothing can be compared with it. Run "
+                             "it alone for the reason, or raise '--seconds' "
+                             "above the time that its first steps take.");
+    }
+
+
+
+    const char *
+    heading(const Judgement judgement)
+    {
+      switch (judgement)
+        {
+          case Judgement::advised:
+            return "Advised";
+          case Judgement::trade:
+            return "A trade";
+          default:
+            return "Not advised";
+        }
+    }
+
+
+
+    std::string
+    gain_in_words(const Advice &advice, const double factor)
+    {
+      std::string text = "a factor of " + brief(factor) + " in CPU time";
+      if (advice.memory > 0)
+        text += ", " + brief(advice.memory / 1048576) + " MB";
+      return text;
+    }
+
+
+
+    std::string
+    changes_in_words(const Advice &advice, const Effect &effect)
+    {
+      if (effect.until <= 0)
+        return advice.changes;
+      std::string text =
+        advice.changes + "; measured until " + brief(effect.until) + " s, ";
+      if (effect.quantity.empty())
+        return text + "nothing that is watched";
+      return text + effect.quantity + " by " + brief(100 * effect.change) +
+             " %";
+    }
+
+
+
+    void
+    tell(const Advice       &advice,
+         const JudgedAdvice &judged,
+         const double        factor,
+         const Effect       &effect)
+    {
+      std::vector<std::string> settings;
+      for (const std::string &setting : advice.settings)
+        settings.push_back(in_quotes(setting));
+      std::cout << heading(judged.judgement) << ": " << advice.what << ". "
+                << advice.text << ". Set " << join(settings, ", ")
+                << ". Saves: " << gain_in_words(advice, factor)
+                << ". Changes: " << changes_in_words(advice, effect)
+                << ". Ground: " << judged.ground << ".\n";
+    }
+
+
+
+    /** The scene as it is, and once with each advice. */
     template <int dim>
     void
     tell_advice(const SceneFile                &scene,
                 const std::string              &path,
                 const std::vector<std::string> &overrides,
-                const double                    error)
+                const AdviseOptions            &options)
     {
       const Problem<dim> problem = read_problem<dim>(scene);
       check_size(problem, Task::run, this_machine());
-      const RunSize size = size_of(path, overrides);
-      const auto advice  = advise<dim>(scene, problem, error, size.first_step);
-      for (const Advice &piece : advice)
+      const auto           found = find_advice<dim>(scene,
+                                          problem,
+                                          options.error,
+                                          first_step_of(path, overrides));
+      std::optional<Trial> base;
+      double               way = 0;
+      for (const Advice &advice : found)
         {
-          double factor = piece.factor;
-          if (!piece.settings.empty())
+          if (advice.factor > 0)
             {
-              auto all = overrides;
-              all.insert(all.end(),
-                         piece.settings.begin(),
-                         piece.settings.end());
-              const RunSize lean = size_of(path, all);
-              factor *=
-                size.points / lean.points * lean.first_step / size.first_step;
+              tell(advice,
+                   {Judgement::advised, "the length of steps; no run needed"},
+                   advice.factor,
+                   {});
+              continue;
             }
-          std::cout << piece.what << ": " << piece.text;
-          if (factor > 1.01)
-            std::cout << " Saves a factor of " << brief(factor)
-                      << " in CPU time.";
-          std::cout << '\n';
+          if (!base)
+            {
+              base = try_scene(path, overrides, options.seconds);
+              refuse_failed(*base, path);
+              double edge = problem.grid.edge(0);
+              for (unsigned int d = 1; d < dim; ++d)
+                edge = std::min(edge, problem.grid.edge(d));
+              way = longest_way(base->table, edge);
+            }
+          auto all = overrides;
+          all.insert(all.end(), advice.settings.begin(), advice.settings.end());
+          const Trial  changed = try_scene(path, all, options.seconds);
+          const Effect effect  = compare_trials(problem, *base, changed);
+          tell(advice,
+               judge_advice(advice, changed, effect, options.error, way),
+               effect.factor,
+               effect);
         }
-      if (advice.empty())
+      if (found.empty())
         std::cout << "Nothing to spare was found for an error of "
-                  << brief(100 * error) << " %.\n";
+                  << brief(100 * options.error) << " %.\n";
+    }
+
+
+
+    /** The positive number behind an option of advise. */
+    double
+    number_behind(const int          argc,
+                  const char *const *argv,
+                  const int          i,
+                  const std::string &example)
+    {
+      const auto number = i + 1 < argc ? to_number(argv[i + 1]) : std::nullopt;
+      if (!number || *number <= 0)
+        throw InputError("The option '" + std::string(argv[i]) +
+                         "' on the command line lacks a number greater than "
+                         "0. Write '" +
+                         argv[i] + " " + example + "', for instance.");
+      return *number;
     }
   } // namespace
 
@@ -118,20 +224,13 @@ save; runs nothing.
   int
   advise_command(const int argc, const char *const *argv)
   {
-    double                    error = 0.01;
-    std::vector<const char *> rest  = {argv[0]};
+    AdviseOptions             options;
+    std::vector<const char *> rest = {argv[0]};
     for (int i = 2; i < argc; ++i)
       if (argv[i] == std::string("--for-error"))
-        {
-          const auto number =
-            i + 1 < argc ? to_number(argv[i + 1]) : std::nullopt;
-          if (!number || *number <= 0)
-            throw InputError("The option '--for-error' on the command line "
-                             "lacks a number greater than 0. Write "
-                             "'--for-error 0.01', for instance.");
-          error = *number;
-          ++i;
-        }
+        options.error = number_behind(argc, argv, i++, "0.01");
+      else if (argv[i] == std::string("--seconds"))
+        options.seconds = number_behind(argc, argv, i++, "60");
       else
         rest.push_back(argv[i]);
     const CommandLine line = parse_command_line(rest.size(), rest.data());
@@ -142,9 +241,9 @@ save; runs nothing.
       }
     const SceneFile scene(line.scene, line.overrides);
     if (scene.dimension() == 2)
-      tell_advice<2>(scene, line.scene, line.overrides, error);
+      tell_advice<2>(scene, line.scene, line.overrides, options);
     else
-      tell_advice<3>(scene, line.scene, line.overrides, error);
+      tell_advice<3>(scene, line.scene, line.overrides, options);
     return int(ExitCode::success);
   }
 } // namespace limber

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/study/advice.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+/** @file Advice on the grid: an axis that nothing needs, and empty cells. */
+namespace limber
+{
+  namespace
+  {
+    /** A lattice of places within the box of a body. */
+    template <int dim>
+    std::vector<dealii::Point<dim>>
+    sample_places(const Body<dim> &body)
+    {
+      const auto                      box = body.shape->bounding_box();
+      constexpr unsigned int          n   = 5;
+      std::vector<dealii::Point<dim>> places;
+      for (unsigned int i = 0; i < std::pow(n, dim); ++i)
+        {
+          dealii::Point<dim> place;
+          unsigned int       index = i;
+          for (unsigned int d = 0; d < dim; ++d, index /= n)
+            place[d] = box.first[d] +
+                       (index % n + 0.5) / n * (box.second[d] - box.first[d]);
+          places.push_back(place);
+        }
+      return places;
+    }
+
+
+
+    /** No component changes along the axis, and its own one is zero. */
+    template <int dim>
+    bool
+    is_even_along(const Formula<dim> &formula,
+                  const unsigned int  axis,
+                  const Body<dim>    &body)
+    {
+      if (formula.empty() || formula.is_zero())
+        return true;
+      const auto box = body.shape->bounding_box();
+      for (const auto &place : sample_places(body))
+        {
+          auto other  = place;
+          other[axis] = 0.7 * box.first[axis] + 0.3 * box.second[axis];
+          for (const double time : {0., 0.37})
+            for (unsigned int c = 0; c < formula.n_components(); ++c)
+              {
+                const double here  = formula.value(place, time, c);
+                const double there = formula.value(other, time, c);
+                if (std::abs(here - there) > 1e-12 * std::abs(here) ||
+                    (c == axis && formula.n_components() == dim && here != 0))
+                  return false;
+              }
+        }
+      return true;
+    }
+
+
+
+    /** Bodies from side to side, slip on both, nothing that changes along it.
+     */
+    template <int dim>
+    bool
+    is_plane_along(const Problem<dim> &problem, const unsigned int axis)
+    {
+      for (const unsigned int side : {2 * axis, 2 * axis + 1})
+        if (problem.sides[side].condition != SideCondition::slip)
+          return false;
+      if (problem.loads.gravity[axis] != 0 || !problem.loads.faces.empty())
+        return false;
+      for (const Body<dim> &body : problem.bodies)
+        {
+          const auto box  = body.shape->bounding_box();
+          const auto grid = problem.grid;
+          const auto edge = (grid.upper[axis] - grid.lower[axis]);
+          const bool spans =
+            dynamic_cast<const BoxShape<dim> *>(body.shape.get()) != nullptr &&
+            std::abs(box.first[axis] - grid.lower[axis]) < 1e-9 * edge &&
+            std::abs(box.second[axis] - grid.upper[axis]) < 1e-9 * edge;
+          if (!spans || body.placement == Placement::jittered ||
+              !is_even_along(body.initial_velocity, axis, body) ||
+              (body.initial_pressure &&
+               !is_even_along(*body.initial_pressure, axis, body)) ||
+              (problem.loads.body_force &&
+               !is_even_along(*problem.loads.body_force, axis, body)))
+            return false;
+        }
+      return true;
+    }
+
+
+
+    /** The farthest that anything may get in a direction, m: an upper bound. */
+    template <int dim>
+    double
+    reach(const Problem<dim> &problem)
+    {
+      double speed = 0, fall = 0;
+      for (const Body<dim> &body : problem.bodies)
+        {
+          for (const auto &place : sample_places(body))
+            if (!body.initial_velocity.is_zero() &&
+                body.initial_velocity.is_finite(place, 0))
+              speed =
+                std::max(speed, body.initial_velocity.vector(place, 0).norm());
+        }
+      // down the whole box, and then away along the floor
+      for (unsigned int d = 0; d < dim; ++d)
+        fall =
+          std::max(fall,
+                   std::sqrt(2 * std::abs(problem.loads.gravity[d]) *
+                             (problem.grid.upper[d] - problem.grid.lower[d])));
+      return (speed + fall) * problem.end_time;
+    }
+
+
+
+    /** The axis along which nothing changes; dim where there is none. */
+    template <int dim>
+    unsigned int
+    even_axis(const Problem<dim> &problem)
+    {
+      unsigned int axis = 0;
+      while (axis < dim && !is_plane_along(problem, axis))
+        ++axis;
+      return axis;
+    }
+
+
+
+    template <int dim>
+    bool
+    is_moved_from_outside(const Problem<dim> &problem)
+    {
+      return problem.loads.body_force || !problem.loads.faces.empty() ||
+             std::any_of(problem.sides.begin(),
+                         problem.sides.end(),
+                         [](const Side<dim> &side) {
+                           return side.condition == SideCondition::velocity;
+                         });
+    }
+
+
+
+    /** The grid without layers of cells farther than @p way from all bodies. */
+    template <int dim>
+    GridDescription<dim>
+    trimmed(const Problem<dim> &problem, const double way)
+    {
+      GridDescription<dim> grid = problem.grid;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double h     = grid.edge(d);
+          double       lower = grid.upper[d], upper = grid.lower[d];
+          for (const Body<dim> &body : problem.bodies)
+            {
+              lower = std::min(lower, body.shape->bounding_box().first[d]);
+              upper = std::max(upper, body.shape->bounding_box().second[d]);
+            }
+          // Two free layers, so that nothing feels the side; whole cells, so
+          // that points lie in them as before.
+          const double low   = (lower - way - grid.lower[d]) / h - 2;
+          const double high  = (grid.upper[d] - upper - way) / h - 2;
+          const auto   whole = [&](const double layers) {
+            return static_cast<unsigned int>(
+              std::clamp(std::floor(layers), 0., double(grid.cells[d] - 1)));
+          };
+          const unsigned int below = whole(low), above = whole(high);
+          grid.lower[d] += below * h;
+          grid.upper[d] -= above * h;
+          grid.cells[d] -= below + above;
+        }
+      return grid;
+    }
+
+
+
+    template <int dim>
+    double
+    number_of_cells(const GridDescription<dim> &grid)
+    {
+      double product = 1;
+      for (const unsigned int cells : grid.cells)
+        product *= cells;
+      return product;
+    }
+  } // namespace
+
+
+
+  std::string
+  entry_of(const std::vector<double> &numbers)
+  {
+    std::string text;
+    for (const double number : numbers)
+      {
+        std::array<char, 32> word;
+        std::snprintf(word.data(), word.size(), "%.15g", number);
+        text += (text.empty() ? "" : ", ") + std::string(word.data());
+      }
+    return text;
+  }
+
+
+
+  template <int dim>
+  std::optional<Advice>
+  advise_dimension(const Problem<dim> &problem)
+  {
+    const unsigned int axis = even_axis(problem);
+    if (dim != 3 || axis == dim)
+      return {};
+    const unsigned int layers =
+      problem.grid.cells[axis] *
+      problem.bodies.front().points_per_cell_edge[axis];
+    if (layers == 1)
+      return {};
+    const auto with_one = [&](const auto &per_axis) {
+      std::vector<double> numbers(per_axis.begin(), per_axis.end());
+      numbers[axis] = 1;
+      return entry_of(numbers);
+    };
+    Advice advice;
+    advice.what = "Dimension";
+    advice.text = std::string("Nothing changes along ") + "xyz"[axis] +
+                  ": the bodies reach from side to side, both are 'slip', and "
+                  "no load, velocity or pressure depends on it. One layer of "
+                  "points does for " +
+                  std::to_string(layers) +
+                  "; a scene in two dimensions ('Dimension = 2') saves more";
+    advice.changes = "motion along this axis, which begins from round-off";
+    advice.settings.push_back("Grid/Cells=" + with_one(problem.grid.cells));
+    for (const Body<dim> &body : problem.bodies)
+      advice.settings.push_back("Body " + body.name + "/Points per cell edge=" +
+                                with_one(body.points_per_cell_edge));
+    return advice;
+  }
+
+
+
+  template <int dim>
+  std::optional<Advice>
+  advise_box(const Problem<dim> &problem)
+  {
+    if (is_moved_from_outside(problem))
+      return {}; // what that does is not known beforehand
+    const double               way  = reach(problem);
+    const GridDescription<dim> grid = trimmed(problem, way);
+    const double kept = number_of_cells(grid) / number_of_cells(problem.grid);
+    if (kept > 0.5)
+      return {};
+    constexpr double bytes_per_cell = dim == 2 ? 346 : 587;
+    Advice           advice;
+    advice.what = "Grid";
+    advice.text = "Nothing gets farther than " + brief(way) +
+                  " m within the end time, so " + brief(100 * kept) +
+                  " % of the cells do";
+    advice.changes    = "nothing: empty cells take memory alone";
+    const auto corner = [](const dealii::Point<dim> &place) {
+      std::vector<double> numbers(dim);
+      for (unsigned int d = 0; d < dim; ++d)
+        numbers[d] = place[d];
+      return entry_of(numbers);
+    };
+    advice.settings = {"Grid/Lower corner=" + corner(grid.lower),
+                       "Grid/Upper corner=" + corner(grid.upper),
+                       "Grid/Cells=" +
+                         entry_of({grid.cells.begin(), grid.cells.end()})};
+    advice.memory = bytes_per_cell * (1 - kept) * number_of_cells(problem.grid);
+    advice.is_exact = true;
+    return advice;
+  }
+
+
+
+  template std::optional<Advice>
+  advise_dimension(const Problem<2> &);
+  template std::optional<Advice>
+  advise_dimension(const Problem<3> &);
+  template std::optional<Advice>
+  advise_box(const Problem<2> &);
+  template std::optional<Advice>
+  advise_box(const Problem<3> &);
+} // namespace limber
