@@ -6,10 +6,10 @@
 #include <fcntl.h>
 #include <hdf5.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cerrno>
 #include <cstring>
-#include <vector>
 
 namespace limber
 {
@@ -106,15 +106,42 @@ namespace limber
 
 
 
-  ArrayFile::ArrayFile(const std::string &path, const Mode mode)
+  std::uint32_t
+  checksum(const void         *bytes,
+           const std::size_t   n_bytes,
+           const std::uint32_t before)
+  {
+    // Without bytes zlib would begin anew.
+    return n_bytes == 0 ?
+             before :
+             crc32_z(before, static_cast<const Bytef *>(bytes), n_bytes);
+  }
+
+
+
+  DamagedFile::DamagedFile(const std::string &path, const std::string &reason)
+    : FileError("The file " + in_quotes(path) + " " + reason +
+                ". Usually it was damaged or written by another program. "
+                "Restore it, or start the run anew in another "
+                "'Output/Directory'.")
+    , reason(reason)
+  {}
+
+
+
+  ArrayFile::ArrayFile(const std::string &path,
+                       const Mode         mode,
+                       const std::size_t  room)
     : path(path)
     , mode(mode)
   {
     // Failures are told by fail(), not by HDF5's own report.
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Hdf5Object creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
+    H5Pset_userblock(creation, room);
     errno = 0;
     file  = mode == Mode::create ?
-              H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT) :
+              H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, H5P_DEFAULT) :
               H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     if (file < 0)
       fail("the file");
@@ -137,11 +164,7 @@ namespace limber
       errno != 0 ? std::strerror(errno) : "HDF5 fails at " + what;
     if (mode == Mode::create)
       throw cannot_write(path, reason);
-    throw FileError("The file " + in_quotes(path) +
-                    " could not be read: " + reason +
-                    ". Usually it was damaged or written by another program. "
-                    "Restore it, or start the run anew in another "
-                    "'Output/Directory'.");
+    throw DamagedFile(path, "could not be read: " + reason);
   }
 
 
@@ -224,6 +247,21 @@ namespace limber
 
 
 
+  std::uint64_t
+  ArrayFile::begin(const std::string &name) const
+  {
+    if (size(name) == 0)
+      return 0;
+    errno = 0;
+    const Hdf5Object array(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose);
+    const haddr_t    result = H5Dget_offset(array);
+    if (result == HADDR_UNDEF)
+      fail("the array " + in_quotes(name));
+    return result;
+  }
+
+
+
   template <typename T>
   void
   ArrayFile::read(const std::string &name,
@@ -244,13 +282,14 @@ namespace limber
 
   GatheredFile::GatheredFile(const std::string  &path,
                              const std::uint64_t n_bytes,
-                             const MPI_Comm      communicator)
+                             const MPI_Comm      communicator,
+                             const std::size_t   room)
     : communicator(communicator)
     , first(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
   {
     attempt([&]() {
-      try_room(path, n_bytes);
-      file = std::make_unique<ArrayFile>(path, ArrayFile::Mode::create);
+      try_room(path, room + n_bytes);
+      file = std::make_unique<ArrayFile>(path, ArrayFile::Mode::create, room);
     });
   }
 
@@ -296,7 +335,8 @@ namespace limber
       n += size;
     attempt([&]() { file->create<T>(name, n); });
     attempt([&]() { file->write(name, 0, own, n_own); });
-    std::size_t    begin = n_own;
+    FilePiece   piece{name, 0, n * sizeof(T), checksum(own, n_own * sizeof(T))};
+    std::size_t begin = n_own;
     std::vector<T> theirs;
     for (unsigned int rank = 1; rank < sizes.size(); ++rank)
       {
@@ -311,7 +351,13 @@ namespace limber
         attempt(
           [&]() { file->write(name, begin, theirs.data(), theirs.size()); });
         begin += theirs.size();
+        piece.checksum =
+          checksum(theirs.data(), theirs.size() * sizeof(T), piece.checksum);
       }
+    attempt([&]() {
+      piece.begin = file->begin(name);
+      written.push_back(piece);
+    });
   }
 
 

@@ -13,7 +13,7 @@ namespace limber
   void
   Simulation<dim>::resume()
   {
-    resumed    = checkpoints.load(bodies);
+    resumed    = checkpoints.load(present_state(), bodies);
     state.step = saved_step = resumed->step;
     state.time              = resumed->time;
     state.step_size         = resumed->step_size;
@@ -32,18 +32,13 @@ namespace limber
     balance_of_start.restore(resumed->balance);
     totals = balance_of_start.evaluate(state);
     balance_of_start.restore(resumed->balance);
-    if (totals.points + totals.lost_points != n_points_at_start)
-      throw FileError("The checkpoint " + in_quotes(checkpoints.good_file()) +
-                      " has " + std::to_string(totals.points) +
-                      " points instead of " +
-                      std::to_string(n_points_at_start - totals.lost_points) +
-                      ". Usually the file was damaged. Restore it, or run "
-                      "without --resume.");
     observables.restore(resumed->observables);
     checks.restore(resumed->checks);
     writer.restore(resumed->pictures, communicator);
     console.restore_counts(resumed->warnings);
 
+    if (!checkpoints.warning().empty())
+      console.warn(checkpoints.warning());
     std::ostringstream text;
     text << "Resumed after step " << state.step << ", time " << state.time
          << " s, from " << checkpoints.good_file();
@@ -53,12 +48,9 @@ namespace limber
 
 
   template <int dim>
-  void
-  Simulation<dim>::write_checkpoint()
+  RunState<dim>
+  Simulation<dim>::present_state() const
   {
-    const double before = cpu_time();
-    if (statistics)
-      statistics->flush();
     RunState<dim> now;
     now.step              = state.step;
     now.time              = state.time;
@@ -72,7 +64,19 @@ namespace limber
     now.next_pictures     = next_pictures;
     now.statistics_length = statistics ? statistics->length() : 0;
     now.warnings          = console.warning_counts();
-    checkpoints.save(now, bodies);
+    return now;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::write_checkpoint()
+  {
+    const double before = cpu_time();
+    if (statistics)
+      statistics->flush();
+    checkpoints.save(present_state(), bodies);
 
     std::ostringstream text;
     text << "Checkpoint of step " << state.step << ", time " << state.time
@@ -120,6 +124,10 @@ namespace limber
   Simulation<2>::resume();
   template void
   Simulation<3>::resume();
+  template RunState<2>
+  Simulation<2>::present_state() const;
+  template RunState<3>
+  Simulation<3>::present_state() const;
   template void
   Simulation<2>::write_checkpoint();
   template void

@@ -88,7 +88,7 @@ def nothing_to_resume(runs):
     runs.expect(143, "", "Checkpoint/Wall time limit=0.05")
     for slot in (runs.folder / "checkpoint").glob("slot_*"):
         slot.write_bytes(slot.read_bytes()[:1000])
-    runs.expect(3, "could not be read", resume=True)
+    runs.expect(3, "slot_0.h5 has 1000 bytes instead of", resume=True)
 
 
 def unstable(runs):

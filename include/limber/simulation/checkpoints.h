@@ -2,44 +2,23 @@
 #ifndef limber_simulation_checkpoints_h
 #define limber_simulation_checkpoints_h
 
-#include <limber/output/checks.h>
-#include <limber/output/observables.h>
-#include <limber/output/writer.h>
-#include <limber/time/explicit_integrator.h>
+#include <limber/simulation/run_state.h>
+#include <limber/simulation/seal.h>
 
-#include <map>
+#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace limber
 {
-  /** What a run is made of at the end of a step, besides its points. */
-  template <int dim>
-  struct RunState
-  {
-    unsigned long                       step      = 0;
-    double                              time      = 0; // s
-    double                              step_size = 0; // of the last step, s
-    Ledger<dim>                         ledger;        // over all ranks
-    IntegratorState<dim>                integrator;
-    BalanceState<dim>                   balance;
-    ObservablesState<dim>               observables;
-    std::vector<CheckedValue>           checks;
-    WriterState                         pictures;
-    double                              next_pictures     = 0; // s
-    std::uint64_t                       statistics_length = 0; // bytes
-    std::map<std::string, unsigned int> warnings;
-  };
-
-
-
   /**
    * The folder `checkpoint` of a run: two files that are written in turn, and
    * a note that names the good one. The note is changed when the new file is
-   * complete, so there is a good file at every moment after the first one.
-   * Every member function is collective unless it says otherwise.
-   *
-   * Points are stored with the place of their cell in the lattice of the
-   * scene, so that every rank finds its own whatever the partition is.
+   * complete and on the disk, so there is a good file at every moment after the
+   * first one. Every file is sealed; one that is not what was written is never
+   * used, and the other one is taken instead. Every member function is
+   * collective unless it says otherwise.
    */
   template <int dim>
   class Checkpoints
@@ -54,34 +33,48 @@ namespace limber
     save(const RunState<dim> &state, const Bodies &bodies);
 
     /**
-     * Replace all points by those of the good file. Throws InputError where
-     * there is none or it belongs to another scene, FileError where it cannot
-     * be read.
+     * Replace all points, those of the start, by the ones of the good file, or
+     * of the other where that is damaged. @p start: the state at the start.
+     * Throws InputError where there is no checkpoint or it belongs to another
+     * scene, FileError where none can be used.
      */
     RunState<dim>
-    load(Bodies &bodies);
+    load(const RunState<dim> &start, Bodies &bodies);
+
+    /** What load() has found wrong; empty: nothing. On the first rank. */
+    const std::string &
+    warning() const
+    {
+      return found_wrong;
+    }
 
     /** The good file, as "output/checkpoint/slot_0.h5"; empty: none yet. */
-    const std::string &
+    std::string
     good_file() const
     {
-      return good;
+      return good.empty() ? good : folder + "/" + good;
     }
 
   private:
-    void
+    Seal
     write_file(const std::string   &path,
                const RunState<dim> &state,
                const Bodies        &bodies) const;
     RunState<dim>
-    read_file(Bodies &bodies) const;
+    read_file(const std::string              &path,
+              const std::vector<std::size_t> &n_at_start,
+              const RunState<dim>            &start,
+              Bodies                         &bodies) const;
     void
-    find_good_file();
+    check_statistics(const std::string &path, std::uint64_t length) const;
 
     const Problem<dim>        &problem;
     const BackgroundGrid<dim> &grid;
+    const bool                 first; // rank
     const std::string          folder;
-    std::string                good;
+    std::string                good;    // "slot_0.h5"
+    std::uint64_t              run = 0; // number of the run, on the first rank
+    std::string                found_wrong;
   };
 } // namespace limber
 

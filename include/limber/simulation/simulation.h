@@ -77,6 +77,8 @@ namespace limber
     record();
     void
     write_pictures();
+    RunState<dim>
+    present_state() const;
     void
     write_checkpoint();
     void
