@@ -107,6 +107,20 @@ namespace limber
 
 
 
+    /** Of a long list of choices the beginning, as messages must stay short. */
+    std::string
+    first_words(const std::string &range)
+    {
+      constexpr unsigned int most = 14;
+      std::size_t            end  = 0;
+      for (unsigned int word = 0; word < most && end != std::string::npos;
+           ++word)
+        end = range.find(' ', end + 1);
+      return end == std::string::npos ? range : range.substr(0, end) + " ...";
+    }
+
+
+
     /** "Known there are a, b and c", unless these are too many to read. */
     std::string
     known_names(const std::vector<std::string> &names)
@@ -240,7 +254,7 @@ namespace limber
         in_quotes(entry.name) + " " + in_section(entry.section) + " (" + place +
         ") is not admissible. Usually a digit, sign or word is "
         "mistyped. Write " +
-        declaration.admissible.description() + ", for instance " +
+        first_words(declaration.admissible.description()) + ", for instance " +
         in_quotes(declaration.admissible.example_near(entry.value)) + ".");
 
     for (const std::string &name : entry.section)

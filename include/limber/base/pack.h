@@ -252,10 +252,12 @@ namespace limber
   inline Number
   logarithm(const Number &a)
   {
-    using Bits        = internal::Bits<Number>;
-    const Bits   bits = internal::same_bits<Bits>(a);
-    const Bits   k = (bits - 0x3fe6a09e667f3bcdLL) >> 52; // from sqrt(1/2) on
-    const Number m = internal::same_bits<Number>(bits - (k << 52));
+    using Bits                = internal::Bits<Number>;
+    const Bits          bits  = internal::same_bits<Bits>(a);
+    constexpr long long start = 0x3fe6a09e667f3bcdLL; // sqrt(1/2)
+    const Bits          k     = (bits - start) >> 52;
+    const Number        m =
+      internal::same_bits<Number>(((bits - start) & 0xfffffffffffffLL) + start);
     // An integer in the last digits of 1.5 2^52 is that number of units.
     const Number exponent =
       internal::same_bits<Number>(k + 0x4338000000000000LL) - 6755399441055744.;
