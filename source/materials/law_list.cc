@@ -15,6 +15,7 @@ namespace limber
           result.push_back({Law::name,
                             Law::text,
                             Law::takes_pressure,
+                            Law::is_elastic,
                             {Law::parameters.begin(), Law::parameters.end()}});
       });
       return result;

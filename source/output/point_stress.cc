@@ -125,7 +125,7 @@ namespace limber
     std::array<double, dim>  xi;
     for (int d = 0; d < dim; ++d)
       xi[d] =
-        (points.position[d][p] - geometry.origin[d]) * geometry.inverse_edge[d];
+        (points.place[d][p] - geometry.origin[d]) * geometry.inverse_edge[d];
     return NodalMean<dim, Projection::node>(nodal.data(), geometry)
       .template value<double>(xi);
   }

@@ -102,7 +102,7 @@ namespace limber
           double squared = 0, all = points.pressure[p] + volume[p];
           for (int d = 0; d < dim; ++d)
             {
-              const double place = (points.position[d][p] - grid.lower[d]) *
+              const double place = (points.place[d][p] - grid.lower[d]) *
                                    grid.cells[d] /
                                    (grid.upper[d] - grid.lower[d]);
               cell[d] = std::isfinite(place) ? int(std::floor(place)) : 0;

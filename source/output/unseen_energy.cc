@@ -149,8 +149,8 @@ namespace limber
             {
               std::array<double, dim> xi;
               for (int d = 0; d < dim; ++d)
-                xi[d] = (points.position[d][p] - cell.origin[d]) *
-                        cell.inverse_edge[d];
+                xi[d] =
+                  (points.place[d][p] - cell.origin[d]) * cell.inverse_edge[d];
               values[p] = field.template value<double>(xi);
             }
         });

@@ -20,7 +20,9 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
-             (layout.crossings ? 1 : 0) + (layout.reference ? dim : 0);
+             (layout.crossings ? 1 : 0) +
+             (layout.initial_frame ? dim * dim : 0) +
+             (layout.has_reference() ? dim : 0);
     }
   } // namespace
 
@@ -62,9 +64,12 @@ namespace limber
     for (int d = 0; d < dim; ++d)
       {
         fields[d][p] = place[d];
-        if (layout.reference)
+        if (layout.has_reference())
           fields[fields.size() - dim + d][p] = place[d];
       }
+    if (layout.initial_frame)
+      for (int d = 0; d < dim; ++d)
+        fields[fields.size() - dim - dim * dim + d * (dim + 1)][p] = 1;
     fields[2 * dim][p] = mass;
     this->cell.push_back(cell);
     ids.push_back(p);
@@ -113,6 +118,13 @@ namespace limber
         array = fields[f++].data();
     if (layout.crossings)
       result.crossings = fields[f++].data();
+    if (layout.initial_frame)
+      for (auto &array : result.deformation)
+        array = fields[f++].data();
+    result.place = result.position;
+    if (layout.initial_frame)
+      for (auto &array : result.place)
+        array = fields[f++].data();
     result.volumetric = layout.volumetric < 0 ?
                           result.pressure :
                           result.history[layout.volumetric];
@@ -145,7 +157,7 @@ namespace limber
   dealii::Point<dim>
   MaterialPoints<dim>::reference_position(const std::size_t p) const
   {
-    Assert(layout.reference, dealii::ExcInternalError());
+    Assert(layout.has_reference(), dealii::ExcInternalError());
     dealii::Point<dim> result;
     for (int d = 0; d < dim; ++d)
       result[d] = fields[fields.size() - dim + d][p];
@@ -178,7 +190,8 @@ namespace limber
     numbered("affine", layout.affine ? dim * dim : 0);
     if (layout.crossings)
       names.push_back("crossings");
-    if (layout.reference)
+    numbered("deformation gradient", layout.initial_frame ? dim * dim : 0);
+    if (layout.has_reference())
       components("reference position", axes);
     return names;
   }
@@ -401,7 +414,8 @@ namespace limber
     carrier = std::make_unique<dealii::Particles::ParticleHandler<dim>>(
       grid.triangulation, grid.mapping, record_size());
     carrier->reserve(size());
-    std::vector<double> record(record_size());
+    std::vector<double>  record(record_size());
+    const PointView<dim> points = view();
     for (const auto &owner : grid.triangulation.active_cell_iterators())
       if (owner->is_locally_owned())
         {
@@ -414,7 +428,7 @@ namespace limber
               write_record(p, record.data());
               dealii::Point<dim> place;
               for (int d = 0; d < dim; ++d)
-                place[d] = record[d];
+                place[d] = points.place[d][p];
               carrier->insert_particle(
                 place,
                 grid.mapping.transform_real_to_unit_cell(owner, place),

@@ -117,6 +117,12 @@ namespace limber
                    law_words(),
                    "The law of the stress; the section of the same name holds "
                    "its constants.");
+      declare_word(parameters,
+                   "Frame",
+                   "current",
+                   frame_words(),
+                   "At which places of the points the functions of the grid "
+                   "are taken.");
       declare_treatment(parameters);
       declare_shape_sections(parameters, dim, union_parts);
       declare_material_sections(parameters);
@@ -442,10 +448,11 @@ namespace limber
 
     template <int dim>
     Body<dim>
-    read_body(const Section     &section,
+    read_body(const Section     &root,
               const std::string &name,
               Problem<dim>      &problem)
     {
+      const Section   section   = root.subsection("Body " + name);
       const Constants constants = read_constants(section);
 
       Body<dim> body;
@@ -463,7 +470,10 @@ namespace limber
       read_initial_pressure(section, constants, problem, body);
       body.is_liquid =
         read_word(section, "Material", law_words()).takes_pressure;
+      body.frame = read_word(section, "Frame", frame_words());
       read_treatment(section, body, problem);
+      if (body.frame == Frame::initial)
+        check_initial_frame(section, root, body);
       return body;
     }
   } // namespace
@@ -475,8 +485,7 @@ namespace limber
   read_bodies(const Section &root, Problem<dim> &problem)
   {
     for (const std::string &name : root.list("Bodies"))
-      problem.bodies.push_back(
-        read_body(root.subsection("Body " + name), name, problem));
+      problem.bodies.push_back(read_body(root, name, problem));
   }
 
 

@@ -24,7 +24,9 @@ namespace limber
       const auto solid =
         std::find_if(problem.bodies.begin(),
                      problem.bodies.end(),
-                     [](const auto &body) { return !body.is_liquid; });
+                     [](const auto &body) {
+                       return !body.is_liquid && body.frame == Frame::current;
+                     });
       const bool any_solid = solid != problem.bodies.end();
       problem.method.order = any_solid ? StressUpdateOrder::both_ends :
                                          StressUpdateOrder::last_remapped;
@@ -35,8 +37,8 @@ namespace limber
             in_quotes(solid->name) +
             "; 'last, remapped' takes two thirds of "
             "the time." :
-          "Stress update 'auto' is 'last, remapped', as liquids gain nothing "
-          "from 'both ends'.");
+          "Stress update 'auto' is 'last, remapped', as nothing gains from "
+          "'both ends' but solids whose points cross cells.");
     }
   } // namespace
 

@@ -153,6 +153,22 @@ namespace limber
 
 
 
+  const Words<Frame> &
+  frame_words()
+  {
+    static const Words<Frame> words = {
+      {"current",
+       Frame::current,
+       "where the points are: bodies may flow, meet and cross cells"},
+      {"initial",
+       Frame::initial,
+       "where they were at the start: nothing crosses a cell, for one elastic "
+       "body that meets nobody"}};
+    return words;
+  }
+
+
+
   const Words<Projection> &
   locking_words()
   {

@@ -99,16 +99,15 @@ namespace limber
 
     for (const Body<dim> &body : problem.bodies)
       {
-        auto        stress = make_stress_update<dim>(body.law,
-                                              body.material,
-                                              body.treatment,
-                                              body.hourglass);
+        auto stress = make_stress_update<dim>(
+          body.law, body.material, body.treatment, body.hourglass, body.frame);
         PointLayout layout;
-        layout.deviator   = stress->has_deviator();
-        layout.n_history  = stress->n_history();
-        layout.volumetric = stress->volumetric();
-        layout.affine     = problem.method.transfer == Transfer::apic;
-        layout.crossings  = !body.is_liquid;
+        layout.deviator      = stress->has_deviator();
+        layout.n_history     = stress->n_history();
+        layout.volumetric    = stress->volumetric();
+        layout.affine        = problem.method.transfer == Transfer::apic;
+        layout.crossings     = !body.is_liquid && body.frame == Frame::current;
+        layout.initial_frame = body.frame == Frame::initial;
         layout.reference =
           problem.output.time_interval > 0 &&
           std::find(fields.begin(), fields.end(), "displacement") !=

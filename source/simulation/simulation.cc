@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/simulation/passed_sides.h>
 #include <limber/simulation/set_up.h>
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
@@ -375,6 +376,7 @@ namespace limber
     if (statistics)
       statistics->add(statistics_row(state, totals, observed));
 
+    check_passed_sides(state);
     if (totals.smallest_volume <= 0)
       {
         throw ComputationError(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/materials/law_list.h>
+#include <limber/stress/initial_frame_sweep.h>
 #include <limber/stress/law_sweep.h>
 
 #include <stdexcept>
@@ -95,6 +96,35 @@ namespace limber
                                                                 projection);
           }
     }
+
+
+
+    template <int dim, class Law>
+    std::unique_ptr<const StressUpdate<dim>>
+    make_initial_frame_sweep(const Law              &law,
+                             const Projection        kind,
+                             const HourglassResponse response)
+    {
+      [[maybe_unused]] const auto projection =
+        strain_projection(law, kind, response);
+      if constexpr (Law::is_elastic)
+        switch (kind)
+          {
+            case Projection::none:
+              return std::make_unique<
+                InitialFrameSweep<dim, Law, Projection::none>>(law, projection);
+            case Projection::cell:
+              return std::make_unique<
+                InitialFrameSweep<dim, Law, Projection::cell>>(law, projection);
+            case Projection::assumed_strain:
+              return std::make_unique<
+                InitialFrameSweep<dim, Law, Projection::assumed_strain>>(
+                law, projection);
+            default:
+              break;
+          }
+      throw std::logic_error("law or projection without an initial frame");
+    }
   } // namespace
 
 
@@ -104,7 +134,8 @@ namespace limber
   make_stress_update(const std::string         &name,
                      const std::vector<double> &values,
                      const Projection           kind,
-                     const HourglassResponse    response)
+                     const HourglassResponse    response,
+                     const Frame                frame)
   {
     std::unique_ptr<const StressUpdate<dim>> result;
     for_each_law([&](auto *const candidate) {
@@ -116,7 +147,9 @@ namespace limber
         throw std::logic_error("wrong number of parameters for " + name);
       std::copy(values.begin(), values.end(), own.begin());
       if (Law::accepts(own))
-        result = make_sweep<dim>(Law(own), kind, response);
+        result = frame == Frame::initial ?
+                   make_initial_frame_sweep<dim>(Law(own), kind, response) :
+                   make_sweep<dim>(Law(own), kind, response);
     });
     if (!result)
       throw std::logic_error("no law " + name);
@@ -129,10 +162,12 @@ namespace limber
   make_stress_update(const std::string &,
                      const std::vector<double> &,
                      Projection,
-                     HourglassResponse);
+                     HourglassResponse,
+                     Frame);
   template std::unique_ptr<const StressUpdate<3>>
   make_stress_update(const std::string &,
                      const std::vector<double> &,
                      Projection,
-                     HourglassResponse);
+                     HourglassResponse,
+                     Frame);
 } // namespace limber

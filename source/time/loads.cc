@@ -22,14 +22,36 @@ namespace limber
 
 
 
+    /** Natural coordinates of a point in its cell. */
     template <int dim>
     dealii::Point<dim>
-    natural(const CellGeometry<dim> &cell, const dealii::Point<dim> &place)
+    natural(const CellGeometry<dim> &cell,
+            const PointView<dim>    &points,
+            const std::size_t        p)
     {
       dealii::Point<dim> xi;
       for (int d = 0; d < dim; ++d)
-        xi[d] = (place[d] - cell.origin[d]) * cell.inverse_edge[d];
+        xi[d] = (points.place[d][p] - cell.origin[d]) * cell.inverse_edge[d];
       return xi;
+    }
+
+
+
+    /**
+     * Takes a short vector at a point to what the gradients of the functions
+     * have to meet: itself, or F^-1 of it in the initial frame.
+     */
+    template <int dim>
+    dealii::Tensor<2, dim>
+    pull_back(const PointView<dim> &points, const std::size_t p)
+    {
+      dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
+      if (!points.in_initial_frame())
+        return F;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          F[d][e] = points.deformation[d * dim + e][p];
+      return invert(F);
     }
 
 
@@ -132,7 +154,7 @@ namespace limber
     auto        weights = broadcast<typename Kernel::Nodes>(1.);
     for (int d = 0; d < dim; ++d)
       weights *= Kernel::weights(d,
-                                 (points.position[d][p] - cell.origin[d]) *
+                                 (points.place[d][p] - cell.origin[d]) *
                                    cell.inverse_edge[d]);
     for (int i = 0; i < Kernel::n_nodes; ++i)
       for (int d = 0; d < dim; ++d)
@@ -170,13 +192,14 @@ namespace limber
             -load.formula.value(position(points, p) + piece->arm, time) *
               piece->area_vector() :
             piece->area * load.formula.vector(piece->reference, time);
-        const CellGeometry<dim> &cell = grid.geometry[points.cell[p]];
-        const dealii::Point<dim> xi   = natural(cell, position(points, p));
+        const CellGeometry<dim>     &cell = grid.geometry[points.cell[p]];
+        const dealii::Point<dim>     xi   = natural(cell, points, p);
+        const dealii::Tensor<1, dim> arm  = pull_back(points, p) * piece->arm;
         for (unsigned int i = 0; i < cell.node.size(); ++i)
           {
             const double weight =
               GeometryInfo<dim>::d_linear_shape_function(xi, i) +
-              gradient(cell, xi, i) * piece->arm;
+              gradient(cell, xi, i) * arm;
             for (int d = 0; d < dim; ++d)
               forces[cell.node[i] / NodeLayout<dim>::stride * dim + d] +=
                 weight * force[d];
@@ -201,7 +224,7 @@ namespace limber
         for (const auto &[p, piece] : face.here())
           {
             const CellGeometry<dim> &cell = grid.geometry[points.cell[p]];
-            const dealii::Point<dim> xi   = natural(cell, position(points, p));
+            const dealii::Point<dim> xi   = natural(cell, points, p);
             dealii::Tensor<2, dim>   velocity_gradient;
             for (unsigned int i = 0; i < cell.node.size(); ++i)
               {
@@ -210,9 +233,11 @@ namespace limber
                   velocity_gradient[d] +=
                     records[cell.node[i] + slot + d] * slope;
               }
-            piece->arm += step * velocity_gradient * piece->arm;
+            const dealii::Tensor<2, dim> change =
+              step * velocity_gradient * pull_back(points, p);
+            piece->arm += change * piece->arm;
             for (auto &edge : piece->edges)
-              edge += step * velocity_gradient * edge;
+              edge += change * edge;
           }
       }
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/assumed_deformation.h>
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/points_to_grid.h>
@@ -14,48 +15,139 @@ namespace limber
 
 
 
-    /** Internal force, points as lanes. */
-    template <int dim, Projection kind, bool deviator>
-    __attribute__((always_inline)) inline void
-    add_force(const PointView<dim>    &points,
-              const CellBatch         &batch,
-              const CellGeometry<dim> &cell,
-              const GiveToGrid        &what,
-              const CellSums<dim>     *sums,
-              ToNodes<dim>            &to_nodes)
+    // The internal forces of a batch; each has the points as lanes.
+
+    struct NoForce
     {
-      const CellMeans<dim>                means(sums, batch.cell);
-      const NodalMean<dim, kind>          nodal(what.nodal_pressure, cell);
-      StressOperator<dim, kind, deviator> stress(cell,
-                                                 what.projection,
-                                                 means,
-                                                 nodal);
-      constexpr std::size_t               width = 1 << dim;
-      const auto add = [&](const auto begins, const std::size_t p)
-        __attribute__((always_inline))
+      static constexpr bool any = false;
+    };
+
+
+
+    template <Projection kind, bool deviator>
+    struct StressForce
+    {
+      static constexpr bool any = true;
+
+      template <int dim>
+      __attribute__((always_inline)) static auto
+      of(const PointView<dim>    &points,
+         const CellBatch         &batch,
+         const CellGeometry<dim> &cell,
+         const GiveToGrid        &what,
+         const CellSums<dim>     *sums)
       {
-        stress.template add<begins>(points,
-                                    p,
-                                    batch.end - p,
-                                    what.inverse_density);
-      };
-      add(std::true_type(), batch.begin);
-      for (std::size_t p = batch.begin + width; rarely(p < batch.end);
-           p += width)
-        add(std::false_type(), p);
-      const auto forces = stress.forces();
-      for (int d = 0; d < dim; ++d)
-        to_nodes[NodeLayout<dim>::force + d] = forces[d];
-    }
+        const CellMeans<dim>                means(sums, batch.cell);
+        const NodalMean<dim, kind>          nodal(what.nodal_pressure, cell);
+        StressOperator<dim, kind, deviator> stress(cell,
+                                                   what.projection,
+                                                   means,
+                                                   nodal);
+        constexpr std::size_t               width = 1 << dim;
+        const auto add = [&](const auto begins, const std::size_t p)
+          __attribute__((always_inline))
+        {
+          stress.template add<begins>(points,
+                                      p,
+                                      batch.end - p,
+                                      what.inverse_density);
+        };
+        add(std::true_type(), batch.begin);
+        for (std::size_t p = batch.begin + width; rarely(p < batch.end);
+             p += width)
+          add(std::false_type(), p);
+        return stress.forces();
+      }
+    };
 
 
 
-    template <int        dim,
-              bool       momentum,
-              bool       affine,
-              bool       force,
-              Projection kind,
-              bool       deviator>
+    /** In the frame of the initial configuration. */
+    template <bool finite_strain>
+    struct PulledBackForce
+    {
+      static constexpr bool any = true;
+
+      template <int dim>
+      __attribute__((always_inline)) static auto
+      of(const PointView<dim>    &points,
+         const CellBatch         &batch,
+         const CellGeometry<dim> &cell,
+         const GiveToGrid        &what,
+         const CellSums<dim> *)
+      {
+        StressOnNodes<dim> stress(cell);
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            const auto V =
+              what.inverse_density * lanes.only_active(lanes.load(points.mass));
+            auto VP = piola_kirchhoff_stress<dim, finite_strain>(
+              points, lanes, deformation_gradient<dim>(points, lanes));
+            for (auto &row : VP)
+              for (auto &entry : row)
+                entry *= V;
+            stress.add(VP, lanes.natural(points, cell));
+          });
+        return stress.forces();
+      }
+    };
+
+
+
+    /** The same with the assumed strain. */
+    template <bool finite_strain>
+    struct AssumedPulledBackForce
+    {
+      static constexpr bool any = true;
+
+      template <int dim>
+      static auto
+      of(const PointView<dim>    &points,
+         const CellBatch         &batch,
+         const CellGeometry<dim> &cell,
+         const GiveToGrid        &what,
+         const CellSums<dim> *)
+      {
+        AssumedDeformation<dim, finite_strain> assumed(
+          what.initial_frame->projection);
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          assumed.add(deformation_gradient<dim>(points, lanes),
+                      lanes.natural(points, cell),
+                      lanes.only_active(lanes.load(points.mass)));
+        });
+        assumed.finish();
+
+        AssumedDeformationStress<dim, finite_strain> stress(cell, assumed);
+        const auto for_all = [&](const auto &add) {
+          for_each_pack<dim>(batch, [&](const auto &lanes) {
+            const auto xi = lanes.natural(points, cell);
+            const auto F  = deformation_gradient<dim>(points, lanes);
+            const auto P =
+              assumed.turned_back(piola_kirchhoff_stress<dim, finite_strain>(
+                points, lanes, assumed.evaluate(F, xi)));
+            add(P,
+                F,
+                xi,
+                what.inverse_density *
+                  lanes.only_active(lanes.load(points.mass)));
+          });
+        };
+        for_all(
+          [&](const auto &P, const auto &, const auto &xi, const auto &V) {
+            stress.add_to_means(P, xi, V);
+          });
+        stress.finish_means();
+        for_all(
+          [&](const auto &P, const auto &F, const auto &xi, const auto &V) {
+            stress.add(P, F, xi, V);
+          });
+        return stress.forces();
+      }
+    };
+
+
+
+    template <int dim, bool momentum, bool affine, class Force>
     std::size_t
     sweep(const PointView<dim> &points,
           const GridView<dim>  &grid,
@@ -72,9 +164,13 @@ namespace limber
                                       cell,
                                       to_nodes[NodeLayout<dim>::mass],
                                       &to_nodes[NodeLayout<dim>::momentum]);
-          if constexpr (force)
-            add_force<dim, kind, deviator>(
-              points, batch, cell, what, sums, to_nodes);
+          if constexpr (Force::any)
+            {
+              const auto forces =
+                Force::template of<dim>(points, batch, cell, what, sums);
+              for (int d = 0; d < dim; ++d)
+                to_nodes[NodeLayout<dim>::force + d] = forces[d];
+            }
           add_to_nodes<dim, NodeLayout<dim>::mass>(cell, to_nodes, grid.nodes);
         });
     }
@@ -82,26 +178,43 @@ namespace limber
 
 
     // From run-time switches to template arguments, a few at a time.
-    template <int dim, Projection kind, bool deviator>
+    template <int dim, class Force>
     std::size_t
     choose_sums(const PointView<dim> &points,
                 const GridView<dim>  &grid,
                 const GiveToGrid     &what,
                 const CellSums<dim>  *sums)
     {
-      if (!what.momentum)
-        return sweep<dim, false, false, true, kind, deviator>(points,
+      if constexpr (Force::any)
+        if (!what.momentum)
+          return sweep<dim, false, false, Force>(points, grid, what, sums);
+      return what.affine ?
+               sweep<dim, true, true, Force>(points, grid, what, sums) :
+               sweep<dim, true, false, Force>(points, grid, what, sums);
+    }
+
+
+
+    template <int dim>
+    std::size_t
+    choose_initial_frame(const PointView<dim> &points,
+                         const GridView<dim>  &grid,
+                         const GiveToGrid     &what)
+    {
+      const bool finite = what.initial_frame->finite_strain;
+      if (what.initial_frame->projection.kind == Projection::assumed_strain)
+        return finite ? choose_sums<dim, AssumedPulledBackForce<true>>(
+                          points, grid, what, nullptr) :
+                        choose_sums<dim, AssumedPulledBackForce<false>>(
+                          points, grid, what, nullptr);
+      return finite ? choose_sums<dim, PulledBackForce<true>>(points,
                                                               grid,
                                                               what,
-                                                              sums);
-      return what.affine ? sweep<dim, true, true, true, kind, deviator>(points,
-                                                                        grid,
-                                                                        what,
-                                                                        sums) :
-                           sweep<dim, true, false, true, kind, deviator>(points,
-                                                                         grid,
-                                                                         what,
-                                                                         sums);
+                                                              nullptr) :
+                      choose_sums<dim, PulledBackForce<false>>(points,
+                                                               grid,
+                                                               what,
+                                                               nullptr);
     }
 
 
@@ -117,38 +230,32 @@ namespace limber
         {
           case Projection::automatic: // has been chosen long before
           case Projection::none:
-            return choose_sums<dim, Projection::none, deviator>(points,
-                                                                grid,
-                                                                what,
-                                                                sums);
-          case Projection::cell:
-            return choose_sums<dim, Projection::cell, deviator>(points,
-                                                                grid,
-                                                                what,
-                                                                sums);
-          case Projection::cell_shear:
-            return choose_sums<dim, Projection::cell_shear, deviator>(points,
-                                                                      grid,
-                                                                      what,
-                                                                      sums);
-          case Projection::cell_full:
-            return choose_sums<dim, Projection::cell_full, deviator>(points,
-                                                                     grid,
-                                                                     what,
-                                                                     sums);
-          case Projection::assumed_strain:
-            return choose_sums<dim, Projection::assumed_strain, deviator>(
+            return choose_sums<dim, StressForce<Projection::none, deviator>>(
               points, grid, what, sums);
+          case Projection::cell:
+            return choose_sums<dim, StressForce<Projection::cell, deviator>>(
+              points, grid, what, sums);
+          case Projection::cell_shear:
+            return choose_sums<dim,
+                               StressForce<Projection::cell_shear, deviator>>(
+              points, grid, what, sums);
+          case Projection::cell_full:
+            return choose_sums<dim,
+                               StressForce<Projection::cell_full, deviator>>(
+              points, grid, what, sums);
+          case Projection::assumed_strain:
+            return choose_sums<
+              dim,
+              StressForce<Projection::assumed_strain, deviator>>(points,
+                                                                 grid,
+                                                                 what,
+                                                                 sums);
           case Projection::node:
-            return choose_sums<dim, Projection::node, deviator>(points,
-                                                                grid,
-                                                                what,
-                                                                sums);
+            return choose_sums<dim, StressForce<Projection::node, deviator>>(
+              points, grid, what, sums);
           case Projection::hybrid:
-            return choose_sums<dim, Projection::hybrid, deviator>(points,
-                                                                  grid,
-                                                                  what,
-                                                                  sums);
+            return choose_sums<dim, StressForce<Projection::hybrid, deviator>>(
+              points, grid, what, sums);
         }
       return 0;
     }
@@ -164,19 +271,11 @@ namespace limber
                  const CellSums<dim>  *sums)
   {
     if (!what.force)
-      {
-        if (!what.momentum)
-          return 0;
-        return what.affine ?
-                 sweep<dim, true, true, false, Projection::none, false>(points,
-                                                                        grid,
-                                                                        what,
-                                                                        sums) :
-                 sweep<dim, true, false, false, Projection::none, false>(points,
-                                                                         grid,
-                                                                         what,
-                                                                         sums);
-      }
+      return what.momentum ?
+               choose_sums<dim, NoForce>(points, grid, what, sums) :
+               0;
+    if (what.initial_frame)
+      return choose_initial_frame<dim>(points, grid, what);
     return points.deviator[0] != nullptr ?
              choose_projection<dim, true>(points, grid, what, sums) :
              choose_projection<dim, false>(points, grid, what, sums);

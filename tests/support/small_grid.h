@@ -298,6 +298,7 @@ namespace limber
             array = next();
         result.volumetric =
           volumetric < 0 ? result.pressure : result.history[volumetric];
+        result.place = result.position;
         result.cell = cell.data();
         return result;
       }

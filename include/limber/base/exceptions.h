@@ -60,7 +60,8 @@ namespace limber
     not_finite,
     inverted_point, // turned inside out: J <= 0
     lost_points,
-    step_too_small
+    step_too_small,
+    passed_side // of a body in its initial frame
   };
 
   /** "growing energy", ...; "failed" for other ones. */
@@ -79,6 +80,8 @@ namespace limber
           return "lost points";
         case FailureKind::step_too_small:
           return "step too small";
+        case FailureKind::passed_side:
+          return "passed side";
         case FailureKind::other:
           break;
       }

@@ -32,7 +32,9 @@ namespace limber
     std::string text; // one line
     // Whether a body may start under pressure: its volume ratio then says
     // all there is to say about its initial state.
-    bool                      takes_pressure;
+    bool takes_pressure;
+    // Whether the stress follows from the deformation alone.
+    bool                      is_elastic;
     std::vector<LawParameter> parameters; // the first is the density
 
     /** The section of the scene that holds the entries. */

@@ -70,8 +70,7 @@ namespace limber
     {
       std::array<Number, dim> xi;
       for (int d = 0; d < dim; ++d)
-        xi[d] =
-          (load(points.position[d]) - cell.origin[d]) * cell.inverse_edge[d];
+        xi[d] = (load(points.place[d]) - cell.origin[d]) * cell.inverse_edge[d];
       return xi;
     }
 

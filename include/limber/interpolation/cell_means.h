@@ -126,7 +126,7 @@ namespace limber
           std::array<double, dim>  xi;
 #pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
-            xi[d] = (points.position[d][p] - geometry.origin[d]) *
+            xi[d] = (points.place[d][p] - geometry.origin[d]) *
                     geometry.inverse_edge[d];
           double *const record = sums.open(points.cell[p]);
           const auto added = products(xi, points.mass[p], points.volumetric[p]);

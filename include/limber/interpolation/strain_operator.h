@@ -312,8 +312,7 @@ namespace limber
       std::array<Number, dim> xi;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
-        xi[d] =
-          (read(points.position[d]) - cell.origin[d]) * cell.inverse_edge[d];
+        xi[d] = (read(points.place[d]) - cell.origin[d]) * cell.inverse_edge[d];
 
       Number p;
       if constexpr (averages_around_nodes(kind))

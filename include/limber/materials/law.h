@@ -3,6 +3,7 @@
 #define limber_materials_law_h
 
 #include <limber/base/pack.h>
+#include <limber/base/small_matrix.h>
 
 #include <array>
 #include <type_traits>
@@ -41,7 +42,7 @@ namespace limber
 
   /** By rows: a deformation gradient, a symmetric velocity gradient. */
   template <int dim>
-  using SquareMatrix = std::array<std::array<double, dim>, dim>;
+  using SquareMatrix = SmallMatrix<dim, double>;
 
 
 

@@ -77,17 +77,17 @@ namespace limber
     }
 
     /** The strain is sym(F) - 1. */
-    template <int dim>
-    State<dim, double>
-    at_deformation(const SquareMatrix<dim> &F, const double J) const
+    template <int dim, class Number>
+    State<dim, Number>
+    at_deformation(const SmallMatrix<dim, Number> &F, const Number &J) const
     {
-      SquareMatrix<dim> displacement_gradient = F;
+      auto displacement_gradient = F;
       for (int d = 0; d < dim; ++d)
-        displacement_gradient[d][d] -= 1;
-      State<dim, double> state;
-      state.pressure = -bulk_modulus * (J - 1);
-      state.deviator = symmetric_deviator<dim, double>(displacement_gradient);
-      for (double &component : state.deviator)
+        displacement_gradient[d][d] -= 1.;
+      State<dim, Number> state;
+      state.pressure = -bulk_modulus * (J - 1.);
+      state.deviator = symmetric_deviator<dim, Number>(displacement_gradient);
+      for (Number &component : state.deviator)
         component *= 2 * shear_modulus;
       return state;
     }

@@ -3,6 +3,7 @@
 #define limber_materials_neo_hookean_h
 
 #include <limber/base/law_parameter.h>
+#include <limber/base/small_matrix.h>
 #include <limber/materials/law.h>
 #include <limber/materials/symmetric_function.h>
 
@@ -88,16 +89,11 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         f[d][d] += 1.;
 
-      Number determinant = f[0][0] * f[1][1] - f[0][1] * f[1][0];
-      if constexpr (dim == 3)
-        determinant = f[2][2] * determinant +
-                      f[2][1] * (f[0][2] * f[1][0] - f[0][0] * f[1][2]) +
-                      f[2][0] * (f[0][1] * f[1][2] - f[0][2] * f[1][1]);
-
       // be = (det f)^(-2/3) f be f^T
-      const Number root  = inverse_cube_root(determinant);
-      const Number scale = root * root;
-      const auto   be    = isochoric_strain<dim>(state);
+      const Number J_of_step = determinant<dim>(f);
+      const Number root      = inverse_cube_root(J_of_step);
+      const Number scale     = root * root;
+      const auto   be        = isochoric_strain<dim>(state);
       std::array<std::array<Number, dim>, dim> fb;
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
@@ -121,29 +117,25 @@ namespace limber
           state.history[5] = entry(2, 0);
         }
 
-      state.history[0] *= determinant + (motion.volumetric - motion.trace());
+      state.history[0] *= J_of_step + (motion.volumetric - motion.trace());
       set_stress<dim>(state);
       return {};
     }
 
     /** be = det(F)^(-2/3) F F^T, whatever J is. */
-    template <int dim>
-    State<dim, double>
-    at_deformation(const SquareMatrix<dim> &F, const double J) const
+    template <int dim, class Number>
+    State<dim, Number>
+    at_deformation(const SmallMatrix<dim, Number> &F, const Number &J) const
     {
       const auto entry = [&](const int i, const int j) {
-        double result = 0;
-        for (int k = 0; k < dim; ++k)
+        Number result = F[i][0] * F[j][0];
+        for (int k = 1; k < dim; ++k)
           result += F[i][k] * F[j][k];
         return result;
       };
-      double determinant = F[0][0] * F[1][1] - F[0][1] * F[1][0];
-      if constexpr (dim == 3)
-        determinant = F[2][2] * determinant +
-                      F[2][1] * (F[0][2] * F[1][0] - F[0][0] * F[1][2]) +
-                      F[2][0] * (F[0][1] * F[1][2] - F[0][2] * F[1][1]);
-      const double       scale = std::pow(determinant, -2. / 3.);
-      State<dim, double> state;
+      const Number       root  = inverse_cube_root(determinant<dim>(F));
+      const Number       scale = root * root;
+      State<dim, Number> state;
       state.history[0] = J;
       state.history[1] = scale * entry(0, 0);
       state.history[2] = scale * entry(1, 1);

@@ -22,6 +22,14 @@ namespace limber
     bool         affine     = false;
     bool         crossings  = false; // how many cells it has entered
     bool         reference  = false; // reference position, for displacements
+    // Functions of the initial places: also the reference position and F.
+    bool initial_frame = false;
+
+    bool
+    has_reference() const
+    {
+      return reference || initial_frame;
+    }
   };
 
 
@@ -87,14 +95,14 @@ namespace limber
       return ids[p];
     }
 
-    /** Where the point was at the start; needs PointLayout::reference. */
+    /** Where the point was at the start; needs has_reference(). */
     dealii::Point<dim>
     reference_position(const std::size_t p) const;
 
     bool
     has_reference() const
     {
-      return layout.reference;
+      return layout.has_reference();
     }
 
     /** Changes whenever points change their places in the arrays. */
@@ -191,7 +199,8 @@ namespace limber
     const PointLayout          layout;
 
     // Position, velocity, mass, pressure, deviator, history, affine part,
-    // crossings; the reference position, if asked for, comes last.
+    // crossings, deformation gradient; the reference position, if there is one,
+    // comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;

@@ -29,19 +29,31 @@ namespace limber
   template <int dim>
   struct PointView
   {
-    std::size_t                           size = 0;
-    std::array<double *, dim>             position{};         // m
+    std::size_t               size = 0;
+    std::array<double *, dim> position{}; // m
+    // Where the functions of the grid are taken, m: the position, or where the
+    // point was at the start if its body is computed in that frame.
+    std::array<double *, dim>             place{};
     std::array<double *, dim>             velocity{};         // m/s
     double                               *mass     = nullptr; // kg
     double                               *pressure = nullptr; // J p, Pa
     std::array<double *, n_deviator<dim>> deviator{};         // of J sigma, Pa
     std::array<double *, max_history>     history{}; // meaning: the law's
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
+    // F, row-major, in the frame of the initial configuration; else null
+    std::array<double *, dim * dim> deformation{};
     // The variable that carries the volumetric history (of the law's choice):
     // one of the arrays above.
     double        *volumetric = nullptr;
-    std::uint32_t *cell       = nullptr;
+    std::uint32_t *cell       = nullptr; // of the place
     double        *crossings  = nullptr; // cells entered since the start
+
+    /** Whether the functions of the grid are those of the initial places. */
+    bool
+    in_initial_frame() const
+    {
+      return deformation[0] != nullptr;
+    }
   };
 } // namespace limber
 

@@ -6,6 +6,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
+#include <limber/materials/frame.h>
 #include <limber/materials/projection.h>
 #include <limber/problem/shapes.h>
 
@@ -109,6 +110,7 @@ namespace limber
 
     bool is_liquid = false; // bears pressure, but no shape of its own
 
+    Frame             frame                = Frame::current;
     Projection        treatment            = Projection::none;
     HourglassResponse hourglass            = HourglassResponse::bending;
     double            hourglass_control    = 0; // chi, without dimension

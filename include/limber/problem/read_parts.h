@@ -143,6 +143,16 @@ namespace limber
                  const unsigned int dim,
                  const SceneNames  &names);
 
+  /**
+   * Refuses what the frame of the initial configuration cannot do (source/
+   * problem/initial_frame.cc).
+   */
+  template <int dim>
+  void
+  check_initial_frame(const Section   &section,
+                      const Section   &root,
+                      const Body<dim> &body);
+
   /** Needs grid and gravity. */
   template <int dim>
   void

@@ -72,6 +72,9 @@ namespace limber
   const Words<Placement> &
   placement_words();
 
+  const Words<Frame> &
+  frame_words();
+
   const Words<ReferenceElement> &
   reference_element_words();
 

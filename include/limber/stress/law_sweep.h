@@ -3,21 +3,23 @@
 #define limber_stress_law_sweep_h
 
 #include <limber/interpolation/strain_operator.h>
-#include <limber/materials/law.h>
-#include <limber/stress/stress_update.h>
-
-#include <algorithm>
-#include <stdexcept>
+#include <limber/stress/law_on_points.h>
 
 namespace limber
 {
   /** StressUpdate for one law and one projection of its strain. */
   template <int dim, class Law, Projection kind>
-  class LawSweep final : public StressUpdate<dim>
+  class LawSweep final : public LawOnPoints<dim, Law>
   {
+    using Base = LawOnPoints<dim, Law>;
+    using Base::inverse_density;
+    using Base::law;
+    using Base::state_of;
+    using Base::store_state;
+
   public:
     LawSweep(const Law &law, const StrainProjection &projection)
-      : law(law)
+      : Base(law)
       , strain_projection(projection)
     {}
 
@@ -29,59 +31,6 @@ namespace limber
     {
       return what.move > 0 ? sweep<true>(points, grid, sums, what) :
                              sweep<false>(points, grid, sums, what);
-    }
-
-    StateSummary
-    summarize(const PointView<dim> &points) const override
-    {
-      StateSummary result;
-      for (std::size_t p = 0; p < points.size; ++p)
-        {
-          const auto state = state_of(points, p);
-          result.strain_energy += points.mass[p] * inverse_density *
-                                  law.template strain_energy<dim>(state);
-          const double J         = law.template volume_ratio<dim>(state);
-          result.smallest_volume = std::min(result.smallest_volume, J);
-          result.largest_volume  = std::max(result.largest_volume, J);
-        }
-      return result;
-    }
-
-    double
-    wave_speed_squared(const PointView<dim> &points) const override
-    {
-      double result = 0;
-      for (std::size_t p = 0; p < points.size; ++p)
-        result =
-          std::max(result,
-                   law.template wave_speed_squared<dim>(state_of(points, p)));
-      return result;
-    }
-
-    double
-    volume_ratio_at_rest(const double pressure) const override
-    {
-      return law.template volume_ratio<dim>(
-        law.template initialise<dim>(pressure));
-    }
-
-    void
-    initialise(const PointView<dim> &points,
-               const std::size_t     p,
-               const double          pressure) const override
-    {
-      const auto state = law.template initialise<dim>(pressure);
-      store_state(points, state, [&](const double value, double *const a) {
-        a[p] = value;
-      });
-    }
-
-    void
-    volume_ratio(const PointView<dim> &points,
-                 double *const         volume_ratio) const override
-    {
-      for (std::size_t p = 0; p < points.size; ++p)
-        volume_ratio[p] = law.template volume_ratio<dim>(state_of(points, p));
     }
 
     void
@@ -142,75 +91,11 @@ namespace limber
       return strain_projection;
     }
 
-    unsigned int
-    n_history() const override
-    {
-      return Law::template n_history<dim>;
-    }
-
-    bool
-    has_deviator() const override
-    {
-      return Law::has_deviator;
-    }
-
-    int
-    volumetric() const override
-    {
-      return Law::volumetric;
-    }
-
-    double
-    density() const override
-    {
-      return law.density;
-    }
-
-    double
-    viscosity() const override
-    {
-      return law.dynamic_viscosity();
-    }
-
   private:
     using DeviatorSums = limber::DeviatorSums<dim>;
 
     template <class Number>
-    using State = PointState<dim, Number, Law::template n_history<dim>>;
-
-    template <class Number, class Load>
-    static State<Number>
-    load_state(const PointView<dim> &points, const Load &load)
-    {
-      State<Number> state;
-      state.pressure = load(points.pressure);
-      if constexpr (Law::has_deviator)
-        for (unsigned int k = 0; k < state.deviator.size(); ++k)
-          state.deviator[k] = load(points.deviator[k]);
-      for (unsigned int k = 0; k < state.history.size(); ++k)
-        state.history[k] = load(points.history[k]);
-      return state;
-    }
-
-    static State<double>
-    state_of(const PointView<dim> &points, const std::size_t p)
-    {
-      return load_state<double>(points, [&](const double *a) { return a[p]; });
-    }
-
-    template <class Number, class Store>
-    static void
-    store_state(const PointView<dim> &points,
-                const State<Number>  &state,
-                const Store          &store)
-    {
-      store(state.pressure, points.pressure);
-      if constexpr (Law::has_deviator)
-        for (unsigned int k = 0; k < state.deviator.size(); ++k)
-          store(state.deviator[k], points.deviator[k]);
-      for (unsigned int k = 0; k < state.history.size(); ++k)
-        store(state.history[k], points.history[k]);
-    }
+    using State = typename Base::template State<Number>;
 
     template <class Number>
     static Number &
@@ -284,9 +169,10 @@ namespace limber
         motion.step = what.step;
         batch.strain.template evaluate<Number, Law::uses_spin>(xi, motion);
 
-        auto state = load_state<Number>(points, [&](const double *a) {
-          return lanes.load(a);
-        });
+        auto state =
+          Base::template load_state<Number>(points, [&](const double *a) {
+            return lanes.load(a);
+          });
         // zero in lanes beyond the batch
         [[maybe_unused]] const Number mass =
           lanes.only_active(lanes.load(points.mass));
@@ -394,9 +280,7 @@ namespace limber
 
     static constexpr bool projected = kind != Projection::none;
 
-    const Law              law;
     const StrainProjection strain_projection;
-    const double           inverse_density = 1. / law.density;
   };
 } // namespace limber
 

@@ -2,10 +2,12 @@
 #ifndef limber_stress_stress_update_h
 #define limber_stress_stress_update_h
 
+#include <limber/materials/frame.h>
 #include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -88,6 +90,13 @@ namespace limber
     virtual const StrainProjection &
     projection() const = 0;
 
+    /** How forces are formed in the initial frame; empty in the current one. */
+    virtual std::optional<InitialFrameForce>
+    initial_frame() const
+    {
+      return {};
+    }
+
     /** Energies and volume ratios of the present state. */
     virtual StateSummary
     summarize(const PointView<dim> &points) const = 0;
@@ -127,14 +136,16 @@ namespace limber
 
   /**
    * The sweep for the law of that name; @p values in the order of its
-   * entries.
+   * entries. In the initial frame the law is elastic and the projection 'none',
+   * 'cell' or 'assumed_strain'.
    */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_stress_update(const std::string         &law,
                      const std::vector<double> &values,
                      Projection                 kind,
-                     HourglassResponse          response);
+                     HourglassResponse          response,
+                     Frame                      frame = Frame::current);
 } // namespace limber
 
 #endif

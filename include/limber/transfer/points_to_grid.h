@@ -2,8 +2,10 @@
 #ifndef limber_transfer_points_to_grid_h
 #define limber_transfer_points_to_grid_h
 
-#include <limber/materials/projection.h>
+#include <limber/materials/frame.h>
 #include <limber/points/point_view.h>
+
+#include <optional>
 
 namespace limber
 {
@@ -15,6 +17,7 @@ namespace limber
     bool             affine          = false; // momentum with the affine part
     double           inverse_density = 0;     // 1 / rho_0, m^3/kg
     StrainProjection projection; // of the strain that the force works with
+    std::optional<InitialFrameForce> initial_frame; // of bodies in it
     // The pressure projected on nodes (nodal_means.h), where that is asked
     const double *nodal_pressure = nullptr;
   };

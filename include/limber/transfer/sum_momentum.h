@@ -34,7 +34,7 @@ namespace limber
         alignas(64) double xi[dim][width];
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
-          store((load<Nodes>(points.position[d] + begin) - cell.origin[d]) *
+          store((load<Nodes>(points.place[d] + begin) - cell.origin[d]) *
                   cell.inverse_edge[d],
                 xi[d]);
         const std::size_t end = std::min(begin + width, batch.end);

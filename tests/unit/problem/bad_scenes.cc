@@ -208,6 +208,44 @@ namespace
 
 
 
+  // That there are two bodies is looked at last.
+  BadScene
+  bad_frame(const std::string              &name,
+            const std::vector<std::string> &changes,
+            const std::vector<std::string> &expected)
+  {
+    BadScene scene{name, {"Body beam/Frame=initial"}, expected};
+    scene.changes.insert(scene.changes.end(), changes.begin(), changes.end());
+    scene.expected.push_back("'Frame = current'");
+    return scene;
+  }
+
+
+
+  const std::vector<BadScene> bad_frames = {
+    bad_frame("LiquidInItsInitialFrame",
+              {"Body beam/Material=newtonian fluid"},
+              {"'newtonian fluid'", "'neo hookean'"}),
+    bad_frame("TwoBodiesInTheirInitialFrame", {}, {"one body", "meets"}),
+    bad_frame("TreatmentWithoutInitialFrame",
+              {"Body beam/Locking treatment=node"},
+              {"'node'", "'Locking treatment = assumed strain'"}),
+    bad_frame("HourglassControlInTheInitialFrame",
+              {"Body beam/Hourglass control=0.1"},
+              {"'Hourglass control = 0'"}),
+    bad_frame("ChequerboardControlInTheInitialFrame",
+              {"Body beam/Locking treatment=cell",
+               "Body beam/Chequerboard control=0.1"},
+              {"'Chequerboard control = 0'"}),
+    bad_frame("HistoryInTheInitialFrame",
+              {"Body beam/History=replace"},
+              {"'History = keep'"}),
+    bad_frame("StressFirstInTheInitialFrame",
+              {"Method/Stress update=first"},
+              {"'Stress update = last, remapped'"})};
+
+
+
   const std::vector<BadScene> bad_bodies = {
     {"GridUpsideDown",
      {"Grid/Upper corner=4, -1"},
@@ -394,6 +432,10 @@ namespace
 INSTANTIATE_TEST_SUITE_P(Forms,
                          BadScenes,
                          testing::ValuesIn(bad_forms),
+                         name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Frames,
+                         BadScenes,
+                         testing::ValuesIn(bad_frames),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Bodies,
                          BadScenes,

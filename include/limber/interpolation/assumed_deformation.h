@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_assumed_deformation_h
+#define limber_interpolation_assumed_deformation_h
+
+#include <limber/interpolation/pulled_back_stress.h>
+#include <limber/materials/projection.h>
+
+/**
+ * @file The assumed strain in the frame of the initial configuration. The law
+ * gets, instead of the deformation gradient F of a point,
+ *
+ *   F_a = R A(R^T F),   <F> = R U the polar decomposition of the cell's mean,
+ *
+ *   (A G)_dd = <G_dd> + e1 G_dd' + e2 sum_e G_ee',
+ *   (A G)_de = <G_de>  (2d),  <G_de> + xi_f' <xi_f' G_de> / <xi_f'^2>  (3d),
+ *
+ * where brackets are means over the points of the cell, weighted by mass,
+ * primes the deviations from them, and d, e, f different axes. So a cell that
+ * bends has no shear, and contracts across as (e1, e2) say; the frame that
+ * turns with the cell makes this independent of rotations of any size.
+ *
+ * A is its own transpose with masses as weights. Hence the energy sum V W(F_a)
+ * has the derivative
+ *
+ *   sum V R A(P^) : dF  -  sum V A(P^) (R^T F)^T : R^T dR,
+ *   P^ = R^T P(F_a),  R^T dR = spin with axis 2 (tr(U) 1 - U)^-1 axis(R^T
+ * d<F>),
+ *
+ * and these are the forces on the nodes. Without the second term, which is
+ * quadratic in the strain, a body at rest would not keep its angular momentum.
+ * With laws for small strain R = 1: it is the operator of strain_operator.h
+ * but for the part of a bending cell across its plane in 3d.
+ */
+namespace limber
+{
+  /** F_a of the points of a body in a cell. */
+  template <int dim, bool finite_strain>
+  class AssumedDeformation
+  {
+  public:
+    using Number = PointPack<dim>;
+    using Matrix = SmallMatrix<dim, Number>;
+    using Mean   = SmallMatrix<dim, double>;
+
+    explicit AssumedDeformation(const StrainProjection &projection)
+      : own(dim == 2 ? projection.own : projection.trilinear_own)
+      , mate(dim == 2 ? projection.mate : projection.trilinear_mate)
+    {}
+
+    /** Points with F at natural places xi; @p mass zero in idle lanes. */
+    __attribute__((always_inline)) void
+    add(const Matrix &F, const std::array<Number, dim> &xi, const Number &mass)
+    {
+      sums.mass += mass;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          sums.place[d] += mass * xi[d];
+#pragma GCC unroll 8
+          for (int e = 0; e < dim; ++e)
+            sums.F[d][e] += mass * F[d][e];
+          if constexpr (dim == 3)
+            {
+              const Number moment = mass * xi[d];
+              sums.square[d] += moment * xi[d];
+#pragma GCC unroll 8
+              for (int c = 0; c < dim; ++c)
+#pragma GCC unroll 8
+                for (int e = 0; e < dim; ++e)
+                  if (e != d)
+                    sums.slope[d][c][e] += moment * F[c][e];
+            }
+        }
+    }
+
+    /** When all points of the cell have been added. */
+    void
+    finish()
+    {
+      const double inverse_mass = 1 / sum(sums.mass);
+      Mean         mean;
+      for (int d = 0; d < dim; ++d)
+        {
+          centroid[d] = sum(sums.place[d]) * inverse_mass;
+          for (int e = 0; e < dim; ++e)
+            mean[d][e] = sum(sums.F[d][e]) * inverse_mass;
+        }
+      if constexpr (finite_strain)
+        rotation = rotation_of<dim>(mean);
+      else
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            rotation[d][e] = d == e;
+      stretch = transpose_times<dim>(rotation, mean);
+      if constexpr (dim == 3)
+        for (int f = 0; f < dim; ++f)
+          {
+            const double variance =
+              sum(sums.square[f]) * inverse_mass - centroid[f] * centroid[f];
+            // points in one plane do not see a torsion of the cell
+            inverse_variance[f] = variance > 1e-12 ? 1 / variance : 0;
+            for (int e = 0; e < dim; ++e)
+              if (e != f)
+                {
+                  std::array<double, dim> slope;
+                  for (int c = 0; c < dim; ++c)
+                    slope[c] = sum(sums.slope[f][c][e]) * inverse_mass -
+                               centroid[f] * mean[c][e];
+                  const int d   = 3 - e - f;
+                  torsion[d][e] = 0;
+                  for (int c = 0; c < dim; ++c)
+                    torsion[d][e] +=
+                      inverse_variance[f] * rotation[c][d] * slope[c];
+                }
+          }
+    }
+
+    /** R^T F */
+    __attribute__((always_inline)) Matrix
+    turned_back(const Matrix &F) const
+    {
+      return transpose_times<dim>(rotation, F);
+    }
+
+    /** R G */
+    __attribute__((always_inline)) Matrix
+    turned(const Matrix &G) const
+    {
+      return times<dim>(rotation, G);
+    }
+
+    /** F_a from F at natural places xi. */
+    __attribute__((always_inline)) Matrix
+    evaluate(const Matrix &F, const std::array<Number, dim> &xi) const
+    {
+      return turned(assume(turned_back(F), stretch, torsion, xi));
+    }
+
+    /** A G, of which mean and torsion are known. */
+    __attribute__((always_inline)) Matrix
+    assume(const Matrix                  &G,
+           const Mean                    &mean,
+           const Mean                    &torsion,
+           const std::array<Number, dim> &xi) const
+    {
+      Number all{};
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        all += G[d][d] - mean[d][d];
+      Matrix result;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+        for (int e = 0; e < dim; ++e)
+          if (d == e)
+            result[d][d] =
+              mean[d][d] + (own - mate) * (G[d][d] - mean[d][d]) + mate * all;
+          else if constexpr (dim == 2)
+            result[d][e] = broadcast<Number>(mean[d][e]);
+          else
+            {
+              const int f  = 3 - d - e;
+              result[d][e] = mean[d][e] + torsion[d][e] * (xi[f] - centroid[f]);
+            }
+      return result;
+    }
+
+    const double            own, mate; // e1, e2
+    std::array<double, dim> centroid;  // of the points
+    Mean                    rotation;  // R
+    Mean                    stretch;   // U = R^T <F>
+    // In 3d, of (R^T F)_de with the third coordinate
+    Mean                    torsion{};
+    std::array<double, dim> inverse_variance; // of the coordinates, 3d
+
+  private:
+    struct Sums
+    {
+      Number                               mass{};
+      std::array<Number, dim>              place{};
+      Matrix                               F{};
+      std::array<Number, dim == 3 ? 3 : 0> square{};
+      std::array<Matrix, dim == 3 ? 3 : 0> slope{};
+    };
+    Sums sums;
+  };
+
+
+
+  /** The transpose: from the stress of the points to forces on the nodes. */
+  template <int dim, bool finite_strain>
+  class AssumedDeformationStress
+  {
+  public:
+    using Number     = PointPack<dim>;
+    using Matrix     = SmallMatrix<dim, Number>;
+    using Mean       = SmallMatrix<dim, double>;
+    using Assumption = AssumedDeformation<dim, finite_strain>;
+
+    AssumedDeformationStress(const CellGeometry<dim> &cell,
+                             const Assumption        &assumed)
+      : assumed(assumed)
+      , stress(cell)
+    {}
+
+    /** First, of all points: P^ and their volume (zero in idle lanes). */
+    __attribute__((always_inline)) void
+    add_to_means(const Matrix                  &P,
+                 const std::array<Number, dim> &xi,
+                 const Number                  &V)
+    {
+      volume += V;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+        for (int e = 0; e < dim; ++e)
+          {
+            total[d][e] += V * P[d][e];
+            if constexpr (dim == 3)
+              if (d != e)
+                {
+                  const int f = 3 - d - e;
+                  moment[d][e] += V * P[d][e] * (xi[f] - assumed.centroid[f]);
+                }
+          }
+    }
+
+    void
+    finish_means()
+    {
+      const double inverse_volume = 1 / sum(volume);
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            mean[d][e] = sum(total[d][e]) * inverse_volume;
+            if constexpr (dim == 3)
+              if (d != e)
+                torsion[d][e] = sum(moment[d][e]) * inverse_volume *
+                                assumed.inverse_variance[3 - d - e];
+          }
+    }
+
+    /** Then, of all points again, with F. */
+    __attribute__((always_inline)) void
+    add(const Matrix                  &P,
+        const Matrix                  &F,
+        const std::array<Number, dim> &xi,
+        const Number                  &V)
+    {
+      Matrix Q = assumed.assume(P, mean, torsion, xi);
+      for (auto &row : Q)
+        for (Number &entry : row)
+          entry *= V;
+      stress.add(assumed.turned(Q), xi);
+      if constexpr (finite_strain)
+        {
+          monomials.add(xi, V);
+          // (Q G^T)_fe - (Q G^T)_ef about each axis d; in 2d that of z
+          const Matrix G = assumed.turned_back(F);
+#pragma GCC unroll 8
+          for (int c = 0; c < dim; ++c)
+            if constexpr (dim == 2)
+              torque[0] += Q[1][c] * G[0][c] - Q[0][c] * G[1][c];
+            else
+#pragma GCC unroll 8
+              for (int d = 0; d < dim; ++d)
+                {
+                  const int e = (d + 1) % 3, f = (d + 2) % 3;
+                  torque[d] += Q[f][c] * G[e][c] - Q[e][c] * G[f][c];
+                }
+        }
+    }
+
+    /** The forces on the nodes, one lane each, for each direction. */
+    auto
+    forces()
+    {
+      if constexpr (finite_strain)
+        stress.add_uniform(turn_of_frame(), monomials);
+      return stress.forces();
+    }
+
+  private:
+    /**
+     * What the turn of the frame adds to the stress that meets d<F>, Pa: -R S
+     * / sum(V) with S the spin whose axis is H^-1 torque, H = tr(U) 1 - U (in
+     * 2d tr(U)).
+     */
+    Mean
+    turn_of_frame() const
+    {
+      const Mean &U = assumed.stretch;
+      Mean        S{};
+      if constexpr (dim == 2)
+        {
+          const double w = sum(torque[0]) / (U[0][0] + U[1][1]);
+          S              = {{{{0, -w}}, {{w, 0}}}};
+        }
+      else
+        {
+          Mean H;
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              H[d][e] = (d == e ? U[0][0] + U[1][1] + U[2][2] : 0.) - U[d][e];
+          const auto            cof = cofactor<dim>(H);
+          const double          det = determinant<dim>(H);
+          std::array<double, 3> w{};
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              w[d] += cof[e][d] / det * sum(torque[e]);
+          S = {{{{0, -w[2], w[1]}}, {{w[2], 0, -w[0]}}, {{-w[1], w[0], 0}}}};
+        }
+      auto result = times<dim>(assumed.rotation, S);
+      for (auto &row : result)
+        for (double &entry : row)
+          entry *= -1 / sum(volume);
+      return result;
+    }
+
+    const Assumption &assumed;
+
+    Number                               volume{};
+    Matrix                               total{};
+    Matrix                               moment{};
+    Mean                                 mean{}, torsion{};
+    std::array<Number, dim == 2 ? 1 : 3> torque{};
+    StressOnNodes<dim>                   stress;
+    MonomialSums<dim>                    monomials;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_pulled_back_stress_h
+#define limber_interpolation_pulled_back_stress_h
+
+#include <limber/base/small_matrix.h>
+#include <limber/interpolation/batch_lanes.h>
+
+/**
+ * @file Stress in the frame of the initial configuration. The forces on the
+ * nodes are
+ *
+ *   f_i = - sum (m / rho_0) P grad_X N_i,
+ *   P   = dev(tau) F^-T + (J_p / J) (-J p) F^-T,
+ *
+ * with J_p = det F and J the volume ratio that the law was given, which is
+ * that of the cell where the volumetric part is averaged. This is the
+ * derivative of the energy sum (m / rho_0) (U(J) + W(F)) with respect to the
+ * places of the nodes: J = <J_p> depends on F by J_p F^-T, so the stress
+ * needs no mean of its own (Simo, Taylor and Pister, CMAME 51, 1985). A law
+ * for small strain has P = sigma.
+ */
+namespace limber
+{
+  /** F of a pack of points. */
+  template <int dim, class Lanes>
+  __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
+  deformation_gradient(const PointView<dim> &points, const Lanes &lanes)
+  {
+    SmallMatrix<dim, PointPack<dim>> F;
+#pragma GCC unroll 8
+    for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+      for (int e = 0; e < dim; ++e)
+        F[d][e] = lanes.load(points.deformation[d * dim + e]);
+    return F;
+  }
+
+
+
+  /**
+   * P (first Piola and Kirchhoff's stress, Pa) of a pack of points whose law
+   * was given F, with their J in it (at finite strain) or as it is.
+   */
+  template <int dim, bool finite_strain, class Lanes>
+  __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
+  piola_kirchhoff_stress(const PointView<dim>                   &points,
+                         const Lanes                            &lanes,
+                         const SmallMatrix<dim, PointPack<dim>> &F)
+  {
+    using Number = PointPack<dim>;
+    SmallMatrix<dim, Number> t;
+    t[0][0] = lanes.load(points.deviator[0]);
+    t[1][1] = lanes.load(points.deviator[1]);
+    t[1][0] = t[0][1] = lanes.load(points.deviator[2]);
+    if constexpr (dim == 3)
+      {
+        t[2][2] = -(t[0][0] + t[1][1]);
+        t[2][1] = t[1][2] = lanes.load(points.deviator[3]);
+        t[2][0] = t[0][2] = lanes.load(points.deviator[4]);
+      }
+    Number p = lanes.load(points.pressure);
+    if constexpr (finite_strain)
+      {
+        // over J_p, as the cofactor is J_p F^-T
+        const Number inverse = 1. / determinant<dim>(F);
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+          for (int e = 0; e < dim; ++e)
+            t[d][e] *= inverse;
+        p /= lanes.load(points.volumetric);
+      }
+#pragma GCC unroll 8
+    for (int d = 0; d < dim; ++d)
+      t[d][d] -= p;
+    if constexpr (finite_strain)
+      return times<dim>(t, cofactor<dim>(F));
+    else
+      return t;
+  }
+
+
+
+  /** The sums over points of a cell of V and V times each monomial. */
+  template <int dim>
+  class MonomialSums
+  {
+  public:
+    using Number = PointPack<dim>;
+
+    /** Points of volume V (m^dim, zero in idle lanes) at natural places xi. */
+    __attribute__((always_inline)) void
+    add(const std::array<Number, dim> &xi, const Number &V)
+    {
+      std::array<Number, 1 << dim> monomials;
+      monomials[0] = V;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+        for (int k = 0; k < 1 << d; ++k)
+          monomials[k | 1 << d] = monomials[k] * xi[d];
+#pragma GCC unroll 8
+      for (int k = 0; k < 1 << dim; ++k)
+        sums[k] += monomials[k];
+    }
+
+    double
+    operator[](const int k) const
+    {
+      return sum(sums[k]);
+    }
+
+  private:
+    std::array<Number, 1 << dim> sums{};
+  };
+
+
+
+  /** Gathers from the points of a cell what their P gives to its nodes. */
+  template <int dim>
+  class StressOnNodes
+  {
+  public:
+    using Number = PointPack<dim>;
+    using Nodes  = typename Linear<dim>::Nodes;
+
+    explicit StressOnNodes(const CellGeometry<dim> &cell)
+      : cell(cell)
+    {}
+
+    /** P times volume (J, zero in idle lanes) at natural places xi. */
+    __attribute__((always_inline)) void
+    add(const SmallMatrix<dim, Number> &VP, const std::array<Number, dim> &xi)
+    {
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          std::array<Number, dim> s; // meets natural derivatives
+#pragma GCC unroll 8
+          for (int e = 0; e < dim; ++e)
+            {
+              s[e] = VP[d][e] * cell.inverse_edge[e];
+              on_coefficients[d][1 << e] += s[e];
+            }
+#pragma GCC unroll 8
+          for (int e = 0; e < dim; ++e)
+#pragma GCC unroll 8
+            for (int f = 0; f < e; ++f)
+              on_coefficients[d][1 << e | 1 << f] +=
+                s[e] * xi[f] + s[f] * xi[e];
+          if constexpr (dim == 3)
+            on_coefficients[d][7] += s[0] * (xi[1] * xi[2]) +
+                                     s[1] * (xi[0] * xi[2]) +
+                                     s[2] * (xi[0] * xi[1]);
+        }
+    }
+
+    /** The same P (Pa) at all points, of which the monomials are summed up. */
+    void
+    add_uniform(const SmallMatrix<dim, double> &P,
+                const MonomialSums<dim>        &monomials)
+    {
+      // into one lane, as all will be added up
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          for (int k = 0; k < 1 << dim; ++k)
+            if (k >> e & 1)
+              on_coefficients[d][k][0] +=
+                P[d][e] * cell.inverse_edge[e] * monomials[k ^ (1 << e)];
+    }
+
+    /** The forces on the nodes, one lane each, for each direction. */
+    __attribute__((always_inline)) std::array<Nodes, dim>
+    forces() const
+    {
+      std::array<Nodes, dim> result;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        result[d] = -Linear<dim>::to_nodes(sums_over_lanes(on_coefficients[d]));
+      return result;
+    }
+
+  private:
+    const CellGeometry<dim>                      &cell;
+    std::array<std::array<Number, 1 << dim>, dim> on_coefficients{};
+  };
+} // namespace limber
+
+#endif

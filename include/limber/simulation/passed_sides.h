@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_simulation_passed_sides_h
+#define limber_simulation_passed_sides_h
+
+#include <limber/state/material_body.h>
+
+namespace limber
+{
+  /**
+   * A body that is computed in its initial frame feels a side of the box only
+   * where it touched it at the start. Throws ComputationError where a point
+   * has passed a side that is not free; collective, a pass over the points of
+   * such bodies.
+   */
+  template <int dim>
+  void
+  check_passed_sides(const State<dim> &state);
+} // namespace limber
+
+#endif

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_law_on_points_h
+#define limber_stress_law_on_points_h
+
+#include <limber/materials/law.h>
+#include <limber/stress/stress_update.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace limber
+{
+  /**
+   * What a law knows of the points of a body, whatever strains them: the part
+   * of a StressUpdate that does not look at the grid.
+   */
+  template <int dim, class Law>
+  class LawOnPoints : public StressUpdate<dim>
+  {
+  public:
+    explicit LawOnPoints(const Law &law)
+      : law(law)
+    {}
+
+    StateSummary
+    summarize(const PointView<dim> &points) const override
+    {
+      StateSummary result;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const auto state = state_of(points, p);
+          result.strain_energy += points.mass[p] * inverse_density *
+                                  law.template strain_energy<dim>(state);
+          const double J         = law.template volume_ratio<dim>(state);
+          result.smallest_volume = std::min(result.smallest_volume, J);
+          result.largest_volume  = std::max(result.largest_volume, J);
+        }
+      return result;
+    }
+
+    double
+    wave_speed_squared(const PointView<dim> &points) const override
+    {
+      double result = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        result =
+          std::max(result,
+                   law.template wave_speed_squared<dim>(state_of(points, p)));
+      return result;
+    }
+
+    double
+    volume_ratio_at_rest(const double pressure) const override
+    {
+      return law.template volume_ratio<dim>(
+        law.template initialise<dim>(pressure));
+    }
+
+    void
+    initialise(const PointView<dim> &points,
+               const std::size_t     p,
+               const double          pressure) const override
+    {
+      const auto state = law.template initialise<dim>(pressure);
+      store_state(points, state, [&](const double value, double *const a) {
+        a[p] = value;
+      });
+    }
+
+    void
+    volume_ratio(const PointView<dim> &points,
+                 double *const         volume_ratio) const override
+    {
+      for (std::size_t p = 0; p < points.size; ++p)
+        volume_ratio[p] = law.template volume_ratio<dim>(state_of(points, p));
+    }
+
+    unsigned int
+    n_history() const override
+    {
+      return Law::template n_history<dim>;
+    }
+
+    bool
+    has_deviator() const override
+    {
+      return Law::has_deviator;
+    }
+
+    int
+    volumetric() const override
+    {
+      return Law::volumetric;
+    }
+
+    double
+    density() const override
+    {
+      return law.density;
+    }
+
+    double
+    viscosity() const override
+    {
+      return law.dynamic_viscosity();
+    }
+
+  protected:
+    template <class Number>
+    using State = PointState<dim, Number, Law::template n_history<dim>>;
+
+    template <class Number, class Load>
+    static State<Number>
+    load_state(const PointView<dim> &points, const Load &load)
+    {
+      State<Number> state;
+      state.pressure = load(points.pressure);
+      if constexpr (Law::has_deviator)
+        for (unsigned int k = 0; k < state.deviator.size(); ++k)
+          state.deviator[k] = load(points.deviator[k]);
+      for (unsigned int k = 0; k < state.history.size(); ++k)
+        state.history[k] = load(points.history[k]);
+      return state;
+    }
+
+    static State<double>
+    state_of(const PointView<dim> &points, const std::size_t p)
+    {
+      return load_state<double>(points, [&](const double *a) { return a[p]; });
+    }
+
+    template <class Number, class Store>
+    static void
+    store_state(const PointView<dim> &points,
+                const State<Number>  &state,
+                const Store          &store)
+    {
+      store(state.pressure, points.pressure);
+      if constexpr (Law::has_deviator)
+        for (unsigned int k = 0; k < state.deviator.size(); ++k)
+          store(state.deviator[k], points.deviator[k]);
+      for (unsigned int k = 0; k < state.history.size(); ++k)
+        store(state.history[k], points.history[k]);
+    }
+
+    const Law    law;
+    const double inverse_density = 1. / law.density;
+  };
+} // namespace limber
+
+#endif
