@@ -197,7 +197,7 @@ namespace limber
       if (line.verdict == Verdict::bad &&
           std::abs(figures.drift) <= balance_holds)
         line.verdict = Verdict::look;
-      line.entry = of_body(body, "Points per cell edge");
+      line.entry = of_body(body, "Frame");
       line.text  = "a point of body '" + body.name + "' has entered " +
                   brief(body.crossings) + " cells on average, " +
                   brief(body.crossings_under_strain) +
@@ -206,7 +206,8 @@ namespace limber
       if (line.verdict != Verdict::good)
         line.text += "; each makes about " +
                      percent(creep_per_crossing(body.points_per_edge)) +
-                     " of the strain permanent. More points per cell edge or "
+                     " of the strain permanent. 'initial' does not creep, for "
+                     "a body that is alone; more points per cell edge or "
                      "coarser cells creep less, finer cells and 'apic' do not";
       return line;
     }
