@@ -109,14 +109,13 @@ namespace limber
 
     /** Of a long list of choices the beginning, as messages must stay short. */
     std::string
-    first_words(const std::string &range)
+    first_words(const std::string &text, const unsigned int most)
     {
-      constexpr unsigned int most = 14;
-      std::size_t            end  = 0;
+      std::size_t end = 0;
       for (unsigned int word = 0; word < most && end != std::string::npos;
            ++word)
-        end = range.find(' ', end + 1);
-      return end == std::string::npos ? range : range.substr(0, end) + " ...";
+        end = text.find(' ', end + 1);
+      return end == std::string::npos ? text : text.substr(0, end) + " ...";
     }
 
 
@@ -250,12 +249,15 @@ namespace limber
     check_letters(entry, place);
     if (!declaration.admissible.match(entry.value))
       throw InputError(
-        "The value " + in_quotes(entry.value) + " of entry " +
+        "The value " + in_quotes(first_words(entry.value, 6)) + " of entry " +
         in_quotes(entry.name) + " " + in_section(entry.section) + " (" + place +
         ") is not admissible. Usually a digit, sign or word is "
         "mistyped. Write " +
-        first_words(declaration.admissible.description()) + ", for instance " +
-        in_quotes(declaration.admissible.example_near(entry.value)) + ".");
+        first_words(declaration.admissible.description(), 14) +
+        ", for instance " +
+        in_quotes(
+          first_words(declaration.admissible.example_near(entry.value), 8)) +
+        ".");
 
     for (const std::string &name : entry.section)
       handler.enter_subsection(name);

@@ -14,7 +14,7 @@ namespace limber
 
 
     fs::file_type
-    type_of(const fs::path &path)
+    file_type_of(const fs::path &path)
     {
       std::error_code error;
       return fs::symlink_status(path, error).type();
@@ -25,7 +25,7 @@ namespace limber
     bool
     exists_itself(const fs::path &path)
     {
-      const auto type = type_of(path);
+      const auto type = file_type_of(path);
       return type != fs::file_type::not_found && type != fs::file_type::none;
     }
 
@@ -35,7 +35,7 @@ namespace limber
     bool
     is_free(const std::string &folder)
     {
-      if (type_of(folder) == fs::file_type::not_found)
+      if (file_type_of(folder) == fs::file_type::not_found)
         return true;
       for (const auto &entry : fs::directory_iterator(folder))
         if (entry.path().filename() != folder_mark)
@@ -93,7 +93,7 @@ namespace limber
                 const FolderKind  &kind,
                 const fs::path    &path)
     {
-      const bool link = type_of(path) == fs::file_type::symlink;
+      const bool link = file_type_of(path) == fs::file_type::symlink;
       throw InputError("In the folder " + in_quotes(folder) + " the name " +
                        name_in(path, folder) + " belongs to " +
                        (link ? "a symbolic link" :
@@ -115,12 +115,12 @@ namespace limber
                 const bool         links_to_files)
     {
       for (const fs::path &path : own.files)
-        if (const auto type = type_of(path);
+        if (const auto type = file_type_of(path);
             type != fs::file_type::regular &&
             !(links_to_files && type == fs::file_type::symlink))
           refuse_type(folder, kind, path);
       for (const fs::path &path : own.folders)
-        if (type_of(path) != fs::file_type::directory)
+        if (file_type_of(path) != fs::file_type::directory)
           refuse_type(folder, kind, path);
     }
 
@@ -249,7 +249,8 @@ namespace limber
   remove_own(const std::string &folder, const FolderKind &kind)
   {
     with_file_errors(folder, [&]() {
-      if (type_of(folder) != fs::file_type::directory || !is_made(folder, kind))
+      if (file_type_of(folder) != fs::file_type::directory ||
+          !is_made(folder, kind))
         return;
       const FolderLock lock(folder);
       const OwnPaths   own = kind.own_paths(folder);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
 #include <limber/output/files.h>
+#include <limber/output/pieces.h>
 #include <limber/output/run_folder.h>
 
 #include <filesystem>
@@ -12,21 +13,6 @@ namespace limber
   namespace
   {
     using Path = std::filesystem::path;
-
-
-
-    /** "points_00012.vtu" is a piece of the series "points"; so is ".h5". */
-    bool
-    is_piece(const std::string &file, const std::string &series)
-    {
-      const std::string start = series + "_";
-      const auto        dot   = file.find('.');
-      return file.compare(0, start.size(), start) == 0 &&
-             dot != std::string::npos && dot > start.size() &&
-             file.find_first_not_of("0123456789", start.size()) == dot &&
-             (file.substr(dot) == ".vtu" || file.substr(dot) == ".vtu.part" ||
-              file.substr(dot) == ".h5");
-    }
 
 
 
@@ -46,7 +32,8 @@ namespace limber
       own.add_folder(pieces);
       if (is_real_folder(pieces))
         for (const auto &entry : std::filesystem::directory_iterator(pieces))
-          if (is_piece(entry.path().filename().string(), series))
+          if (const std::string file = entry.path().filename().string();
+              is_piece(file, series) || is_unfinished_piece(file, series))
             own.files.push_back(entry.path());
     }
 

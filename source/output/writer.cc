@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/output/files.h>
 #include <limber/output/pictures.h>
+#include <limber/output/pieces.h>
 #include <limber/output/point_arrays.h>
 #include <limber/output/writer.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <sstream>
+#include <vector>
 
 namespace limber
 {
@@ -48,12 +50,29 @@ namespace limber
 
 
 
+    /** What a run has left that was killed while it wrote. */
+    void
+    remove_unfinished(const std::string &folder, const std::string &series)
+    {
+      std::error_code                    error;
+      std::vector<std::filesystem::path> unfinished;
+      for (const auto &entry :
+           std::filesystem::directory_iterator(folder + "/" + series, error))
+        if (is_unfinished_piece(entry.path().filename().string(), series))
+          unfinished.push_back(entry.path());
+      for (const auto &file : unfinished)
+        std::filesystem::remove(file, error);
+    }
+
+
+
     /** Without the pieces behind the last one of the series. */
     void
     shorten_series(const std::string                                 &folder,
                    const std::string                                 &series,
                    const std::vector<std::pair<double, std::string>> &pieces)
     {
+      remove_unfinished(folder, series);
       std::error_code error;
       std::size_t     number = pieces.size();
       while (std::filesystem::remove(folder + "/" + piece_name(series, number),

@@ -151,8 +151,7 @@ namespace limber
 
     template <int dim>
     void
-    check_counts(const Problem<dim> &problem,
-                 const SizeEstimate &size,
+    check_counts(const SizeEstimate &size,
                  const Task          task,
                  const unsigned int  ranks)
     {
@@ -225,7 +224,7 @@ namespace limber
   {
     const SizeEstimate size =
       estimate_size(problem, task, machine.ranks, elements_in_file);
-    check_counts(problem, size, task, machine.ranks);
+    check_counts<dim>(size, task, machine.ranks);
     check_memory(problem, size, task, machine);
     check_pictures(problem, task);
     check_frequencies(problem.reference, task);

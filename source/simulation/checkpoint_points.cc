@@ -207,13 +207,14 @@ namespace limber
       check_places(const std::vector<std::uint32_t>       &cells,
                    const std::vector<std::vector<double>> &fields) const
       {
+        const unsigned int along_x = points.place_field();
         for (std::size_t p = 0; p < cells.size(); ++p)
           {
             const CellGeometry<dim> &cell = grid.geometry[cells[p]];
             for (unsigned int d = 0; d < dim; ++d)
               {
-                const double xi =
-                  (fields[d][p] - cell.origin[d]) * cell.inverse_edge[d];
+                const double xi = (fields[along_x + d][p] - cell.origin[d]) *
+                                  cell.inverse_edge[d];
                 if (xi < -tolerance || xi > 1 + tolerance)
                   refuse("cell", "cells that do not hold their points");
               }

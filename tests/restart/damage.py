@@ -242,7 +242,7 @@ def cuts(runs, chance, count):
 
     for name in good_slot(runs.newer).name, "good_slot.txt":
         yield f"refused: {name} is a folder", becomes(name, os.mkdir)
-        yield f"{name} is a pipe", becomes(name, os.mkfifo)
+        yield f"refused: {name} is a pipe", becomes(name, os.mkfifo)
 
     def both(folder):
         for path in (folder / "checkpoint").glob("slot_*"):

@@ -160,6 +160,13 @@ namespace limber
       return fields[f];
     }
 
+    /** The field with the place in the grid along x; see PointView. */
+    unsigned int
+    place_field() const
+    {
+      return layout.initial_frame ? fields.size() - dim : 0;
+    }
+
     const std::vector<std::uint64_t> &
     all_ids() const
     {

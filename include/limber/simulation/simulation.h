@@ -60,6 +60,8 @@ namespace limber
     void
     loop();
     int
+    finish_complete();
+    int
     finish_stopped();
     [[noreturn]] void
     finish_failed(const ComputationError &failure);

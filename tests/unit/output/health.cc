@@ -137,7 +137,7 @@ namespace limber::test
     figures.drift        = -0.03;
     const HealthLine bad = line("crossings", figures);
     EXPECT_EQ(bad.verdict, Verdict::bad);
-    EXPECT_EQ(bad.entry, "Body beam/Points per cell edge");
+    EXPECT_EQ(bad.entry, "Body beam/Frame");
     EXPECT_LT(n_words(bad.text), 60u) << bad.text;
   }
 

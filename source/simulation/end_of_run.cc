@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/simulation/set_up.h>
+#include <limber/simulation/simulation.h>
+
+#include <algorithm>
+#include <csignal>
+#include <iomanip>
+#include <sstream>
+
+/** @file The end of a run, as it may come about, and what is said of it. */
+namespace limber
+{
+  namespace
+  {
+    std::string
+    in_words(const Diagnosis &diagnosis)
+    {
+      return diagnosis.mode.empty() ?
+               "" :
+               "Suspected: " + diagnosis.mode + ", for " + diagnosis.text;
+    }
+
+
+
+    /** Where no cause has been found: the usual one, and what to change. */
+    std::string
+    usual_cause(const FailureKind kind)
+    {
+      switch (kind)
+        {
+          case FailureKind::growing_energy:
+          case FailureKind::not_finite:
+            return "Usually the step is too long for the stiffness. Set "
+                   "'Method/Courant number' to 0.4 or below and 'Method/Time "
+                   "step' to 0.";
+          case FailureKind::inverted_point:
+            return "Usually the grid does not resolve the motion. Refine "
+                   "'Grid/Cells', load more slowly, or set 'Method/Courant "
+                   "number' to 0.4 or below.";
+          case FailureKind::lost_points:
+            return "Usually a side is free there. Close it in 'Boundaries' "
+                   "with slip, or raise 'Method/Lost points limit' above the "
+                   "share that is lost.";
+          case FailureKind::step_too_small:
+            return "Usually a point is compressed to nothing, see 'smallest "
+                   "volume ratio' in the statistics. Refine 'Grid/Cells' or "
+                   "load more slowly.";
+          case FailureKind::passed_side: // says it all
+          case FailureKind::other:
+            break;
+        }
+      return "";
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  int
+  Simulation<dim>::finish_complete()
+  {
+    const auto results = checks.results();
+    const bool passed =
+      std::all_of(results.begin(), results.end(), [](const CheckResult &check) {
+        return check.passed;
+      });
+    if (passed)
+      finish("finished", "", "");
+    else
+      {
+        const Diagnosis suspected = look_for_cause(/*unstable=*/false);
+        if (!suspected.mode.empty())
+          console.say(in_words(suspected));
+        finish("check missed", in_words(suspected), "", suspected.mode);
+      }
+    prepare_extension();
+    return int(passed ? ExitCode::success : ExitCode::check_missed);
+  }
+
+
+
+  template <int dim>
+  int
+  Simulation<dim>::finish_stopped()
+  {
+    if (checkpoints.good_file().empty() || saved_step != state.step)
+      write_checkpoint();
+    if (stop == wall_time_limit)
+      {
+        finish("wall time", "the limit of the scene; go on with --resume", "");
+        return int(ExitCode::stopped_by_signal) + SIGTERM;
+      }
+    const int signal = stop - any_signal;
+    finish("stopped",
+           "by signal " + std::to_string(signal) + "; go on with --resume",
+           "");
+    return int(ExitCode::stopped_by_signal) + signal;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::finish_failed(const ComputationError &failure)
+  {
+    const Diagnosis suspected = look_for_cause(/*unstable=*/true);
+    std::string     message   = std::string(failure.what()) + " " +
+                          (suspected.mode.empty() ? usual_cause(failure.kind) :
+                                                    in_words(suspected)) +
+                          " " + describe_last_state();
+    try
+      {
+        const std::string checkpoint = describe_last_checkpoint();
+        if (!checkpoint.empty())
+          console.say(checkpoint);
+        finish("unstable",
+               message + (checkpoint.empty() ? "" : " " + checkpoint),
+               word_for(failure.kind),
+               suspected.mode);
+      }
+    catch (const FileError &)
+      {
+        message += " Log or summary could not be written.";
+      }
+    throw ComputationError(message, failure.kind);
+  }
+
+
+
+  template <int dim>
+  Diagnosis
+  Simulation<dim>::look_for_cause(const bool unstable)
+  {
+    // The speeds of a run that has blown up say nothing about its step.
+    const Method &method = problem.method;
+    const auto    speeds = integrator.state();
+    Symptoms      symptoms =
+      find_symptoms(state, speeds.wave_speed + speeds.point_speed);
+    if (method.time_step == 0)
+      symptoms.courant_number = method.courant_number;
+    return diagnose(symptoms, problem, unstable);
+  }
+
+
+
+  // Where nodes have shown the step to be impossible, points are what they
+  // were before it (with 'first', but for the stress); else what the step has
+  // made of them.
+  template <int dim>
+  std::string
+  Simulation<dim>::describe_last_state()
+  {
+    std::string       text;
+    const std::string path = problem.output.directory + "/points.pvd";
+    try
+      {
+        const auto &former = writer.state().points;
+        if (former.empty() || former.back().first != state.time)
+          writer.write(state);
+        text = "The last state is the last picture in " + path + ".";
+      }
+    catch (const FileError &failure)
+      {
+        text = std::string("The last state is lost. ") + failure.what();
+      }
+    return text;
+  }
+
+
+
+  template <int dim>
+  std::string
+  Simulation<dim>::describe_last_checkpoint() const
+  {
+    if (checkpoints.good_file().empty())
+      return "";
+    return "The last checkpoint, of step " + std::to_string(saved_step) +
+           ", is " + checkpoints.good_file() + ".";
+  }
+
+
+
+  template <int dim>
+  Summary
+  Simulation<dim>::summarize() const
+  {
+    using dealii::Utilities::MPI::sum;
+    Summary summary;
+    summary.steps    = state.step;
+    summary.points   = totals.points;
+    summary.ranks    = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    summary.end_time = state.time;
+    summary.wall_seconds = wall_time() - start_wall;
+    summary.cpu_seconds  = sum(cpu_time() - start_cpu, communicator);
+    const double computing =
+      sum(cpu_time() - start_cpu - output_cpu, communicator);
+    summary.ns_per_point_step =
+      1e9 * computing / std::max(1ul, points_and_steps);
+
+    summary.memory_bytes = sum(largest_memory(), communicator);
+    const auto share     = [&](const double bytes) {
+      return sum(bytes, communicator) / summary.memory_bytes;
+    };
+    summary.memory          = {{"program", share(memory_of_program)},
+                               {"grid", share(memory_with_grid - memory_of_program)},
+                               {"points", share(memory_with_points - memory_with_grid)},
+                               {"nodes and buffers",
+                                share(largest_memory() - memory_with_points)}};
+    summary.bytes_per_point = summary.memory_bytes / n_points_at_start;
+    summary.energy_drift    = totals.energy_drift;
+    summary.momentum_error  = totals.momentum_error;
+    summary.lost_points     = sum(state.ledger.lost_points, communicator);
+
+    auto   verbs = integrator.verb_seconds;
+    double all   = 0;
+    for (double &seconds : verbs)
+      all += seconds = sum(seconds, communicator);
+    for (std::size_t v = 0; v < verbs.size(); ++v)
+      summary.verbs.emplace_back(name_of(Verb(v)),
+                                 verbs[v] / std::max(all, 1e-300));
+
+    summary.checks = checks.results();
+    for (const auto &[text, count] : console.warning_counts())
+      summary.warnings.push_back(text + ": " + std::to_string(count));
+    return summary;
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::finish(const std::string &verdict,
+                          const std::string &message,
+                          const std::string &failure,
+                          const std::string &suspected)
+  {
+    if (statistics)
+      statistics->close();
+    Summary summary   = summarize();
+    summary.verdict   = verdict;
+    summary.message   = message;
+    summary.failure   = failure;
+    summary.suspected = suspected;
+    summary.health =
+      judge(health.look(state, totals, balance_of_start.state().energy_scale));
+    if (statistics)
+      write_summary(problem.output.directory, summary);
+    show_summary(summary);
+  }
+
+
+
+  template <int dim>
+  void
+  Simulation<dim>::show_summary(const Summary &summary) const
+  {
+    std::ostringstream text;
+    text << std::setprecision(4) << summary.verdict << ": " << summary.steps
+         << " steps to time " << summary.end_time << " s in "
+         << summary.wall_seconds << " s; " << summary.ns_per_point_step
+         << " ns per point and step, energy drift " << summary.energy_drift
+         << ", momentum error " << summary.momentum_error << ", "
+         << summary.lost_points << " points lost\n";
+    for (const auto &[verb, share] : summary.verbs)
+      text << "  " << std::left << std::setw(18) << verb << std::right
+           << std::setw(6) << std::fixed << std::setprecision(1) << 100 * share
+           << " %\n"
+           << std::defaultfloat;
+    text << std::setprecision(6);
+    for (const CheckResult &check : summary.checks)
+      text << "  check " << check.name << ": " << check.value << ", reference "
+           << check.reference << " +- " << check.tolerance
+           << (check.passed ? ", passed\n" : ", MISSED\n");
+    text << health_text(summary.health) << "results in "
+         << problem.output.directory;
+    console.say(text.str());
+  }
+
+
+
+  template int
+  Simulation<2>::finish_complete();
+  template int
+  Simulation<2>::finish_stopped();
+  template void
+  Simulation<2>::finish_failed(const ComputationError &);
+  template int
+  Simulation<3>::finish_complete();
+  template int
+  Simulation<3>::finish_stopped();
+  template void
+  Simulation<3>::finish_failed(const ComputationError &);
+} // namespace limber
