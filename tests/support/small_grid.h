@@ -299,7 +299,7 @@ namespace limber
         result.volumetric =
           volumetric < 0 ? result.pressure : result.history[volumetric];
         result.place = result.position;
-        result.cell = cell.data();
+        result.cell  = cell.data();
         return result;
       }
 
