@@ -14,6 +14,7 @@
 #include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
 #include <limber/grid/order_of_trees.h>
+#include <limber/grid/spline_nodes.h>
 
 #include <malloc.h>
 
@@ -101,16 +102,22 @@ namespace limber
   {
     {
       const Numbering numbering(*this);
-      nodes_owned  = numbering.node_records.locally_owned_size();
-      cells_owned  = numbering.cell_records.locally_owned_size();
-      shared_nodes = SharedRecords(numbering.node_records);
-      shared_cells = SharedRecords(numbering.cell_records);
+      cells_owned      = numbering.cell_records.locally_owned_size();
+      shared_cells     = SharedRecords(numbering.cell_records);
+      vertices.n_owned = numbering.node_records.locally_owned_size();
+      vertices.shared  = SharedRecords(numbering.node_records);
       build_cells(numbering);
       build_ghost_cells(numbering);
       build_hanging_nodes(numbering);
     }
     build_bins();
     complete_boundary();
+    if (has_splines())
+      {
+        SplineNodes<dim> numbered = number_spline_nodes(*this);
+        spline_nodes              = std::move(numbered.nodes);
+        splines                   = std::move(numbered.cells);
+      }
     // Refinement and numbering need for a while twice what stays.
     malloc_trim(0);
   }
@@ -124,8 +131,8 @@ namespace limber
     const auto &cells = numbering.cell_records;
     const auto &nodes = numbering.node_records;
     geometry.assign(cells.locally_owned_size() + cells.n_ghost_indices(), {});
-    boundary_places.clear();
-    sides_of_node.assign(nodes.locally_owned_size() + nodes.n_ghost_indices(),
+    vertices.places.clear();
+    vertices.sides.assign(nodes.locally_owned_size() + nodes.n_ghost_indices(),
                          0);
     cell_numbers.assign(triangulation.n_active_cells(), invalid_cell);
 
@@ -160,8 +167,8 @@ namespace limber
                   {
                     const std::uint32_t node =
                       entry.node[i] / NodeLayout<dim>::stride;
-                    sides_of_node[node] |= 1 << cell->face(f)->boundary_id();
-                    boundary_places[node] = cell->vertex(i);
+                    vertices.sides[node] |= 1 << cell->face(f)->boundary_id();
+                    vertices.places[node] = cell->vertex(i);
                   }
         }
     smallest_edge = dealii::Utilities::MPI::min(smallest, communicator);
@@ -231,14 +238,14 @@ namespace limber
   BackgroundGrid<dim>::build_hanging_nodes(const Numbering &numbering)
   {
     const auto &nodes = numbering.node_records;
-    hanging_nodes.clear();
+    vertices.hanging.clear();
     for (const auto &line : numbering.constraints.get_lines())
       {
         HangingNode node;
         node.node = nodes.global_to_local(line.index);
         for (const auto &[master, weight] : line.entries)
           node.masters.emplace_back(nodes.global_to_local(master), weight);
-        hanging_nodes.push_back(node);
+        vertices.hanging.push_back(node);
       }
   }
 
@@ -268,66 +275,42 @@ namespace limber
   void
   BackgroundGrid<dim>::complete_boundary()
   {
-    if (dealii::Utilities::MPI::max(hanging_nodes.size(), communicator) == 0)
+    if (dealii::Utilities::MPI::max(vertices.hanging.size(), communicator) == 0)
       return;
     constexpr unsigned int stride = 1 + dim;
-    LazyArray<double>      values(n_nodes() * stride);
-    for (const auto &[node, place] : boundary_places)
-      if (node < n_owned_nodes())
+    LazyArray<double>      values(vertices.n() * stride);
+    for (const auto &[node, place] : vertices.places)
+      if (node < vertices.n_owned)
         {
-          values[node * stride] = sides_of_node[node];
+          values[node * stride] = vertices.sides[node];
           for (int d = 0; d < dim; ++d)
             values[node * stride + 1 + d] = place[d];
         }
-    const ExchangePlan plan(shared_nodes);
+    const ExchangePlan plan(vertices.shared);
     RecordExchange     exchange(stride);
     exchange.start(plan, values.data(), 0, stride);
     exchange.finish(values.data());
-    for (std::uint32_t node = n_owned_nodes(); node < n_nodes(); ++node)
+    for (std::uint32_t node = vertices.n_owned; node < vertices.n(); ++node)
       if (values[node * stride] != 0)
         {
-          sides_of_node[node] = std::uint8_t(values[node * stride]);
+          vertices.sides[node] = std::uint8_t(values[node * stride]);
           for (int d = 0; d < dim; ++d)
-            boundary_places[node][d] = values[node * stride + 1 + d];
+            vertices.places[node][d] = values[node * stride + 1 + d];
         }
   }
 
 
 
   template <int dim>
-  void
-  BackgroundGrid<dim>::give_to_masters(double *const      records,
-                                       const unsigned int stride,
-                                       const unsigned int first,
-                                       const unsigned int last) const
+  GridView<dim>
+  BackgroundGrid<dim>::view() const
   {
-    for (const HangingNode &hanging : hanging_nodes)
-      {
-        double *const from = records + std::size_t(hanging.node) * stride;
-        for (const auto &[master, weight] : hanging.masters)
-          for (unsigned int k = first; k < last; ++k)
-            records[std::size_t(master) * stride + k] += weight * from[k];
-        std::fill(from + first, from + last, 0.);
-      }
-  }
-
-
-
-  template <int dim>
-  void
-  BackgroundGrid<dim>::take_from_masters(double *const      records,
-                                         const unsigned int stride,
-                                         const unsigned int first,
-                                         const unsigned int last) const
-  {
-    for (const HangingNode &hanging : hanging_nodes)
-      {
-        double *const to = records + std::size_t(hanging.node) * stride;
-        std::fill(to + first, to + last, 0.);
-        for (const auto &[master, weight] : hanging.masters)
-          for (unsigned int k = first; k < last; ++k)
-            to[k] += weight * records[std::size_t(master) * stride + k];
-      }
+    GridView<dim> result;
+    result.cells = geometry.data();
+    result.bins  = bins;
+    if (has_splines())
+      result.splines = splines.data();
+    return result;
   }
 
 

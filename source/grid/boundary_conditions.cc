@@ -32,7 +32,7 @@ namespace limber
   bool
   BoundaryConditions<dim>::act(
     const unsigned int                  side,
-    const BackgroundGrid<dim>          &grid,
+    const NodeTable<dim>               &nodes,
     const std::uint32_t                 node,
     const double                        time,
     dealii::Tensor<1, dim>             &velocity,
@@ -53,7 +53,7 @@ namespace limber
           return true;
         case SideCondition::velocity:
           velocity =
-            sides[side].velocity.vector(grid.boundary_places.at(node), time);
+            sides[side].velocity.vector(nodes.places.at(node), time);
           return true;
         case SideCondition::friction:
           {
@@ -101,8 +101,8 @@ namespace limber
         for (unsigned int side = 0; side < 2 * dim; ++side)
           {
             const auto before = velocity;
-            if (nodes.grid.sides_of_node[node] >> side & 1)
-              act(side, nodes.grid, node, time, velocity, nullptr);
+            if (nodes.table.sides[node] >> side & 1)
+              act(side, nodes.table, node, time, velocity, nullptr);
             change[side] = velocity - before;
           }
 
@@ -144,8 +144,8 @@ namespace limber
         const auto new_velocity = read<dim>(record + Layout::velocity);
         auto       velocity     = read<dim>(record + first);
         for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (nodes.grid.sides_of_node[node] >> side & 1)
-            act(side, nodes.grid, node, time, velocity, &new_velocity);
+          if (nodes.table.sides[node] >> side & 1)
+            act(side, nodes.table, node, time, velocity, &new_velocity);
         for (int d = 0; d < dim; ++d)
           record[first + d] = velocity[d];
       }

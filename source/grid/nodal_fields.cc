@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/nodal_fields.h>
+#include <limber/grid/spline_nodes.h>
 
 #include <algorithm>
 
@@ -7,8 +8,20 @@ namespace limber
 {
   template <int dim>
   NodalFields<dim>::NodalFields(const BackgroundGrid<dim> &grid)
+    : NodalFields(grid, grid.nodes())
+  {
+    if (&table != &grid.vertices)
+      of_vertices.reset(new NodalFields(grid, grid.vertices));
+  }
+
+
+
+  template <int dim>
+  NodalFields<dim>::NodalFields(const BackgroundGrid<dim> &grid,
+                                const NodeTable<dim>      &table)
     : grid(grid)
-    , nodes_to_share(grid.shared_nodes)
+    , table(table)
+    , nodes_to_share(table.shared)
     , cells_to_share(grid.shared_cells)
   {
     reinit();
@@ -17,14 +30,33 @@ namespace limber
 
 
   template <int dim>
+  template <class Work>
+  void
+  NodalFields<dim>::for_each_node(const std::uint32_t cell,
+                                  const Work         &work) const
+  {
+    const auto of_all = [&](const auto &offsets) {
+      for (const std::uint32_t offset : offsets)
+        if (offset != unknown_node)
+          work(offset / Layout::stride);
+    };
+    if (&table == &grid.vertices)
+      of_all(grid.geometry[cell].node);
+    else
+      of_all(grid.splines[cell].node);
+  }
+
+
+
+  template <int dim>
   void
   NodalFields<dim>::reinit()
   {
-    values.reinit(std::size_t(grid.n_nodes()) * Layout::stride);
+    values.reinit(std::size_t(table.n()) * Layout::stride);
     has_own_points.reinit(grid.n_cells());
     is_occupied.reinit(grid.n_cells());
-    is_active.reinit(grid.n_nodes());
-    nodes_to_share = ExchangePlan(grid.shared_nodes);
+    is_active.reinit(table.n());
+    nodes_to_share = ExchangePlan(table.shared);
     cells_to_share = ExchangePlan(grid.shared_cells);
     find_roles();
     // What was active belongs to the numbers of the former mesh.
@@ -35,6 +67,8 @@ namespace limber
     active.clear();
     active_boundary.clear();
     set_occupied({});
+    if (of_vertices)
+      of_vertices->reinit();
   }
 
 
@@ -43,21 +77,22 @@ namespace limber
   void
   NodalFields<dim>::find_roles()
   {
-    roles.reinit(grid.n_nodes());
+    roles.reinit(table.n());
     border_cells.clear();
-    if (grid.shared_nodes.neighbours.empty())
+    if (table.shared.neighbours.empty())
       return;
     for (const std::uint32_t node : nodes_to_share.received)
       roles[node] = is_shared;
     for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
-      for (const std::uint32_t offset : grid.geometry[cell].node)
-        roles[offset / Layout::stride] |= is_corner_of_owned_cell;
+      for_each_node(cell, [&](const std::uint32_t node) {
+        roles[node] |= is_of_owned_cell;
+      });
     // What is done to a hanging node is done to its masters.
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : table.hanging)
       for (const auto &[master, weight] : hanging.masters)
         {
           roles[hanging.node] |= roles[master] & is_shared;
-          roles[master] |= roles[hanging.node] & is_corner_of_owned_cell;
+          roles[master] |= roles[hanging.node] & is_of_owned_cell;
         }
     for (std::uint32_t cell = 0; cell < grid.n_cells(); ++cell)
       if (is_at_border(cell))
@@ -70,10 +105,10 @@ namespace limber
   GridView<dim>
   NodalFields<dim>::view()
   {
-    GridView<dim> result;
-    result.cells    = grid.geometry.data();
+    GridView<dim> result = grid.view();
+    if (&table == &grid.vertices)
+      result.splines = nullptr;
     result.nodes    = values.data();
-    result.bins     = grid.bins;
     result.occupied = has_own_points.data();
     result.entered  = &entered;
     result.left     = &left;
@@ -104,6 +139,8 @@ namespace limber
     active.clear();
     active_boundary.clear();
 
+    if (of_vertices)
+      of_vertices->set_occupied(std::vector<std::uint32_t>(cells), agree);
     with_own_points = std::move(cells);
     for (const std::uint32_t cell : with_own_points)
       has_own_points[cell] = 1;
@@ -122,12 +159,24 @@ namespace limber
   {
     if (entered.empty())
       return;
-    for (const std::uint32_t cell : entered)
+    if (of_vertices)
+      of_vertices->set_entered(entered);
+    set_entered(entered);
+    entered.clear();
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::set_entered(const std::vector<std::uint32_t> &cells)
+  {
+    for (const std::uint32_t cell : cells)
       {
+        has_own_points[cell] = 1;
         with_own_points.push_back(cell);
         activate(cell);
       }
-    entered.clear();
     activate_masters();
   }
 
@@ -137,10 +186,22 @@ namespace limber
   bool
   NodalFields<dim>::is_at_border(const std::uint32_t cell) const
   {
-    for (const std::uint32_t offset : grid.geometry[cell].node)
-      if (roles[offset / Layout::stride] & is_shared)
-        return true;
-    return false;
+    bool result = false;
+    for_each_node(cell, [&](const std::uint32_t node) {
+      result |= (roles[node] & is_shared) != 0;
+    });
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  NodalFields<dim>::has_entered_ghosts() const
+  {
+    return std::any_of(entered.begin(), entered.end(), [&](const auto cell) {
+      return cell >= grid.n_owned_cells();
+    });
   }
 
 
@@ -162,6 +223,8 @@ namespace limber
   {
     plan_sums();
     activate_agreed();
+    if (of_vertices)
+      of_vertices->agree_on_sums();
   }
 
 
@@ -170,7 +233,7 @@ namespace limber
   void
   NodalFields<dim>::plan_sums()
   {
-    if (grid.shared_nodes.neighbours.empty())
+    if (table.shared.neighbours.empty())
       return;
 
     // The owner adds the mean pressure of a cell, whoever holds its points.
@@ -181,29 +244,30 @@ namespace limber
         return has_own_points[cell] || cell < grid.n_owned_cells();
       });
 
-    for (const auto &neighbour : grid.shared_nodes.neighbours)
+    for (const auto &neighbour : table.shared.neighbours)
       for (const std::uint32_t node : neighbour.records)
         roles[node] &= ~may_be_added_to;
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : table.hanging)
       roles[hanging.node] &= ~may_be_added_to;
     const auto may_get_sums = [&](const std::uint32_t cell) {
-      for (const std::uint32_t offset : grid.geometry[cell].node)
-        roles[offset / Layout::stride] |= may_be_added_to;
+      for_each_node(cell, [&](const std::uint32_t node) {
+        roles[node] |= may_be_added_to;
+      });
     };
     for (const std::uint32_t cell : border_cells)
       if (has_own_points[cell])
         may_get_sums(cell);
     for (const std::uint32_t cell : cells_to_share.received)
       may_get_sums(cell);
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : table.hanging)
       for (const auto &[master, weight] : hanging.masters)
         roles[master] |= roles[hanging.node] & may_be_added_to;
 
     nodes_to_share = ExchangePlan(
-      grid.shared_nodes,
+      table.shared,
       [&](const auto node) { return (roles[node] & may_be_added_to) != 0; },
       [&](const auto node) {
-        return (roles[node] & (may_be_added_to | is_corner_of_owned_cell)) != 0;
+        return (roles[node] & (may_be_added_to | is_of_owned_cell)) != 0;
       });
   }
 
@@ -237,8 +301,8 @@ namespace limber
     is_occupied[cell] = 1;
     (cell < grid.n_owned_cells() ? occupied_owned : occupied_ghost)
       .push_back(cell);
-    for (const std::uint32_t offset : grid.geometry[cell].node)
-      activate_node(offset / Layout::stride);
+    for_each_node(cell,
+                  [&](const std::uint32_t node) { activate_node(node); });
   }
 
 
@@ -251,7 +315,7 @@ namespace limber
       return;
     is_active[node] = 1;
     active.push_back(node);
-    if (grid.sides_of_node[node])
+    if (table.sides[node])
       active_boundary.push_back(node);
   }
 
@@ -262,7 +326,7 @@ namespace limber
   void
   NodalFields<dim>::activate_masters()
   {
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : table.hanging)
       if (is_active[hanging.node])
         for (const auto &[master, weight] : hanging.masters)
           activate_node(master);
@@ -278,7 +342,7 @@ namespace limber
     for (const std::uint32_t node : active)
       std::fill_n(record(node), Layout::stride, 0.);
     // Their masters have given to them whether they are active or not.
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : table.hanging)
       std::fill_n(record(hanging.node), Layout::stride, 0.);
   }
 
@@ -289,7 +353,7 @@ namespace limber
   NodalFields<dim>::start_sum(const unsigned int first, const unsigned int last)
   {
     // Linear, so every rank condenses its own contributions.
-    grid.give_to_masters(values.data(), Layout::stride, first, last);
+    table.give_to_masters(values.data(), Layout::stride, first, last);
     exchange.start(nodes_to_share, values.data(), first, last);
   }
 
@@ -308,14 +372,16 @@ namespace limber
   void
   NodalFields<dim>::interpolate_hanging()
   {
-    grid.take_from_masters(values.data(), Layout::stride, 1, Layout::stride);
+    table.take_from_masters(values.data(), Layout::stride, 1, Layout::stride);
   }
 
 
 
   template <int dim>
-  CellFields<dim>::CellFields(const BackgroundGrid<dim> &grid)
-    : grid(grid)
+  CellFields<dim>::CellFields(const BackgroundGrid<dim> &grid,
+                              const unsigned int         stride)
+    : stride(stride)
+    , grid(grid)
   {
     reinit();
   }
@@ -326,8 +392,7 @@ namespace limber
   void
   CellFields<dim>::reinit()
   {
-    const std::size_t size =
-      std::size_t(grid.n_cells()) * CellSums<dim>::stride;
+    const std::size_t size = std::size_t(grid.n_cells()) * stride;
     now.reinit(size);
     next.reinit(size);
     turn_of.reinit(grid.n_cells());
@@ -340,7 +405,7 @@ namespace limber
   CellSums<dim>
   CellFields<dim>::view()
   {
-    return {now.data(), next.data(), turn_of.data(), turn};
+    return {now.data(), next.data(), turn_of.data(), turn, stride};
   }
 
 
@@ -355,7 +420,7 @@ namespace limber
       for (const auto *const cells : {&neighbour.send, &neighbour.receive})
         for (const std::uint32_t cell : *cells)
           sums.open(cell);
-    exchange.start(plan, next.data(), 0, CellSums<dim>::stride);
+    exchange.start(plan, next.data(), 0, stride);
   }
 
 

@@ -6,8 +6,8 @@
 namespace limber
 {
   template <int dim>
-  NodalProjection<dim>::NodalProjection(const BackgroundGrid<dim> &grid)
-    : grid(grid)
+  NodalProjection<dim>::NodalProjection(const NodeTable<dim> &table)
+    : table(table)
   {
     reinit();
   }
@@ -18,7 +18,7 @@ namespace limber
   void
   NodalProjection<dim>::reinit()
   {
-    records.reinit(std::size_t(grid.n_nodes()) * Layout::stride);
+    records.reinit(std::size_t(table.n()) * Layout::stride);
   }
 
 
@@ -29,7 +29,7 @@ namespace limber
   {
     for (const std::uint32_t node : nodes)
       std::fill_n(record(node), Layout::stride, 0.);
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : table.hanging)
       std::fill_n(record(hanging.node), Layout::stride, 0.);
   }
 
@@ -39,7 +39,7 @@ namespace limber
   void
   NodalProjection<dim>::start_completion(const ExchangePlan &plan)
   {
-    grid.give_to_masters(records.data(), Layout::stride, 0, Layout::stride);
+    table.give_to_masters(records.data(), Layout::stride, 0, Layout::stride);
     exchange.start(plan, records.data(), 0, Layout::stride);
   }
 
@@ -59,7 +59,7 @@ namespace limber
         const double  mass  = sums[Layout::mass];
         sums[Layout::value] = mass > 0 ? sums[Layout::value] / mass : 0;
       }
-    grid.take_from_masters(records.data(),
+    table.take_from_masters(records.data(),
                            Layout::stride,
                            Layout::value,
                            Layout::value + 1);

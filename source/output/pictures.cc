@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/support.h>
 #include <limber/output/pictures.h>
 #include <limber/output/point_stress.h>
 
@@ -314,22 +315,30 @@ namespace limber
 
 
 
-    /** Mass and velocity, the first 1 + dim components. */
+    /** Mass and velocity, the first 1 + dim components, at corners of cells. */
     template <int dim>
     void
     add_nodal_values(const State<dim> &state, Picture<dim, dim> &picture)
     {
       using Layout = NodeLayout<dim>;
+      const GridView<dim> grid = state.grid.view();
       for (unsigned int c = 0; c < picture.patches.size(); ++c)
         for (unsigned int i = 0; i < 1 << dim; ++i)
           {
-            const std::uint32_t offset = state.grid.geometry[c].node[i];
-            const double *const record =
-              state.nodes.record(offset / Layout::stride);
-            auto &data = picture.patches[c].data;
-            data(0, i) = record[Layout::mass];
+            const CellGeometry<dim> &cell = grid.cells[c];
+            std::array<double, dim>  corner;
             for (int d = 0; d < dim; ++d)
-              data(1 + d, i) = record[Layout::velocity + d];
+              corner[d] = cell.origin[d] + (i >> d & 1) / cell.inverse_edge[d];
+            const Support<dim> at   = support_at<dim, false>(grid, c, corner);
+            auto              &data = picture.patches[c].data;
+            for (int k = 0; k < at.n; ++k)
+              {
+                const double *const record = state.nodes.record(at.node[k]);
+                data(0, i) += at.value[k] * record[Layout::mass];
+                for (int d = 0; d < dim; ++d)
+                  data(1 + d, i) +=
+                    at.value[k] * record[Layout::velocity + d];
+              }
           }
     }
   } // namespace

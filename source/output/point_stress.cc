@@ -32,11 +32,11 @@ namespace limber
 
   template <int dim>
   PointStress<dim>::PointStress(const State<dim> &state)
-    : nodes(state.nodes)
+    : nodes(state.nodes.vertices())
     , plan(state.grid.shared_cells)
     , sums(state.grid)
     , deviators(state.grid)
-    , nodal(state.grid)
+    , nodal(state.grid.vertices)
   {}
 
 
@@ -66,7 +66,7 @@ namespace limber
     // Points may sit in ghost cells, and those of other ranks in cells here.
     const CellSums<dim> of_cells     = sums.view();
     const CellSums<dim> of_deviators = deviators.view();
-    static_assert(n_deviator<dim> <= CellSums<dim>::stride);
+    static_assert(n_deviator<dim> <= 1 << dim);
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const std::uint32_t cell = points.cell[p];
@@ -100,11 +100,9 @@ namespace limber
     std::vector<double> pressures(points.size);
     for (std::size_t p = 0; p < points.size; ++p)
       pressures[p] = point_pressure(p);
-    GridView<dim> grid;
-    grid.cells = nodes.grid.geometry.data();
     nodal.clear(nodes.active_nodes());
     sum_weighted<dim>(
-      points, grid, volume_ratios.data(), pressures.data(), nodal.data());
+      points, nodes.grid.view(), volume_ratios.data(), pressures.data(), nodal.data());
     nodal.start_completion(nodes.node_plan());
     nodal.finish_completion(nodes.active_nodes());
   }

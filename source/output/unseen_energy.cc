@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/nodal_projection.h>
-#include <limber/interpolation/nodal_means.h>
+#include <limber/interpolation/support.h>
 #include <limber/output/health_figures.h>
-#include <limber/points/cell_batch.h>
-#include <limber/transfer/project_on_nodes.h>
 
 #include <algorithm>
 #include <utility>
@@ -23,15 +21,16 @@ namespace limber
     public:
       explicit FitByGrid(const State<dim> &state)
         : state(state)
-        , projection(state.grid)
-        , direction(std::size_t(state.grid.n_nodes()) * Layout::stride)
+        , table(state.grid.nodes())
+        , grid(state.grid.view())
+        , projection(table)
+        , direction(table.n())
       {
         for (const auto &body : state.bodies)
           {
             const std::size_t n = body->points.size();
             residual.emplace_back(n);
             along.emplace_back(n);
-            ones.emplace_back(n, 1.);
           }
       }
 
@@ -92,15 +91,20 @@ namespace limber
       void
       project_residual()
       {
-        GridView<dim> grid;
-        grid.cells = state.grid.geometry.data();
         projection.clear(state.nodes.active_nodes());
+        double *const records = projection.data();
         for (std::size_t b = 0; b < residual.size(); ++b)
-          sum_weighted<dim>(points(b),
-                            grid,
-                            ones[b].data(),
-                            residual[b].data(),
-                            projection.data());
+          for_each_support(b, [&](const std::size_t   p,
+                                  const Support<dim> &at) {
+            const double mass = points(b).mass[p];
+            for (int i = 0; i < at.n; ++i)
+              {
+                double *const record =
+                  records + std::size_t(at.node[i]) * Layout::stride;
+                record[Layout::mass] += mass * at.value[i];
+                record[Layout::value] += mass * at.value[i] * residual[b][p];
+              }
+          });
         projection.start_completion(state.nodes.node_plan());
         projection.finish_completion(state.nodes.active_nodes());
       }
@@ -125,35 +129,35 @@ namespace limber
       turn(const double share_of_former)
       {
         const auto update = [&](const std::uint32_t node) {
-          double &value =
-            direction[std::size_t(node) * Layout::stride + Layout::value];
-          value = projection.mean(node) + share_of_former * value;
+          double &value = direction[node];
+          value         = projection.mean(node) + share_of_former * value;
         };
         for (const std::uint32_t node : state.nodes.active_nodes())
           update(node);
-        for (const HangingNode &hanging : state.grid.hanging_nodes)
+        for (const HangingNode &hanging : table.hanging)
           update(hanging.node);
         for (std::size_t b = 0; b < along.size(); ++b)
-          evaluate(points(b), along[b]);
+          for_each_support(b, [&](const std::size_t   p,
+                                  const Support<dim> &at) {
+            along[b][p] = 0;
+            for (int i = 0; i < at.n; ++i)
+              along[b][p] += at.value[i] * direction[at.node[i]];
+          });
       }
 
+      template <class Work>
       void
-      evaluate(const PointView<dim> &points, std::vector<double> &values) const
+      for_each_support(const std::size_t b, const Work &work) const
       {
-        for_each_batch(points, [&](const CellBatch &batch) {
-          if (batch.cell == invalid_cell)
-            return;
-          const CellGeometry<dim> &cell = state.grid.geometry[batch.cell];
-          const NodalMean<dim, Projection::node> field(direction.data(), cell);
-          for (std::size_t p = batch.begin; p < batch.end; ++p)
+        const PointView<dim> of_body = points(b);
+        for (std::size_t p = 0; p < of_body.size; ++p)
+          if (of_body.cell[p] != invalid_cell)
             {
-              std::array<double, dim> xi;
+              std::array<double, dim> x;
               for (int d = 0; d < dim; ++d)
-                xi[d] =
-                  (points.place[d][p] - cell.origin[d]) * cell.inverse_edge[d];
-              values[p] = field.template value<double>(xi);
+                x[d] = of_body.place[d][p];
+              work(p, support_at<dim, false>(grid, of_body.cell[p], x));
             }
-        });
       }
 
       void
@@ -165,9 +169,11 @@ namespace limber
       }
 
       const State<dim>                &state;
+      const NodeTable<dim>            &table;
+      const GridView<dim>              grid;
       NodalProjection<dim>             projection;
-      LazyArray<double>                direction; // records, as a projection's
-      std::vector<std::vector<double>> residual, along, ones; // per body
+      LazyArray<double>                direction;       // by node
+      std::vector<std::vector<double>> residual, along; // per body
     };
   } // namespace
 

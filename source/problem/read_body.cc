@@ -317,12 +317,47 @@ namespace limber
                         const bool       fluid,
                         Problem<dim>    &problem)
     {
+      const bool smooth = problem.grid.kernel == KernelKind::quadratic;
       problem.notes.push_back(
         "Body " + in_quotes(body.name) + ": locking treatment 'auto' is " +
-        (fluid ? "'cell', as a liquid resists volume changes only." :
-                 "'assumed strain', which neither locks in volume nor in "
-                 "bending and leaves no motion of a cell without resistance."));
-      return fluid ? Projection::cell : Projection::assumed_strain;
+        (fluid  ? "'cell', as a liquid resists volume changes only." :
+         smooth ? "'node', which does not lock in volume and does not jump "
+                  "where points cross cells." :
+                  "'assumed strain', which neither locks in volume nor in "
+                  "bending and leaves no motion of a cell without "
+                  "resistance."));
+      return fluid  ? Projection::cell :
+             smooth ? Projection::node :
+                      Projection::assumed_strain;
+    }
+
+
+
+    /** What goes with linear functions alone. */
+    template <int dim>
+    void
+    check_kernel(const Section &section, const Body<dim> &body)
+    {
+      const auto refuse = [&](const std::string &entry,
+                              const std::string &reason,
+                              const std::string &remedy) {
+        throw InputError("The entry " + in_quotes(section.text(entry)) +
+                         " in " + section.where(entry) +
+                         " does not go with 'Method/Kernel = quadratic': " +
+                         reason + ". Set " + remedy +
+                         ", or 'Kernel = linear'.");
+      };
+      if (body.treatment == Projection::assumed_strain)
+        refuse("Locking treatment",
+               "splines have no hourglass modes to which it could give a "
+               "strain",
+               "'Locking treatment = node'");
+      if (body.hourglass_control > 0)
+        refuse("Hourglass control",
+               "splines have no hourglass modes",
+               "'Hourglass control = 0'");
+      if (body.frame == Frame::initial)
+        refuse("Frame", "that frame has linear functions", "'Frame = current'");
     }
 
 
@@ -418,8 +453,10 @@ namespace limber
       body.hourglass_control =
         section.text("Hourglass control") != "auto" ?
           section.number("Hourglass control") :
-        needs_hourglass_control<dim>(body.treatment, fluid) ? 0.1 :
-                                                              0;
+        problem.grid.kernel == KernelKind::linear &&
+            needs_hourglass_control<dim>(body.treatment, fluid) ?
+          0.1 :
+          0;
       if (body.hourglass_control > 0 && body.treatment == Projection::none)
         throw InputError(
           "The hourglass control " + section.text("Hourglass control") +
@@ -472,6 +509,8 @@ namespace limber
         read_word(section, "Material", law_words()).takes_pressure;
       body.frame = read_word(section, "Frame", frame_words());
       read_treatment(section, body, problem);
+      if (problem.grid.kernel == KernelKind::quadratic)
+        check_kernel(section, body);
       if (body.frame == Frame::initial)
         check_initial_frame(section, root, body);
       return body;

@@ -42,7 +42,7 @@ namespace limber
                  "Kernel",
                  "linear",
                  kernel_words(),
-                 "Weights of the nodes at a point.");
+                 "Functions of the nodes: their weights at a point.");
     parameters.declare("Courant number",
                        "0.4",
                        admissible::number_from_to(1e-6, 100, "0.4"),
@@ -71,7 +71,6 @@ namespace limber
   read_method(const Section &section)
   {
     read_word(section, "Time integration", time_integration_words());
-    read_word(section, "Kernel", kernel_words());
 
     Method method;
     method.order = read_word(section, "Stress update", stress_update_words());

@@ -47,8 +47,11 @@ namespace limber
   {
     static const Words<KernelKind> words = {
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
+      {"quadratic",
+       KernelKind::quadratic,
+       "quadratic B-splines, smooth from cell to cell"},
       {"gimp", std::nullopt, not_available},
-      {"quadratic b-spline", std::nullopt, not_available}};
+      {"cpdi", std::nullopt, not_available}};
     return words;
   }
 

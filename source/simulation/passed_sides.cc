@@ -14,7 +14,7 @@ namespace limber
   {
     // A side may be overstepped by that share of an edge: by round-off, or by
     // a body that vibrates in touch with it.
-    constexpr double tolerance = 1e-3;
+    constexpr double chance_overstep = 1e-3;
 
 
 
@@ -61,7 +61,7 @@ namespace limber
         for (unsigned int side = 0; side < 2 * dim; ++side)
           {
             if (state.problem.sides[side].condition == SideCondition::free ||
-                beyond[side] <= tolerance * state.problem.grid.edge(side / 2))
+                beyond[side] <= chance_overstep * state.problem.grid.edge(side / 2))
               continue;
             const std::string  name = side_names(dim)[side];
             std::ostringstream text;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/interpolation/basis.h>
 #include <limber/points/seeding.h>
 #include <limber/simulation/set_up.h>
 
@@ -100,7 +101,12 @@ namespace limber
     for (const Body<dim> &body : problem.bodies)
       {
         auto stress = make_stress_update<dim>(
-          body.law, body.material, body.treatment, body.hourglass, body.frame);
+          body.law,
+          body.material,
+          body.treatment,
+          body.hourglass,
+          body.frame,
+          grid.description.kernel);
         PointLayout layout;
         layout.deviator      = stress->has_deviator();
         layout.n_history     = stress->n_history();
@@ -144,15 +150,19 @@ namespace limber
 
     if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
       balance(grid, bodies);
+    const unsigned int sums_of_cell =
+      with_basis(grid.view(), [](const auto basis) {
+        return std::decay_t<decltype(basis)>::n_nodes;
+      });
     for (auto &body : bodies)
       {
         const Projection kind = body->stress->projection().kind;
         if (needs_cell_means(kind) || body->description.hourglass_control > 0)
-          body->cell_sums.emplace(grid);
+          body->cell_sums.emplace(grid, sums_of_cell);
         if (body->description.deviatoric_history != HistoryTreatment::keep)
           body->deviator_sums.emplace(grid);
         if (averages_around_nodes(kind))
-          body->nodal_means.emplace(grid);
+          body->nodal_means.emplace(grid.vertices);
         if (body->description.chequerboard_control > 0)
           body->cell_shift.reinit(grid.n_cells());
       }

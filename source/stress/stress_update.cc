@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/materials/law_list.h>
 #include <limber/stress/initial_frame_sweep.h>
-#include <limber/stress/law_sweep.h>
+#include <limber/stress/make_sweep.h>
 
 #include <stdexcept>
 
@@ -49,66 +48,27 @@ namespace limber
 
 
 
-    template <int dim, class Law>
-    std::unique_ptr<const StressUpdate<dim>>
-    make_sweep(const Law              &law,
-               const Projection        kind,
-               const HourglassResponse response)
+    /** Without shear stress there is no more to project than the pressure. */
+    template <class Law>
+    Projection
+    projection_for(const Projection kind)
     {
-      const auto projection = strain_projection(law, kind, response);
-      switch (kind)
-        {
-          case Projection::automatic:
-            throw std::logic_error("no projection chosen");
-          case Projection::none:
-            return std::make_unique<LawSweep<dim, Law, Projection::none>>(
-              law, projection);
-          case Projection::cell:
-            return std::make_unique<LawSweep<dim, Law, Projection::cell>>(
-              law, projection);
-          case Projection::node:
-            return std::make_unique<LawSweep<dim, Law, Projection::node>>(
-              law, projection);
-          default:
-            break;
-        }
-      // Without shear stress there is no more to project than the pressure.
-      if constexpr (!Law::has_deviator)
-        return make_sweep<dim>(law,
-                               kind == Projection::hybrid ? Projection::node :
-                                                            Projection::cell,
-                               response);
-      else
-        switch (kind)
-          {
-            case Projection::cell_shear:
-              return std::make_unique<
-                LawSweep<dim, Law, Projection::cell_shear>>(law, projection);
-            case Projection::cell_full:
-              return std::make_unique<
-                LawSweep<dim, Law, Projection::cell_full>>(law, projection);
-            case Projection::hybrid:
-              return std::make_unique<LawSweep<dim, Law, Projection::hybrid>>(
-                law, projection);
-            default:
-              return std::make_unique<
-                LawSweep<dim, Law, Projection::assumed_strain>>(law,
-                                                                projection);
-          }
+      if (Law::has_deviator || kind == Projection::none ||
+          kind == Projection::automatic)
+        return kind;
+      return averages_around_nodes(kind) ? Projection::node : Projection::cell;
     }
 
 
 
     template <int dim, class Law>
     std::unique_ptr<const StressUpdate<dim>>
-    make_initial_frame_sweep(const Law              &law,
-                             const Projection        kind,
-                             const HourglassResponse response)
+    make_initial_frame_sweep(
+      const Law                               &law,
+      [[maybe_unused]] const StrainProjection &projection)
     {
-      [[maybe_unused]] const auto projection =
-        strain_projection(law, kind, response);
       if constexpr (Law::is_elastic)
-        switch (kind)
+        switch (projection.kind)
           {
             case Projection::none:
               return std::make_unique<
@@ -135,7 +95,8 @@ namespace limber
                      const std::vector<double> &values,
                      const Projection           kind,
                      const HourglassResponse    response,
-                     const Frame                frame)
+                     const Frame                frame,
+                     const KernelKind           kernel)
   {
     std::unique_ptr<const StressUpdate<dim>> result;
     for_each_law([&](auto *const candidate) {
@@ -146,10 +107,17 @@ namespace limber
       if (values.size() != own.size())
         throw std::logic_error("wrong number of parameters for " + name);
       std::copy(values.begin(), values.end(), own.begin());
-      if (Law::accepts(own))
-        result = frame == Frame::initial ?
-                   make_initial_frame_sweep<dim>(Law(own), kind, response) :
-                   make_sweep<dim>(Law(own), kind, response);
+      if (!Law::accepts(own))
+        return;
+      const Law  law(own);
+      const auto projection =
+        strain_projection(law, projection_for<Law>(kind), response);
+      if (frame == Frame::initial)
+        result = make_initial_frame_sweep<dim>(law, projection);
+      else if (kernel == KernelKind::quadratic)
+        result = make_spline_sweep<dim>(law, projection);
+      else
+        result = make_sweep<Linear<dim>>(law, projection);
     });
     if (!result)
       throw std::logic_error("no law " + name);
@@ -163,11 +131,13 @@ namespace limber
                      const std::vector<double> &,
                      Projection,
                      HourglassResponse,
-                     Frame);
+                     Frame,
+                     KernelKind);
   template std::unique_ptr<const StressUpdate<3>>
   make_stress_update(const std::string &,
                      const std::vector<double> &,
                      Projection,
                      HourglassResponse,
-                     Frame);
+                     Frame,
+                     KernelKind);
 } // namespace limber

@@ -297,16 +297,17 @@ namespace limber
   void
   ExplicitIntegrator<dim>::project_on_nodes(const Sum &sum)
   {
+    const NodalFields<dim> &vertices = nodes.vertices();
     for (auto &body : bodies)
       if (body->nodal_means)
         {
-          body->nodal_means->clear(nodes.active_nodes());
+          body->nodal_means->clear(vertices.active_nodes());
           sum(*body, body->nodal_means->data());
-          body->nodal_means->start_completion(nodes.node_plan());
+          body->nodal_means->start_completion(vertices.node_plan());
         }
     for (auto &body : bodies)
       if (body->nodal_means)
-        body->nodal_means->finish_completion(nodes.active_nodes());
+        body->nodal_means->finish_completion(vertices.active_nodes());
   }
 
 

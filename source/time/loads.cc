@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/geometry_info.h>
-
-#include <limber/interpolation/linear.h>
+#include <limber/interpolation/support.h>
 #include <limber/time/loads.h>
 
 namespace limber
 {
-  using dealii::GeometryInfo;
-
   namespace
   {
     template <int dim>
@@ -22,17 +18,17 @@ namespace limber
 
 
 
-    /** Natural coordinates of a point in its cell. */
+    /** The functions at the place of a point. */
     template <int dim>
-    dealii::Point<dim>
-    natural(const CellGeometry<dim> &cell,
-            const PointView<dim>    &points,
-            const std::size_t        p)
+    Support<dim>
+    support(const BackgroundGrid<dim> &grid,
+            const PointView<dim>      &points,
+            const std::size_t          p)
     {
-      dealii::Point<dim> xi;
+      std::array<double, dim> x;
       for (int d = 0; d < dim; ++d)
-        xi[d] = (points.place[d][p] - cell.origin[d]) * cell.inverse_edge[d];
-      return xi;
+        x[d] = points.place[d][p];
+      return support_at<dim>(grid.view(), points.cell[p], x);
     }
 
 
@@ -52,21 +48,6 @@ namespace limber
         for (int e = 0; e < dim; ++e)
           F[d][e] = points.deformation[d * dim + e][p];
       return invert(F);
-    }
-
-
-
-    /** grad N_i, 1/m. */
-    template <int dim>
-    dealii::Tensor<1, dim>
-    gradient(const CellGeometry<dim>  &cell,
-             const dealii::Point<dim> &xi,
-             const unsigned int        i)
-    {
-      auto result = GeometryInfo<dim>::d_linear_shape_function_gradient(xi, i);
-      for (int d = 0; d < dim; ++d)
-        result[d] *= cell.inverse_edge[d];
-      return result;
     }
   } // namespace
 
@@ -104,7 +85,7 @@ namespace limber
   ExternalLoads<dim>::reinit()
   {
     if (any())
-      forces.reinit(grid.n_nodes() * dim);
+      forces.reinit(grid.nodes().n() * dim);
     exchange_pieces();
   }
 
@@ -149,17 +130,10 @@ namespace limber
                            const std::size_t             p,
                            const dealii::Tensor<1, dim> &force)
   {
-    using Kernel        = Linear<dim>;
-    const auto &cell    = grid.geometry[points.cell[p]];
-    auto        weights = broadcast<typename Kernel::Nodes>(1.);
-    for (int d = 0; d < dim; ++d)
-      weights *= Kernel::weights(d,
-                                 (points.place[d][p] - cell.origin[d]) *
-                                   cell.inverse_edge[d]);
-    for (int i = 0; i < Kernel::n_nodes; ++i)
+    const Support<dim> at = support(grid, points, p);
+    for (int i = 0; i < at.n; ++i)
       for (int d = 0; d < dim; ++d)
-        forces[cell.node[i] / NodeLayout<dim>::stride * dim + d] +=
-          weights[i] * force[d];
+        forces[at.node[i] * dim + d] += at.value[i] * force[d];
   }
 
 
@@ -192,17 +166,15 @@ namespace limber
             -load.formula.value(position(points, p) + piece->arm, time) *
               piece->area_vector() :
             piece->area * load.formula.vector(piece->reference, time);
-        const CellGeometry<dim>     &cell = grid.geometry[points.cell[p]];
-        const dealii::Point<dim>     xi   = natural(cell, points, p);
-        const dealii::Tensor<1, dim> arm  = pull_back(points, p) * piece->arm;
-        for (unsigned int i = 0; i < cell.node.size(); ++i)
+        const Support<dim>           at  = support(grid, points, p);
+        const dealii::Tensor<1, dim> arm = pull_back(points, p) * piece->arm;
+        for (int i = 0; i < at.n; ++i)
           {
-            const double weight =
-              GeometryInfo<dim>::d_linear_shape_function(xi, i) +
-              gradient(cell, xi, i) * arm;
+            double weight = at.value[i];
             for (int d = 0; d < dim; ++d)
-              forces[cell.node[i] / NodeLayout<dim>::stride * dim + d] +=
-                weight * force[d];
+              weight += at.gradient[i][d] * arm[d];
+            for (int d = 0; d < dim; ++d)
+              forces[at.node[i] * dim + d] += weight * force[d];
           }
       }
   }
@@ -217,22 +189,18 @@ namespace limber
   {
     const unsigned int slot =
       remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
-    const double *const records = nodes.view().nodes;
     for (LoadedFace<dim> &face : faces)
       {
         const PointView<dim> points = face.body.points.view();
         for (const auto &[p, piece] : face.here())
           {
-            const CellGeometry<dim> &cell = grid.geometry[points.cell[p]];
-            const dealii::Point<dim> xi   = natural(cell, points, p);
-            dealii::Tensor<2, dim>   velocity_gradient;
-            for (unsigned int i = 0; i < cell.node.size(); ++i)
-              {
-                const auto slope = gradient(cell, xi, i);
-                for (int d = 0; d < dim; ++d)
-                  velocity_gradient[d] +=
-                    records[cell.node[i] + slot + d] * slope;
-              }
+            const Support<dim>     at = support(grid, points, p);
+            dealii::Tensor<2, dim> velocity_gradient;
+            for (int i = 0; i < at.n; ++i)
+              for (int d = 0; d < dim; ++d)
+                for (int e = 0; e < dim; ++e)
+                  velocity_gradient[d][e] +=
+                    nodes.record(at.node[i])[slot + d] * at.gradient[i][e];
             const dealii::Tensor<2, dim> change =
               step * velocity_gradient * pull_back(points, p);
             piece->arm += change * piece->arm;
@@ -258,7 +226,7 @@ namespace limber
       add_face_load(face, time);
 
     // As for the nodes themselves: hanging nodes give to their masters.
-    for (const HangingNode &hanging : grid.hanging_nodes)
+    for (const HangingNode &hanging : grid.nodes().hanging)
       for (int d = 0; d < dim; ++d)
         {
           double &from = forces[hanging.node * dim + d];

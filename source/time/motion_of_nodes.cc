@@ -16,7 +16,8 @@
  */
 namespace limber
 {
-  // Before points give anything to the nodes, whose records serve here.
+  // Before points give anything to the nodes: the records of those at the
+  // corners of cells serve here.
   template <int dim>
   void
   ExplicitIntegrator<dim>::control_chequerboards()
@@ -29,21 +30,25 @@ namespace limber
         const double share =
           std::min(strength * wave_speed * step / grid.smallest_edge,
                    1. / (1 << dim));
-        gather_chequerboards<dim>(nodes.owned_occupied_cells(),
-                                  nodes.view(),
+        NodalFields<dim> &vertices = nodes.vertices();
+        gather_chequerboards<dim>(vertices.owned_occupied_cells(),
+                                  vertices.view(),
                                   body->cell_sums->view());
         // A node in the middle of an edge has not all cells around it.
-        for (const HangingNode &hanging : grid.hanging_nodes)
-          std::fill_n(nodes.record(hanging.node), NodeLayout<dim>::stride, 0.);
-        sum_shared_nodes(0, n_chequerboard_slots<dim>);
-        for (const auto *const cells :
-             {&nodes.owned_occupied_cells(), &nodes.ghost_occupied_cells()})
+        for (const HangingNode &hanging : grid.vertices.hanging)
+          std::fill_n(vertices.record(hanging.node),
+                      NodeLayout<dim>::stride,
+                      0.);
+        vertices.start_sum(0, n_chequerboard_slots<dim>);
+        vertices.finish_sum();
+        for (const auto *const cells : {&vertices.owned_occupied_cells(),
+                                        &vertices.ghost_occupied_cells()})
           find_chequerboard_shifts<dim>(*cells,
-                                        nodes.view(),
+                                        vertices.view(),
                                         body->cell_sums->view(),
                                         share,
                                         body->cell_shift.data());
-        nodes.clear();
+        vertices.clear();
         lap(Verb::update_stress);
       }
   }

@@ -27,6 +27,7 @@ namespace limber
   {
     any_lost           = nodes.points_have_left() ? 1 : 0;
     any_entered_shared = nodes.has_entered_shared() ? 1 : 0;
+    any_entered_ghosts = nodes.has_entered_ghosts() ? 1 : 0;
     most_points        = 0;
     for (const auto &body : bodies)
       most_points += body->points.size();
@@ -39,6 +40,7 @@ namespace limber
                                     &largest_mass,
                                     &any_lost,
                                     &any_entered_shared,
+                                    &any_entered_ghosts,
                                     &most_points,
                                     &most_excess_batches};
         constexpr int n          = std::size(extremes);
@@ -112,9 +114,11 @@ namespace limber
   ExplicitIntegrator<dim>::reorganise()
   {
     stopwatch.start();
-    // The next step may be somewhat longer than the last one.
+    // The next step may be somewhat longer than the last one. A rank knows all
+    // functions of its own cells, but of those around only linear ones.
     const bool exchange =
-      parallel && travelled + 1.5 * displacement > travel_limit;
+      parallel && (travelled + 1.5 * displacement > travel_limit ||
+                   (grid.has_splines() && any_entered_ghosts > 0));
     // A sort costs about as much as the detours of n / 4 surplus batches. All
     // ranks sort in the same step, or each would wait while the others do.
     if (exchange)

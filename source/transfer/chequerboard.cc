@@ -35,7 +35,7 @@ namespace limber
         if (!(mass > 0))
           continue;
         const double mean =
-          sums.now[cell * CellSums<dim>::stride + CellSums<dim>::volumetric] /
+          sums.now[cell * sums.stride + sums.volumetric()] /
           mass;
         for (int a = 0; a < 1 << dim; ++a)
           {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/basis.h>
 #include <limber/interpolation/cell_means.h>
 #include <limber/transfer/add_to_nodes.h>
+#include <limber/transfer/give_to_splines.h>
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/sum_momentum.h>
 
@@ -9,32 +11,139 @@ namespace limber
   namespace
   {
     /** Momentum of the points of a batch, to the nodes of their cell. */
-    template <int dim, bool affine>
+    template <bool affine, int dim>
     __attribute__((always_inline)) inline void
-    remap_momentum(const PointView<dim>    &points,
-                   const CellBatch         &batch,
-                   const CellGeometry<dim> &cell,
-                   double *const            nodes)
+    remap_momentum(const Linear<dim>,
+                   const PointView<dim> &points,
+                   const CellBatch      &batch,
+                   const GridView<dim>  &grid)
     {
-      using Nodes = typename Linear<dim>::Nodes;
-      Nodes                  mass{};
-      std::array<Nodes, dim> momentum{};
+      using Nodes                   = typename Linear<dim>::Nodes;
+      const CellGeometry<dim> &cell = grid.cells[batch.cell];
+      Nodes                    mass{};
+      std::array<Nodes, dim>   momentum{};
       sum_momentum<dim, affine>(points, batch, cell, mass, momentum.data());
-      add_to_nodes<dim, NodeLayout<dim>::remapped>(cell, momentum, nodes);
+      add_to_nodes<dim, NodeLayout<dim>::remapped>(cell, momentum, grid.nodes);
     }
 
 
 
-    template <int dim, bool affine, bool remap, bool moves>
-    VelocitySummary
-    sweep(const PointView<dim> &points,
-          const GridView<dim>  &grid,
-          const TakeFromGrid   &what,
-          const CellSums<dim>  *sums)
+    template <bool affine, int dim>
+    __attribute__((always_inline)) inline void
+    remap_momentum(const Quadratic<dim>,
+                   const PointView<dim> &points,
+                   const CellBatch      &batch,
+                   const GridView<dim>  &grid)
     {
-      using Number = PointPack<dim>;
-      using Kernel = Linear<dim>;
-      using Layout = NodeLayout<dim>;
+      using Layout                   = NodeLayout<dim>;
+      const CellGeometry<dim> &cell  = grid.cells[batch.cell];
+      const SplineCell<dim>   &nodes = grid.splines[batch.cell];
+      using Sums                     = SplineSums<dim, Layout::remapped, dim>;
+      Sums of_batch;
+      for_each_pack<dim>(
+        batch, [&](const auto &lanes) __attribute__((always_inline)) {
+          const auto                      xi = lanes.natural(points, cell);
+          const SplineWeights<dim, false> weights(cell, nodes, xi);
+          Sums                            sums;
+          sums.clear();
+          give_momentum<dim, affine>(points,
+                                     cell,
+                                     nodes,
+                                     lanes,
+                                     xi,
+                                     weights.value,
+                                     Layout::remapped,
+                                     sums);
+          of_batch.take(sums, lanes.first == batch.begin);
+        });
+      of_batch.add_to_nodes(nodes, grid.nodes);
+    }
+
+
+
+    /**
+     * The affine velocity field C of the points of a pack for APIC: with
+     * linear functions the gradient of the velocity of the grid ...
+     */
+    template <int dim, class Lanes, class Nodal>
+    __attribute__((always_inline)) inline void
+    set_affine(const Linear<dim>,
+               const PointView<dim>                  &points,
+               const GridView<dim>                   &grid,
+               const std::uint32_t                    cell,
+               const Lanes                           &lanes,
+               const std::array<PointPack<dim>, dim> &xi,
+               const Nodal                           &nodal)
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          const auto gradient =
+            Linear<dim>::template gradient<PointPack<dim>>(
+              nodal.component(dim + d), xi);
+          for (int e = 0; e < dim; ++e)
+            lanes.store(gradient[e] * grid.cells[cell].inverse_edge[e],
+                        points.affine[d * dim + e]);
+        }
+    }
+
+
+
+    /**
+     * ... and with splines, where that would not keep angular momentum,
+     * C = B D^-1 with the moments B = sum N_i v_i (x_i - x) of the velocity
+     * and D = sum N_i (x_i - x) (x_i - x), which is diagonal (Jiang et al.
+     * 2015, sec. 5.3).
+     */
+    template <int dim, class Lanes, class Nodal>
+    inline void
+    set_affine(const Quadratic<dim>,
+               const PointView<dim>                  &points,
+               const GridView<dim>                   &grid,
+               const std::uint32_t                    cell,
+               const Lanes                           &lanes,
+               const std::array<PointPack<dim>, dim> &xi,
+               const Nodal &)
+    {
+      using Number                    = PointPack<dim>;
+      using Basis                     = Quadratic<dim>;
+      const CellGeometry<dim> &geometry = grid.cells[cell];
+      const SplineCell<dim>   &nodes    = grid.splines[cell];
+      const SplineWeights<dim, false> weights(geometry, nodes, xi);
+      for (int e = 0; e < dim; ++e)
+        {
+          const auto              places = Basis::places(nodes, e);
+          std::array<Number, dim> B{};
+          Number                  D{};
+          for (int i = 0; i < Basis::n_nodes; ++i)
+            {
+              const Number arm = places[Basis::power(i, e)] - xi[e];
+              const Number weight = arm * load<Number>(weights.value[i]);
+              D += weight * arm;
+              for (int d = 0; d < dim; ++d)
+                B[d] +=
+                  weight *
+                  grid.nodes[nodes.node[i] + NodeLayout<dim>::velocity + d];
+            }
+          // No arm is left to a point that lies in a side of the grid.
+          const Number inverse =
+            geometry.inverse_edge[e] / larger(D, broadcast<Number>(1e-30));
+          for (int d = 0; d < dim; ++d)
+            lanes.store(B[d] * inverse, points.affine[d * dim + e]);
+        }
+    }
+
+
+
+    template <class Basis, bool affine, bool remap, bool moves>
+    VelocitySummary
+    sweep(const PointView<Basis::dim> &points,
+          const GridView<Basis::dim>  &grid,
+          const TakeFromGrid          &what,
+          const CellSums<Basis::dim>  *sums)
+    {
+      constexpr int dim = Basis::dim;
+      using Number      = PointPack<dim>;
+      using Layout      = NodeLayout<dim>;
 
       Number speed_squared{}, displacement{}, removed{};
 
@@ -42,8 +151,8 @@ namespace limber
         points, [&](const CellBatch &batch) __attribute__((always_inline)) {
           const CellGeometry<dim> &cell = grid.cells[batch.cell];
           // velocity increment and, right behind it, the new velocity
-          const NodalCoefficients<dim, Layout::increment, 2 * dim> nodal(
-            cell, grid.nodes);
+          const NodalCoefficients<Basis, Layout::increment, 2 * dim> nodal(
+            grid, batch.cell);
 
           for_each_pack<dim>(
             batch, [&](const auto &lanes) __attribute__((always_inline)) {
@@ -56,22 +165,15 @@ namespace limber
                   const auto   grid_velocity = nodal.component(dim + d);
                   const Number flip =
                     lanes.load(points.velocity[d]) +
-                    Kernel::template value<Number>(nodal.component(d), xi);
+                    Basis::template value<Number>(nodal.component(d), xi);
                   Number velocity = flip;
                   if constexpr (affine)
-                    {
-                      velocity =
-                        Kernel::template value<Number>(grid_velocity, xi);
-                      const auto gradient =
-                        Kernel::template gradient<Number>(grid_velocity, xi);
-                      for (int e = 0; e < dim; ++e)
-                        lanes.store(gradient[e] * cell.inverse_edge[e],
-                                    points.affine[d * dim + e]);
-                    }
+                    velocity =
+                      Basis::template value<Number>(grid_velocity, xi);
                   else if (what.flip_share != 1.)
                     velocity +=
                       (1. - what.flip_share) *
-                      (Kernel::template value<Number>(grid_velocity, xi) -
+                      (Basis::template value<Number>(grid_velocity, xi) -
                        flip);
                   lanes.store(velocity, points.velocity[d]);
                   kept_squared += flip * flip;
@@ -79,8 +181,11 @@ namespace limber
                   if constexpr (moves)
                     shift[d] =
                       what.move *
-                      Kernel::template value<Number>(grid_velocity, xi);
+                      Basis::template value<Number>(grid_velocity, xi);
                 }
+              if constexpr (affine)
+                set_affine<dim>(
+                  Basis(), points, grid, batch.cell, lanes, xi, nodal);
               speed_squared = larger(speed_squared, lanes.only_active(squared));
               if (affine || what.flip_share != 1.)
                 removed += lanes.only_active(lanes.load(points.mass)) *
@@ -91,19 +196,19 @@ namespace limber
                     move_points<dim>(points, grid, batch.cell, lanes, shift);
                   displacement = larger(displacement, moved.displacement);
                   if (sums && moved.inside)
-                    CellGatherer<dim>(*sums).add(batch.cell,
+                    CellGatherer<Basis>(*sums).add(batch.cell,
                                                  moved.xi,
                                                  lanes.only_active(
                                                    lanes.load(points.mass)),
                                                  lanes.load(points.volumetric));
                   else if (sums)
-                    CellGatherer<dim>(*sums).add_one_by_one(
+                    CellGatherer<Basis>(*sums).add_one_by_one(
                       points, grid, lanes.first, lanes.first + lanes.n);
                 }
             });
 
           if constexpr (remap)
-            remap_momentum<dim, affine>(points, batch, cell, grid.nodes);
+            remap_momentum<affine>(Basis(), points, batch, grid);
         });
       return {maximum(speed_squared),
               maximum(displacement),
@@ -120,14 +225,18 @@ namespace limber
                  const TakeFromGrid   &what,
                  const CellSums<dim>  *sums)
   {
-    const auto choose = [&](const auto affine) {
+    const auto choose = [&](const auto basis, const auto affine) {
+      using Basis = std::decay_t<decltype(basis)>;
       return what.remap ?
-               sweep<dim, affine, true, false>(points, grid, what, sums) :
+               sweep<Basis, affine, true, false>(points, grid, what, sums) :
              what.move != 0 ?
-               sweep<dim, affine, false, true>(points, grid, what, sums) :
-               sweep<dim, affine, false, false>(points, grid, what, sums);
+               sweep<Basis, affine, false, true>(points, grid, what, sums) :
+               sweep<Basis, affine, false, false>(points, grid, what, sums);
     };
-    return what.affine ? choose(std::true_type()) : choose(std::false_type());
+    return with_basis(grid, [&](const auto basis) {
+      return what.affine ? choose(basis, std::true_type()) :
+                           choose(basis, std::false_type());
+    });
   }
 
 
@@ -138,7 +247,10 @@ namespace limber
                    const GridView<dim>  &grid,
                    const CellSums<dim>  &sums)
   {
-    CellGatherer<dim>(sums).add_one_by_one(points, grid, 0, points.size);
+    with_basis(grid, [&](const auto basis) {
+      CellGatherer<std::decay_t<decltype(basis)>>(sums).add_one_by_one(
+        points, grid, 0, points.size);
+    });
   }
 
 

@@ -3,6 +3,7 @@
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/points_to_grid.h>
+#include <limber/transfer/points_to_splines.h>
 #include <limber/transfer/sum_momentum.h>
 
 namespace limber
@@ -37,7 +38,7 @@ namespace limber
          const GiveToGrid        &what,
          const CellSums<dim>     *sums)
       {
-        const CellMeans<dim>                means(sums, batch.cell);
+        const CellMeans<Linear<dim>>        means(sums, batch.cell);
         const NodalMean<dim, kind>          nodal(what.nodal_pressure, cell);
         StressOperator<dim, kind, deviator> stress(cell,
                                                    what.projection,
@@ -270,6 +271,8 @@ namespace limber
                  const GiveToGrid     &what,
                  const CellSums<dim>  *sums)
   {
+    if (grid.splines != nullptr)
+      return points_to_splines(points, grid, what, sums);
     if (!what.force)
       return what.momentum ?
                choose_sums<dim, NoForce>(points, grid, what, sums) :

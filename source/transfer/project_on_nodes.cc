@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/basis.h>
 #include <limber/interpolation/batch_lanes.h>
 #include <limber/interpolation/nodal_means.h>
 #include <limber/transfer/project_on_nodes.h>
@@ -44,16 +45,17 @@ namespace limber
 
 
     /** The divergence of the velocity in slots from @p first on. */
-    template <int dim, unsigned int first>
+    template <class Basis, unsigned int first>
     void
-    sweep_divergence(const PointView<dim> &points,
-                     const GridView<dim>  &grid,
-                     double *const         records)
+    sweep_divergence(const PointView<Basis::dim> &points,
+                     const GridView<Basis::dim>  &grid,
+                     double *const                records)
     {
-      using Number = PointPack<dim>;
+      constexpr int dim = Basis::dim;
+      using Number      = PointPack<dim>;
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim>                 &cell = grid.cells[batch.cell];
-        const NodalCoefficients<dim, first, dim> velocity(cell, grid.nodes);
+        const NodalCoefficients<Basis, first, dim> velocity(grid, batch.cell);
         NodalSums<dim>                           sums;
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {
@@ -62,8 +64,7 @@ namespace limber
             for (int d = 0; d < dim; ++d)
               divergence +=
                 cell.inverse_edge[d] *
-                Linear<dim>::template gradient<Number>(velocity.component(d),
-                                                       xi)[d];
+                Basis::template gradient<Number>(velocity.component(d), xi)[d];
             for (int k = 0; k < lanes.n; ++k)
               sums.add(natural(points, cell, lanes.first + k),
                        points.mass[lanes.first + k],
@@ -84,10 +85,13 @@ namespace limber
                  double *const         records)
   {
     using Layout = NodeLayout<dim>;
-    if (remapped)
-      sweep_divergence<dim, Layout::remapped>(points, grid, records);
-    else
-      sweep_divergence<dim, Layout::velocity>(points, grid, records);
+    with_basis(grid, [&](const auto basis) {
+      using Basis = std::decay_t<decltype(basis)>;
+      if (remapped)
+        sweep_divergence<Basis, Layout::remapped>(points, grid, records);
+      else
+        sweep_divergence<Basis, Layout::velocity>(points, grid, records);
+    });
   }
 
 

@@ -2,7 +2,10 @@
 #ifndef limber_tests_support_projections_h
 #define limber_tests_support_projections_h
 
+#include <limber/interpolation/kernel.h>
 #include <limber/materials/projection.h>
+
+#include <vector>
 
 namespace limber
 {
@@ -15,6 +18,20 @@ namespace limber
                                               Projection::assumed_strain,
                                               Projection::node,
                                               Projection::hybrid};
+
+
+
+    /** Those that a kernel has. */
+    template <KernelKind kernel>
+    std::vector<Projection>
+    projections_of()
+    {
+      std::vector<Projection> result;
+      for (const Projection kind : all_projections)
+        if (kernel == KernelKind::linear || kind != Projection::assumed_strain)
+          result.push_back(kind);
+      return result;
+    }
 
 
 

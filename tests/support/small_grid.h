@@ -2,11 +2,14 @@
 #ifndef limber_tests_support_small_grid_h
 #define limber_tests_support_small_grid_h
 
+#include <limber/interpolation/basis.h>
+#include <limber/interpolation/kernel.h>
 #include <limber/points/point_view.h>
 #include <limber/transfer/grid_to_points.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <random>
@@ -77,15 +80,26 @@ namespace limber
 
 
 
+    template <int dim, KernelKind kernel>
+    using BasisOf = std::
+      conditional_t<kernel == KernelKind::quadratic, Quadratic<dim>, Linear<dim>>;
+
+
+
     /** Edges that differ in every direction show what is scaled by which. */
-    template <int dim>
+    template <int dim, KernelKind kernel = KernelKind::linear>
     class SmallGrid
     {
     public:
+      using Basis = BasisOf<dim, kernel>;
+      static constexpr bool has_splines = kernel == KernelKind::quadratic;
+      // of the cell with all that does not vanish in it
+      static constexpr int n_in_cell = Basis::n_nodes;
+
       explicit SmallGrid(const std::int64_t n_per_edge = 5)
       {
         const Vector<3> lowers{{-0.3, 0.2, 1.1}}, edges{{0.5, 0.25, 0.4}};
-        n_cells = n_nodes = 1;
+        n_cells = n_nodes = n_vertices = 1;
         for (int d = 0; d < dim; ++d)
           {
             lower[d]             = lowers[d];
@@ -94,7 +108,8 @@ namespace limber
             bins.inverse_edge[d] = 1 / edge[d];
             bins.n[d]            = n_per_edge;
             n_cells *= n_per_edge;
-            n_nodes *= n_per_edge + 1;
+            n_vertices *= n_per_edge + 1;
+            n_nodes *= n_per_edge + (has_splines ? 2 : 1);
           }
         for (std::size_t c = 0; c < n_cells; ++c)
           {
@@ -115,12 +130,30 @@ namespace limber
               }
             cells.push_back(cell);
             bin_table.push_back(c);
+            if constexpr (has_splines)
+              {
+                SplineCell<dim> spline;
+                for (int i = 0; i < n_in_cell; ++i)
+                  {
+                    std::int64_t node = 0;
+                    for (int d = dim - 1; d >= 0; --d)
+                      node =
+                        node * (n_per_edge + 2) + at[d] + Basis::power(i, d);
+                    spline.node[i] = node * NodeLayout<dim>::stride;
+                  }
+                for (int d = 0; d < dim; ++d)
+                  {
+                    spline.lower[d] = at[d] == 0 ? 1 : 0.5;
+                    spline.upper[d] = at[d] == n_per_edge - 1 ? 1 : 0.5;
+                  }
+                splines.push_back(spline);
+              }
           }
         bins.table = bin_table.data();
         nodes.resize(n_nodes * NodeLayout<dim>::stride);
         occupied.resize(n_cells);
-        means.resize(n_nodes * NodalMeanLayout::stride);
-        sums.resize(n_cells * CellSums<dim>::stride);
+        means.resize(n_vertices * NodalMeanLayout::stride);
+        sums.resize(n_cells * n_in_cell);
         next_sums.resize(sums.size());
         turn_of_sums.resize(n_cells, turn);
       }
@@ -132,6 +165,8 @@ namespace limber
         result.cells    = cells.data();
         result.nodes    = nodes.data();
         result.bins     = bins;
+        if constexpr (has_splines)
+          result.splines = splines.data();
         result.occupied = occupied.data();
         result.entered  = &entered;
         result.left     = &left;
@@ -146,6 +181,7 @@ namespace limber
         result.next    = next_sums.data();
         result.turn_of = turn_of_sums.data();
         result.turn    = turn + 1;
+        result.stride  = n_in_cell;
         return result;
       }
 
@@ -156,7 +192,7 @@ namespace limber
       {
         std::fill(means.begin(), means.end(), 0.);
         sum(means.data());
-        for (std::size_t n = 0; n < n_nodes; ++n)
+        for (std::size_t n = 0; n < n_vertices; ++n)
           {
             double *const record = &means[n * NodalMeanLayout::stride];
             if (record[NodalMeanLayout::mass] > 0)
@@ -184,15 +220,23 @@ namespace limber
       {
         Vector<dim> result;
         std::size_t rest = node;
-        for (int d = 0; d < dim; ++d, rest /= bins.n[d - 1] + 1)
-          result[d] = lower[d] + edge[d] * (rest % (bins.n[d] + 1));
+        for (int d = 0; d < dim; ++d)
+          {
+            const std::int64_t n     = bins.n[d] + (has_splines ? 2 : 1);
+            const std::int64_t index = rest % n;
+            rest /= n;
+            double at = index;
+            if (has_splines) // in the sides and at the centres of cells
+              at = index == 0 ? 0 : (index == n - 1 ? bins.n[d] : index - 0.5);
+            result[d] = lower[d] + edge[d] * at;
+          }
         return result;
       }
 
       std::size_t
       node_number(const std::uint32_t cell, const int i) const
       {
-        return cells[cell].node[i] / NodeLayout<dim>::stride;
+        return Basis::nodes_of(*this, cell).node[i] / NodeLayout<dim>::stride;
       }
 
       /** N_i at a place, of node i of a cell. */
@@ -214,7 +258,7 @@ namespace limber
         Vector<dim> result;
         for (int d = 0; d < dim; ++d)
           {
-            result[d] = ((i >> d & 1) ? 1 : -1) / edge[d];
+            result[d] = factor(cell, i, x, d, true);
             for (int e = 0; e < dim; ++e)
               if (e != d)
                 result[d] *= factor(cell, i, x, e);
@@ -228,9 +272,10 @@ namespace limber
         std::fill(nodes.begin(), nodes.end(), 0.);
       }
 
-      std::size_t                    n_cells, n_nodes;
+      std::size_t                    n_cells, n_nodes, n_vertices;
       Vector<dim>                    lower, edge;
       std::vector<CellGeometry<dim>> cells;
+      std::vector<SplineCell<dim>>   splines;
       std::vector<double>            nodes, means, sums, next_sums;
       std::vector<std::uint32_t>     turn_of_sums;
       std::uint32_t                  turn = 1; // of the present sums
@@ -244,10 +289,53 @@ namespace limber
       factor(const std::uint32_t cell,
              const int           i,
              const Vector<dim>  &x,
-             const int           d) const
+             const int           d,
+             const bool          derivative = false) const
       {
-        const double xi = (x[d] - cells[cell].origin[d]) / edge[d];
-        return (i >> d & 1) ? xi : 1 - xi;
+        if constexpr (has_splines)
+          {
+            const int at =
+              std::lround((cells[cell].origin[d] - lower[d]) / edge[d]);
+            return spline(at + Basis::power(i, d), 2, x[d], d, derivative);
+          }
+        else
+          {
+            const double xi = (x[d] - cells[cell].origin[d]) / edge[d];
+            if (derivative)
+              return ((i >> d & 1) ? 1 : -1) / edge[d];
+            return (i >> d & 1) ? xi : 1 - xi;
+          }
+      }
+
+      /**
+       * B-splines by the recursion of Cox and de Boor on the faces of the
+       * cells, the first and the last threefold as knots.
+       */
+      double
+      spline(const int    i,
+             const int    degree,
+             const double x,
+             const int    d,
+             const bool   derivative) const
+      {
+        const auto knot = [&](const int k) {
+          return lower[d] +
+                 edge[d] * std::clamp<std::int64_t>(k - 2, 0, bins.n[d]);
+        };
+        if (degree == 0)
+          return knot(i) <= x && x < knot(i + 1) ? 1 : 0;
+        double     result = 0;
+        const auto add    = [&](const int    first,
+                             const double numerator,
+                             const double sign) {
+          const double width = knot(first + degree) - knot(first);
+          if (width > 0)
+            result += (derivative ? sign * degree : numerator) / width *
+                      spline(first, degree - 1, x, d, false);
+        };
+        add(i, x - knot(i), 1);
+        add(i + 1, knot(i + 1 + degree) - x, -1);
+        return result;
       }
     };
 
@@ -352,14 +440,14 @@ namespace limber
      * point, some more than two packs; stragglers that are stored away from
      * the other points of their cell; on request in no order at all.
      */
-    template <int dim>
+    template <int dim, KernelKind kernel>
     SmallPoints<dim>
-    random_points(const SmallGrid<dim> &grid,
-                  Random               &random,
-                  const bool            deviator   = true,
-                  const unsigned int    n_history  = 0,
-                  const int             volumetric = -1,
-                  const bool            shuffled   = false)
+    random_points(const SmallGrid<dim, kernel> &grid,
+                  Random                       &random,
+                  const bool                    deviator   = true,
+                  const unsigned int            n_history  = 0,
+                  const int                     volumetric = -1,
+                  const bool                    shuffled   = false)
     {
       std::vector<std::uint32_t> owner;
       for (std::uint32_t c = 0; c < grid.n_cells; ++c)

@@ -103,6 +103,15 @@ namespace limber
 
 
 
+  /** A pack of eight from one of its lower lanes and one of its upper ones. */
+  inline Pack<8>
+  joined(const Pack<4> &lower, const Pack<4> &upper)
+  {
+    return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+
+
+
   /** The lanes of a wide pack from @p first on that fill a narrow one. */
   template <class Narrow, class Wide>
   inline Narrow

@@ -9,28 +9,19 @@
 #include <deal.II/fe/mapping_cartesian.h>
 
 #include <limber/grid/grid_view.h>
-#include <limber/grid/shared_records.h>
+#include <limber/grid/node_table.h>
 #include <limber/problem/problem.h>
 
-#include <unordered_map>
 #include <vector>
 
 namespace limber
 {
-  /** A node that the mesh constrains to others: u = sum weight u_master. */
-  struct HangingNode
-  {
-    std::uint32_t                                 node; // local number
-    std::vector<std::pair<std::uint32_t, double>> masters;
-  };
-
-
-
   /**
    * The background grid: a distributed mesh of rectangular cells, one scalar
-   * Q1 space for everything on nodes and one DGQ0 space for everything in
-   * cells. A node's or a cell's local number is that of its degree of freedom
-   * on this rank: owned ones first, then ghosts. From these the plain tables
+   * Q1 space for everything on vertices and one DGQ0 space for everything in
+   * cells, which also numbers the splines of quadratic kernels. A vertex's or a
+   * cell's local number is that of its degree of freedom on this rank: owned
+   * ones first, then ghosts. From these the plain tables
    * of the sweeps are built, anew after each change of the mesh; the degrees
    * of freedom themselves are not kept.
    */
@@ -58,18 +49,22 @@ namespace limber
       return cell_numbers[cell->active_cell_index()];
     }
 
-    unsigned int
-    n_owned_nodes() const
+    /** The nodes whose functions interpolate: vertices, or of splines. */
+    const NodeTable<dim> &
+    nodes() const
     {
-      return nodes_owned;
+      return has_splines() ? spline_nodes : vertices;
     }
 
-    /** Owned and ghost. */
-    unsigned int
-    n_nodes() const
+    bool
+    has_splines() const
     {
-      return sides_of_node.size();
+      return description.kernel == KernelKind::quadratic;
     }
+
+    /** For sweeps that need no records of nodes. */
+    GridView<dim>
+    view() const;
 
     unsigned int
     n_owned_cells() const
@@ -96,23 +91,6 @@ namespace limber
       return ghost_cells[cell - n_owned_cells()];
     }
 
-    /**
-     * Slots [first, last) of records of nodes: hanging nodes hand what has
-     * been added to them on to their masters, and are left with zero.
-     */
-    void
-    give_to_masters(double      *records,
-                    unsigned int stride,
-                    unsigned int first,
-                    unsigned int last) const;
-
-    /** The same: hanging nodes get the values that follow from masters. */
-    void
-    take_from_masters(double      *records,
-                      unsigned int stride,
-                      unsigned int first,
-                      unsigned int last) const;
-
     const GridDescription<dim>                        description;
     const MPI_Comm                                    communicator;
     dealii::parallel::distributed::Triangulation<dim> triangulation;
@@ -120,16 +98,15 @@ namespace limber
 
     // Tables, by local number
     std::vector<CellGeometry<dim>> geometry;
-    std::vector<HangingNode>       hanging_nodes;
     std::vector<std::uint32_t>     bin_table;
     BinView<dim>                   bins;
-    // Bit s is set for nodes on side s of the box.
-    std::vector<std::uint8_t> sides_of_node;
-    // Places of these nodes only
-    std::unordered_map<std::uint32_t, dealii::Point<dim>> boundary_places;
     double smallest_edge = 0; // m, over all ranks
-    // Nodes and cells that other ranks hold as well
-    SharedRecords shared_nodes, shared_cells;
+    // Cells that other ranks hold as well
+    SharedRecords  shared_cells;
+    NodeTable<dim> vertices; // of cells
+    // Only where the kernel is quadratic
+    NodeTable<dim>               spline_nodes;
+    std::vector<SplineCell<dim>> splines; // by cell
 
   private:
     struct Numbering;
@@ -145,7 +122,7 @@ namespace limber
     void
     complete_boundary();
 
-    unsigned int               nodes_owned = 0, cells_owned = 0;
+    unsigned int               cells_owned = 0;
     std::vector<std::uint32_t> cell_numbers; // by active cell index
     std::vector<CellElsewhere> ghost_cells;
   };

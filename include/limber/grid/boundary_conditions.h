@@ -49,7 +49,7 @@ namespace limber
   private:
     bool
     act(unsigned int                  side,
-        const BackgroundGrid<dim>    &grid,
+        const NodeTable<dim>         &nodes,
         std::uint32_t                 node,
         double                        time,
         dealii::Tensor<1, dim>       &velocity,

@@ -51,6 +51,20 @@ namespace limber
 
 
   /**
+   * The nodes of the quadratic splines that do not vanish in a cell, as
+   * offsets of their records; the first direction runs fastest.
+   */
+  template <int dim>
+  struct SplineCell
+  {
+    std::array<std::uint32_t, dim == 2 ? 9 : 27> node;
+    // Of each direction: 1/2, or 1 where the cell ends at a side of the grid.
+    std::array<double, dim> lower, upper;
+  };
+
+
+
+  /**
    * From a place to the cell that holds it: a table over equal bins, as fine
    * as the finest cell. Places outside the table give invalid_cell.
    */
@@ -85,6 +99,8 @@ namespace limber
     const CellGeometry<dim> *cells = nullptr;
     double                  *nodes = nullptr;
     BinView<dim>             bins;
+    // By cell, where the functions of the nodes are splines; else null
+    const SplineCell<dim> *splines = nullptr;
 
     // Cells that a point has entered and that were empty before; their nodes
     // have to join the active ones.
@@ -98,9 +114,9 @@ namespace limber
 
   /**
    * Sums over the points of one body in each cell, from which the Hu-Washizu
-   * averages (DGQ0) follow: the mass, its moments with the monomials xi, eta,
-   * xi eta, zeta, ... but the last one, and in the slot of that the sum of m
-   * times the volumetric variable.
+   * averages (DGQ0) follow: the mass, its moments with the monomials of the
+   * basis (xi, eta, xi eta, zeta, ... of linear functions) but the last one,
+   * and in the slot of that the sum of m times the volumetric variable.
    *
    * Whoever moves the points gathers the sums of their new places, so that
    * those of the present places are complete when a step begins. Nobody sets
@@ -110,14 +126,20 @@ namespace limber
   template <int dim>
   struct CellSums
   {
-    static constexpr unsigned int mass       = 0;
-    static constexpr unsigned int volumetric = (1 << dim) - 1;
-    static constexpr unsigned int stride     = 1 << dim;
+    static constexpr unsigned int mass = 0;
 
     const double  *now     = nullptr; // of the present places, complete
     double        *next    = nullptr; // of the places after the step
     std::uint32_t *turn_of = nullptr; // last in which a cell got sums
     std::uint32_t  turn    = 0;       // in which the next sums are gathered
+    unsigned int   stride  = 1 << dim; // as many as a cell has nodes
+
+    /** The slot of the sum of m times the volumetric variable. */
+    unsigned int
+    volumetric() const
+    {
+      return stride - 1;
+    }
 
     /** Whether the next sums of a cell are what this turn has gathered. */
     bool
@@ -153,15 +175,14 @@ namespace limber
 
   /**
    * The record of a cell in sums for the mean of the deviatoric strain e of one
-   * body: the mass, and m e by components (n_deviator). They take no more than
-   * the room of CellSums, so that CellFields holds them as well.
+   * body: the mass, and m e by components (n_deviator).
    */
   template <int dim>
   struct DeviatorSums
   {
     static constexpr unsigned int mass   = 0;
     static constexpr unsigned int strain = 1;
-    static constexpr unsigned int stride = CellSums<dim>::stride;
+    static constexpr unsigned int stride = 1 << dim;
   };
 
 

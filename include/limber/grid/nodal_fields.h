@@ -5,6 +5,8 @@
 #include <limber/base/lazy_array.h>
 #include <limber/grid/background_grid.h>
 
+#include <memory>
+
 namespace limber
 {
   /**
@@ -19,6 +21,7 @@ namespace limber
   public:
     using Layout = NodeLayout<dim>;
 
+    /** Of the nodes of the grid's kernel. */
     explicit NodalFields(const BackgroundGrid<dim> &grid);
 
     /** Adopt a changed mesh: all records zero, nothing active. */
@@ -47,6 +50,25 @@ namespace limber
      */
     void
     agree_on_sums();
+
+    /**
+     * The vertices of the same cells, for means around them and for what else
+     * is linear in a cell: the object itself where the kernel is linear.
+     */
+    NodalFields &
+    vertices()
+    {
+      return of_vertices ? *of_vertices : *this;
+    }
+    const NodalFields &
+    vertices() const
+    {
+      return of_vertices ? *of_vertices : *this;
+    }
+
+    /** Whether points have entered ghost cells. */
+    bool
+    has_entered_ghosts() const;
 
     /** Whether points have entered cells that such an agreement lacks. */
     bool
@@ -122,7 +144,7 @@ namespace limber
     bool
     owns(const std::uint32_t node) const
     {
-      return node < grid.n_owned_nodes();
+      return node < table.n_owned;
     }
 
     double *
@@ -138,8 +160,16 @@ namespace limber
     }
 
     const BackgroundGrid<dim> &grid;
+    const NodeTable<dim>      &table;
 
   private:
+    NodalFields(const BackgroundGrid<dim> &grid, const NodeTable<dim> &table);
+
+    template <class Work>
+    void
+    for_each_node(std::uint32_t cell, const Work &work) const;
+    void
+    set_entered(const std::vector<std::uint32_t> &cells);
     void
     activate(std::uint32_t cell);
     void
@@ -158,7 +188,7 @@ namespace limber
 
     // What a node has to do with other ranks, directly or through masters
     static constexpr std::uint8_t is_shared               = 1;
-    static constexpr std::uint8_t is_corner_of_owned_cell = 2;
+    static constexpr std::uint8_t is_of_owned_cell = 2;
     static constexpr std::uint8_t may_be_added_to         = 4; // as agreed
 
     LazyArray<double>          values;
@@ -170,6 +200,8 @@ namespace limber
     std::vector<std::uint32_t> entered, active, active_boundary;
     LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
     bool                       left = false;
+
+    std::unique_ptr<NodalFields> of_vertices; // where these are others
   };
 
 
@@ -183,7 +215,9 @@ namespace limber
   class CellFields
   {
   public:
-    explicit CellFields(const BackgroundGrid<dim> &grid);
+    /** With so many sums in a cell; see CellSums. */
+    explicit CellFields(const BackgroundGrid<dim> &grid,
+                        unsigned int               stride = 1 << dim);
 
     void
     reinit();
@@ -195,7 +229,7 @@ namespace limber
     const double *
     record(const std::uint32_t cell) const
     {
-      return now.data() + std::size_t(cell) * CellSums<dim>::stride;
+      return now.data() + std::size_t(cell) * stride;
     }
 
     /**
@@ -208,12 +242,14 @@ namespace limber
     void
     finish_completion();
 
+    const unsigned int stride;
+
   private:
     const BackgroundGrid<dim> &grid;
     LazyArray<double>          now, next;
     LazyArray<std::uint32_t>   turn_of;
     std::uint32_t              turn = 1;
-    RecordExchange             exchange{CellSums<dim>::stride};
+    RecordExchange             exchange{stride};
   };
 } // namespace limber
 

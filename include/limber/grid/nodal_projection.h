@@ -3,7 +3,8 @@
 #define limber_grid_nodal_projection_h
 
 #include <limber/base/lazy_array.h>
-#include <limber/grid/background_grid.h>
+#include <limber/grid/grid_view.h>
+#include <limber/grid/node_table.h>
 
 namespace limber
 {
@@ -17,7 +18,7 @@ namespace limber
   class NodalProjection
   {
   public:
-    explicit NodalProjection(const BackgroundGrid<dim> &grid);
+    explicit NodalProjection(const NodeTable<dim> &table);
 
     /** Adopt a changed mesh: all records zero. */
     void
@@ -65,9 +66,9 @@ namespace limber
       return records.data() + std::size_t(node) * Layout::stride;
     }
 
-    const BackgroundGrid<dim> &grid;
-    LazyArray<double>          records;
-    RecordExchange             exchange{Layout::stride};
+    const NodeTable<dim> &table;
+    LazyArray<double>     records;
+    RecordExchange        exchange{Layout::stride};
   };
 } // namespace limber
 

@@ -172,9 +172,10 @@ namespace limber
    * Monomial coefficients of some components of the nodal records of a cell:
    * @p n_components slots from @p first on.
    */
-  template <int dim, unsigned int first, unsigned int n_components>
+  template <class Basis, unsigned int first, unsigned int n_components>
   class NodalCoefficients
   {
+    static constexpr int          dim   = Basis::dim;
     static constexpr unsigned int width =
       n_components <= 2 ? 2 : (n_components <= 4 ? 4 : 8);
     // Lanes beyond the wanted slots must not reach beyond the record.
@@ -187,13 +188,16 @@ namespace limber
 
   public:
     __attribute__((always_inline))
-    NodalCoefficients(const CellGeometry<dim> &cell, const double *const nodes)
+    NodalCoefficients(const GridView<dim> &grid, const std::uint32_t cell)
     {
-      std::array<Lanes, 1 << dim> a;
-      for (int i = 0; i < 1 << dim; ++i)
-        a[i] = load<Lanes>(nodes + cell.node[i] + start);
-      Linear<dim>::to_monomials(a);
-      for (int i = 0; i < 1 << dim; ++i)
+      const auto                       &nodes = Basis::nodes_of(grid, cell);
+      std::array<Lanes, Basis::n_nodes> a;
+#pragma GCC unroll 27
+      for (int i = 0; i < Basis::n_nodes; ++i)
+        a[i] = load<Lanes>(grid.nodes + nodes.node[i] + start);
+      Basis::to_monomials(a, nodes);
+#pragma GCC unroll 27
+      for (int i = 0; i < Basis::n_nodes; ++i)
         store(a[i], &coefficients[i * width]);
     }
 
@@ -246,7 +250,7 @@ namespace limber
   private:
     // Rows within lines of the cache: what has just been stored across two of
     // them cannot be loaded before it is there.
-    alignas(64) std::array<double, width << dim> coefficients;
+    alignas(64) std::array<double, width * Basis::n_nodes> coefficients;
   };
 } // namespace limber
 

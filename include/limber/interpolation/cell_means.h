@@ -8,19 +8,20 @@ namespace limber
 {
   /**
    * The means over the points of a body in a cell, weighted by mass, of the
-   * monomials in natural coordinates: lane k belongs to the product of the
-   * coordinates whose bits are set in k. The last lane, which no derivative
-   * of a multilinear function needs, has the mean of the volumetric variable.
+   * monomials in natural coordinates, in the order of the basis. In place of
+   * the last one, which no derivative of its functions needs, stands the mean
+   * of the volumetric variable.
    */
-  template <int dim>
+  template <class Basis>
   class CellMeans
   {
   public:
-    using Nodes = typename Linear<dim>::Nodes;
+    static constexpr int dim     = Basis::dim;
+    static constexpr int n_nodes = Basis::n_nodes;
 
     /** Not to be asked where nothing is projected and there are no sums. */
     CellMeans(const CellSums<dim> *const sums, const std::uint32_t cell)
-      : record(sums ? sums->now + cell * CellSums<dim>::stride : nullptr)
+      : record(sums ? sums->now + std::size_t(cell) * n_nodes : nullptr)
       , inverse_mass(sums ? 1 / record[CellSums<dim>::mass] : 0)
     {}
 
@@ -33,7 +34,7 @@ namespace limber
     double
     volumetric() const
     {
-      return record[CellSums<dim>::volumetric] * inverse_mass;
+      return record[n_nodes - 1] * inverse_mass;
     }
 
     /** The mean of the derivative with respect to natural coordinate d of a
@@ -42,12 +43,13 @@ namespace limber
     double
     derivative(const Coefficients &c, const int d) const
     {
-      double sum = 0;
-#pragma GCC unroll 8
-      for (int k = 0; k < 1 << dim; ++k)
-        if (k >> d & 1 && k != 1 << d)
-          sum += c(k) * record[k ^ (1 << d)];
-      return c(1 << d) + inverse_mass * sum;
+      constexpr auto stride = Basis::stride;
+      double         sum    = 0;
+#pragma GCC unroll 27
+      for (int k = 0; k < n_nodes; ++k)
+        if (Basis::power(k, d) > 0 && k != stride(d))
+          sum += Basis::power(k, d) * c(k) * record[k - stride(d)];
+      return c(stride(d)) + inverse_mass * sum;
     }
 
     /** The same of all components of a vector field, as lanes, for each d. */
@@ -55,26 +57,37 @@ namespace limber
     auto
     derivatives_of(const VectorField &c) const
     {
+      constexpr auto stride = Basis::stride;
       std::array<typename VectorField::Components, dim> result;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
           typename VectorField::Components sum{};
-#pragma GCC unroll 8
-          for (int k = 0; k < 1 << dim; ++k)
-            if (k >> d & 1 && k != 1 << d)
-              sum += c.components(k) * record[k ^ (1 << d)];
-          result[d] = c.components(1 << d) + inverse_mass * sum;
+#pragma GCC unroll 27
+          for (int k = 0; k < n_nodes; ++k)
+            if (Basis::power(k, d) > 0 && k != stride(d))
+              sum += c.components(k) *
+                     (Basis::power(k, d) * record[k - stride(d)]);
+          result[d] = c.components(stride(d)) + inverse_mass * sum;
         }
       return result;
     }
 
-    /** Lane k: the same of monomial k, times a factor. */
-    Nodes
+    /** Lane k: the same of the linear monomial k, times a factor. */
+    auto
     derivatives(const int d, const double factor) const
     {
+      using Nodes = typename Basis::Nodes;
       return (factor * inverse_mass) *
-             Linear<dim>::derivatives(load<Nodes>(record), d);
+             Basis::derivatives(load<Nodes>(record), d);
+    }
+
+    /** The mean of the derivative in direction d of monomial k alone. */
+    double
+    derivative_of(const int k, const int d) const
+    {
+      const int n = Basis::power(k, d);
+      return n > 0 ? n * (record[k - Basis::stride(d)] * inverse_mass) : 0;
     }
 
   private:
@@ -85,11 +98,13 @@ namespace limber
 
 
   /** Adds points that have moved to the sums of the cells they are in now. */
-  template <int dim>
+  template <class Basis>
   class CellGatherer
   {
   public:
-    using Number = PointPack<dim>;
+    static constexpr int dim     = Basis::dim;
+    static constexpr int n_nodes = Basis::n_nodes;
+    using Number                 = PointPack<dim>;
 
     explicit CellGatherer(const CellSums<dim> &sums)
       : sums(sums)
@@ -102,13 +117,25 @@ namespace limber
         const Number                  &mass,
         const Number                  &volumetric) const
     {
-      double *const record = sums.next + cell * CellSums<dim>::stride;
-      Number        total  = sums_over_lanes(products(xi, mass, volumetric));
-      if (rarely(sums.is_open(cell)))
-        total += load<Number>(record);
-      else
+      constexpr int width  = pack_width<Number>;
+      double *const record = sums.next + std::size_t(cell) * n_nodes;
+      const bool    opened = rarely(sums.is_open(cell));
+      if (!opened)
         sums.turn_of[cell] = sums.turn;
-      store(total, record);
+      const auto    added    = products(xi, mass, volumetric);
+      constexpr int in_packs = n_nodes / width * width;
+#pragma GCC unroll 4
+      for (int k = 0; k < in_packs; k += width)
+        {
+          std::array<Number, width> some;
+          std::copy_n(&added[k], width, some.begin());
+          Number total = sums_over_lanes(some);
+          if (opened)
+            total += load<Number>(record + k);
+          store(total, record + k);
+        }
+      for (int k = in_packs; k < n_nodes; ++k)
+        record[k] = sum(added[k]) + (opened ? record[k] : 0);
     }
 
     /** The points [begin, end), wherever they are now. */
@@ -138,17 +165,29 @@ namespace limber
   private:
     /** What points add to the slots, each from one with a factor less. */
     template <class T>
-    __attribute__((always_inline)) static std::array<T, 1 << dim>
+    __attribute__((always_inline)) static std::array<T, n_nodes>
     products(const std::array<T, dim> &xi, const T &mass, const T &volumetric)
     {
-      std::array<T, 1 << dim> result;
+      std::array<T, n_nodes> result;
       result[0] = mass;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-        for (int k = 0; k < 1 << d; ++k)
-          result[k | 1 << d] = result[k] * xi[d];
-      result[CellSums<dim>::volumetric] = mass * volumetric;
+#pragma GCC unroll 27
+        for (int k = Basis::stride(d); k < n_nodes; ++k)
+          if (Basis::power(k, d) > 0 && last_direction(k) == d)
+            result[k] = result[k - Basis::stride(d)] * xi[d];
+      result[n_nodes - 1] = mass * volumetric;
+      return result;
+    }
+
+    /** The last of those in which a monomial has a power. */
+    static constexpr int
+    last_direction(const int k)
+    {
+      int result = 0;
+      for (int d = 1; d < dim; ++d)
+        if (Basis::power(k, d) > 0)
+          result = d;
       return result;
     }
 

@@ -20,11 +20,33 @@ namespace limber
    * lanes: the nodal values become the coefficients of the monomials 1, xi,
    * eta, xi eta, ..., once per batch, and are evaluated at many points.
    */
-  template <int dim>
+  template <int dimension>
   struct Linear
   {
+    static constexpr int dim     = dimension;
     static constexpr int n_nodes = 1 << dim;
     using Nodes                  = Pack<n_nodes>;
+
+    /** Of the nodes and monomials of a cell: neighbours in direction d. */
+    static constexpr int
+    stride(const int d)
+    {
+      return 1 << d;
+    }
+
+    /** The end at which node i is, or the power of monomial i, along d. */
+    static constexpr int
+    power(const int i, const int d)
+    {
+      return i >> d & 1;
+    }
+
+    template <class Grid>
+    static const CellGeometry<dim> &
+    nodes_of(const Grid &grid, const std::uint32_t cell)
+    {
+      return grid.cells[cell];
+    }
 
     /** Lanes of the nodes at the upper end in direction d: +1, others -1. */
     static Nodes
@@ -54,7 +76,7 @@ namespace limber
      */
     template <class Number>
     static void
-    to_monomials(std::array<Number, n_nodes> &a)
+    to_monomials(std::array<Number, n_nodes> &a, const CellGeometry<dim> & = {})
     {
       for (int d = 0; d < dim; ++d)
         for (int i = 0; i < n_nodes; ++i)

@@ -53,10 +53,12 @@ namespace limber
 
 
   /** B of a cell for one velocity field, times the step. */
-  template <int dim, Projection kind, class Coefficients>
+  template <class Basis, Projection kind, class Coefficients>
   class StrainOperator
   {
   public:
+    static constexpr int dim = Basis::dim;
+
     /**
      * @p velocity is a NodalCoefficients::VectorField of m/s; @p nodal is
      * S div v, 1/s; @p step in s.
@@ -64,7 +66,7 @@ namespace limber
     __attribute__((always_inline))
     StrainOperator(const Coefficients         &velocity,
                    const CellGeometry<dim>    &cell,
-                   const CellMeans<dim>       &means,
+                   const CellMeans<Basis>     &means,
                    const NodalMean<dim, kind> &nodal,
                    const StrainProjection     &projection,
                    const double                step)
@@ -110,7 +112,7 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         {
           const auto derivatives =
-            Linear<dim>::template gradient<Number>(velocity(d), xi);
+            Basis::template gradient<Number>(velocity(d), xi);
 #pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
             motion.gradient[d][e] = scale[e] * derivatives[e];
@@ -163,7 +165,7 @@ namespace limber
     // Components as lanes: what is summed up here belongs to a cell, not to a
     // point, and eight points a cell would have to pay for it one by one.
     __attribute__((always_inline)) void
-    set_hourglass(const CellMeans<dim>   &means,
+    set_hourglass(const CellMeans<Basis>   &means,
                   const StrainProjection &projection)
     {
       Components scales{};
@@ -283,7 +285,7 @@ namespace limber
     /** @p nodal is the pressure S p, Pa. */
     StressOperator(const CellGeometry<dim>    &cell,
                    const StrainProjection     &projection,
-                   const CellMeans<dim>       &means,
+                   const CellMeans<Linear<dim>> &means,
                    const NodalMean<dim, kind> &nodal)
       : cell(cell)
       , projection(projection)
@@ -550,7 +552,7 @@ namespace limber
 
     const CellGeometry<dim>    &cell;
     const StrainProjection     &projection;
-    const CellMeans<dim>       &means;
+    const CellMeans<Linear<dim>> &means;
     const NodalMean<dim, kind> &nodal;
 
     Number                                        pressure{};

@@ -8,6 +8,7 @@
 
 #include <string>
 #include <tuple>
+#include <variant>
 #include <vector>
 
 namespace limber
@@ -21,6 +22,23 @@ namespace limber
                              NeoHookean,
                              NewtonianFluid<false>,
                              NewtonianFluid<true>>;
+
+
+
+  namespace internal
+  {
+    template <class List>
+    struct OneOf;
+
+    template <class... Law>
+    struct OneOf<std::tuple<Law...>>
+    {
+      using type = std::variant<Law...>;
+    };
+  } // namespace internal
+
+  /** An object of one of these laws. */
+  using AnyLaw = typename internal::OneOf<LawList>::type;
 
 
 

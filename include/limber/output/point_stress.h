@@ -103,7 +103,7 @@ namespace limber
     void
     sum_around_nodes();
 
-    const NodalFields<dim> &nodes;
+    const NodalFields<dim> &nodes;     // vertices
     const ExchangePlan      plan;      // all cells that ranks share
     CellFields<dim>         sums;      // mass, m J, m J p
     CellFields<dim>         deviators; // of m J sigma, where averaged

@@ -6,6 +6,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
+#include <limber/interpolation/kernel.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/projection.h>
 #include <limber/problem/shapes.h>
@@ -133,6 +134,7 @@ namespace limber
   {
     dealii::Point<dim>            lower, upper;
     std::array<unsigned int, dim> cells{};
+    KernelKind                    kernel = KernelKind::linear;
 
     /** Edge of a cell, m. */
     double

@@ -45,10 +45,6 @@ namespace limber
     explicit_steps
   };
 
-  enum class KernelKind
-  {
-    linear
-  };
 
   const Words<ShapeKind> &
   shape_words();

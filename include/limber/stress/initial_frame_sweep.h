@@ -44,8 +44,8 @@ namespace limber
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
         // new velocity, then the re-mapped one
-        const NodalCoefficients<dim, Layout::velocity, 2 * dim> nodal(
-          cell, grid.nodes);
+        const NodalCoefficients<Linear<dim>, Layout::velocity, 2 * dim> nodal(
+          grid, batch.cell);
         const auto velocity = nodal.field(what.remapped ? dim : 0);
         const auto deformed = [&](const auto &lanes) {
           return deform(points, cell, velocity, what.step, lanes);

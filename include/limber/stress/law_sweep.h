@@ -7,11 +7,12 @@
 
 namespace limber
 {
-  /** StressUpdate for one law and one projection of its strain. */
-  template <int dim, class Law, Projection kind>
-  class LawSweep final : public LawOnPoints<dim, Law>
+  /** StressUpdate for one basis, one law and one projection of its strain. */
+  template <class Basis, class Law, Projection kind>
+  class LawSweep final : public LawOnPoints<Basis::dim, Law>
   {
-    using Base = LawOnPoints<dim, Law>;
+    static constexpr int dim = Basis::dim;
+    using Base               = LawOnPoints<dim, Law>;
     using Base::inverse_density;
     using Base::law;
     using Base::state_of;
@@ -115,7 +116,7 @@ namespace limber
     struct Batch
     {
       using Layout = NodeLayout<dim>;
-      using Nodal  = NodalCoefficients<dim, Layout::velocity, 2 * dim>;
+      using Nodal  = NodalCoefficients<Basis, Layout::velocity, 2 * dim>;
       using Field  = typename Nodal::VectorField;
 
       __attribute__((always_inline)) Batch(const LawSweep      &sweep,
@@ -125,7 +126,7 @@ namespace limber
                                            const StressSweep   &what)
         : cell_number(batch.cell)
         , cell(grid.cells[batch.cell])
-        , nodal(cell, grid.nodes)
+        , nodal(grid, batch.cell)
         , strained(nodal.field(what.remapped ? dim : 0))
         , means(sums, batch.cell)
         , shift(what.shift ? what.shift_share * what.shift[batch.cell] : 0)
@@ -144,10 +145,10 @@ namespace limber
       const CellGeometry<dim>               &cell;
       const Nodal                            nodal; // new, then re-mapped
       const Field                            strained;
-      const CellMeans<dim>                   means;
+      const CellMeans<Basis>                 means;
       const double                           shift;
       const NodalMean<dim, kind>             divergence;
-      const StrainOperator<dim, kind, Field> strain;
+      const StrainOperator<Basis, kind, Field> strain;
     };
 
 
@@ -209,15 +210,14 @@ namespace limber
             for (int d = 0; d < dim; ++d)
               shift[d] =
                 what.move *
-                Linear<dim>::template value<Number>(batch.nodal.component(d),
-                                                    xi);
+                Basis::template value<Number>(batch.nodal.component(d), xi);
             const auto moved =
               move_points<dim>(points, grid, batch.cell_number, lanes, shift);
             displacement = larger(displacement, moved.displacement);
             // without means over cells the sums may still be wanted
             if (needs_cell_means(kind) || (projected && sums))
               {
-                const CellGatherer<dim> gatherer(*sums);
+                const CellGatherer<Basis> gatherer(*sums);
                 if (moved.inside)
                   gatherer.add(batch.cell_number,
                                moved.xi,

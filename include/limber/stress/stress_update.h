@@ -2,6 +2,7 @@
 #ifndef limber_stress_stress_update_h
 #define limber_stress_stress_update_h
 
+#include <limber/interpolation/kernel.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
@@ -136,8 +137,9 @@ namespace limber
 
   /**
    * The sweep for the law of that name; @p values in the order of its
-   * entries. In the initial frame the law is elastic and the projection 'none',
-   * 'cell' or 'assumed_strain'.
+   * entries. In the initial frame the law is elastic, the kernel linear and
+   * the projection 'none', 'cell' or 'assumed_strain'; the last is for linear
+   * kernels alone.
    */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
@@ -145,7 +147,8 @@ namespace limber
                      const std::vector<double> &values,
                      Projection                 kind,
                      HourglassResponse          response,
-                     Frame                      frame = Frame::current);
+                     Frame                      frame  = Frame::current,
+                     KernelKind kernel = KernelKind::linear);
 } // namespace limber
 
 #endif

@@ -216,6 +216,7 @@ namespace limber
 
     double any_lost            = 0;
     double any_entered_shared  = 0;
+    double any_entered_ghosts  = 0;
     double most_points         = 0; // on one rank
     double most_excess_batches = 0; // on one rank, see below
     double fastest_node        = 0; // cells in this step

@@ -200,7 +200,7 @@ namespace limber
       using Layout = NodeLayout<dim>;
       BackgroundGrid<dim> grid(unit_box<dim>(), MPI_COMM_WORLD);
       refine_corner(grid);
-      ASSERT_GT(dealii::Utilities::MPI::sum(grid.hanging_nodes.size(),
+      ASSERT_GT(dealii::Utilities::MPI::sum(grid.vertices.hanging.size(),
                                             MPI_COMM_WORLD),
                 0u);
       const auto       places = places_of_nodes(grid);
@@ -260,7 +260,7 @@ namespace limber
       for (const auto &[node, place] : places)
         nodes.record(node)[Layout::velocity] = linear(place);
       nodes.interpolate_hanging();
-      for (const HangingNode &hanging : grid.hanging_nodes)
+      for (const HangingNode &hanging : grid.vertices.hanging)
         {
           bool all_known = true;
           for (const auto &[master, weight] : hanging.masters)
@@ -317,7 +317,7 @@ namespace limber
             points.push_back(point);
           }
 
-      NodalProjection<dim> projection(grid);
+      NodalProjection<dim> projection(grid.vertices);
       const auto           project = [&](const auto &quantity) {
         projection.clear(nodes.active_nodes());
         for (const Point &point : points)
@@ -354,7 +354,7 @@ namespace limber
 
       // A cleared record is clear, hanging nodes of empty cells included.
       nodes.interpolate_hanging();
-      for (std::uint32_t n = 0; n < grid.n_nodes(); ++n)
+      for (std::uint32_t n = 0; n < grid.vertices.n(); ++n)
         nodes.record(n)[NodeLayout<dim>::velocity] = 1;
       nodes.interpolate_hanging();
       nodes.clear();

@@ -192,8 +192,9 @@ TYPED_TEST(LinearFunctions, CoefficientsAreThoseOfTheSlotsAskedFor)
   for (double &value : grid.nodes)
     value = this->random();
 
-  const auto &cell  = grid.cells[grid.n_cells - 1];
-  const auto  check = [&](const auto &nodal, const unsigned int slot, int c) {
+  const std::uint32_t number = grid.n_cells - 1;
+  const auto         &cell   = grid.cells[number];
+  const auto          check = [&](const auto &nodal, const unsigned int slot, int c) {
     std::array<double, 1 << dim> a;
     for (int i = 0; i < 1 << dim; ++i)
       a[i] = grid.nodes[cell.node[i] + slot];
@@ -201,12 +202,13 @@ TYPED_TEST(LinearFunctions, CoefficientsAreThoseOfTheSlotsAskedFor)
     for (int k = 0; k < 1 << dim; ++k)
       EXPECT_EQ(nodal.component(c)(k), a[k]);
   };
-  const NodalCoefficients<dim, Layout::velocity, 2 * dim> late(
-    cell, grid.nodes.data());
-  const NodalCoefficients<dim, Layout::increment, 2 * dim> early(
-    cell, grid.nodes.data());
-  const NodalCoefficients<dim, Layout::remapped, dim> last(cell,
-                                                           grid.nodes.data());
+  using Kernel = Linear<dim>;
+  const NodalCoefficients<Kernel, Layout::velocity, 2 * dim>  late(grid.view(),
+                                                                  number);
+  const NodalCoefficients<Kernel, Layout::increment, 2 * dim> early(grid.view(),
+                                                                    number);
+  const NodalCoefficients<Kernel, Layout::remapped, dim>      last(grid.view(),
+                                                              number);
   for (int c = 0; c < 2 * dim; ++c)
     {
       check(late, Layout::velocity + c, c);

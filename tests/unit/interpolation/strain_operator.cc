@@ -7,16 +7,21 @@
 #include <support/projections.h>
 #include <support/small_grid.h>
 
+#include <cmath>
+
 using namespace limber;
 using namespace limber::testing_support;
 
 namespace
 {
-  template <int dimension, Projection projection_kind>
+  template <int        dimension,
+            Projection projection_kind,
+            KernelKind kernel_kind = KernelKind::linear>
   struct Case
   {
-    static constexpr int        dim  = dimension;
-    static constexpr Projection kind = projection_kind;
+    static constexpr int        dim    = dimension;
+    static constexpr Projection kind   = projection_kind;
+    static constexpr KernelKind kernel = kernel_kind;
   };
 
 
@@ -28,6 +33,8 @@ namespace
     static constexpr int        dim  = Case::dim;
     static constexpr Projection kind = Case::kind;
     using Layout                     = NodeLayout<dim>;
+    using Grid                       = SmallGrid<dim, Case::kernel>;
+    using Basis                      = typename Grid::Basis;
 
     /** B v at every point, from the velocities in the records of the nodes. */
     std::vector<MotionIncrement<dim, double>>
@@ -42,14 +49,14 @@ namespace
       for (std::size_t p = 0; p < points.size; ++p)
         {
           const auto &cell = grid.cells[points.cell[p]];
-          const NodalCoefficients<dim, Layout::velocity, dim> velocities(
-            cell, grid.nodes.data());
+          const NodalCoefficients<Basis, Layout::velocity, dim> velocities(
+            grid.view(), points.cell[p]);
           const auto                 velocity = velocities.field(0);
           const NodalMean<dim, kind> nodal(divergence, cell);
-          const StrainOperator<dim, kind, std::decay_t<decltype(velocity)>> B(
+          const StrainOperator<Basis, kind, std::decay_t<decltype(velocity)>> B(
             velocity,
             cell,
-            CellMeans<dim>(&sums, points.cell[p]),
+            CellMeans<Basis>(&sums, points.cell[p]),
             nodal,
             projection_of(kind),
             1.);
@@ -69,9 +76,11 @@ namespace
         value = random();
     }
 
-    Random         random;
-    SmallGrid<dim> grid;
+    Random random;
+    Grid   grid;
   };
+
+  constexpr KernelKind quadratic = KernelKind::quadratic;
 
   using Cases = testing::Types<Case<2, Projection::none>,
                                Case<2, Projection::cell>,
@@ -86,7 +95,19 @@ namespace
                                Case<3, Projection::cell_full>,
                                Case<3, Projection::assumed_strain>,
                                Case<3, Projection::node>,
-                               Case<3, Projection::hybrid>>;
+                               Case<3, Projection::hybrid>,
+                               Case<2, Projection::none, quadratic>,
+                               Case<2, Projection::cell, quadratic>,
+                               Case<2, Projection::cell_shear, quadratic>,
+                               Case<2, Projection::cell_full, quadratic>,
+                               Case<2, Projection::node, quadratic>,
+                               Case<2, Projection::hybrid, quadratic>,
+                               Case<3, Projection::none, quadratic>,
+                               Case<3, Projection::cell, quadratic>,
+                               Case<3, Projection::cell_shear, quadratic>,
+                               Case<3, Projection::cell_full, quadratic>,
+                               Case<3, Projection::node, quadratic>,
+                               Case<3, Projection::hybrid, quadratic>>;
   TYPED_TEST_SUITE(Strain, Cases);
 } // namespace
 
@@ -200,10 +221,11 @@ TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
   std::vector<Sums> sums(this->grid.n_cells);
   for (std::size_t p = 0; p < points.size; ++p)
     {
-      Sums       &sum  = sums[points.cell[p]];
-      const auto &cell = this->grid.cells[points.cell[p]];
+      Sums       &sum = sums[points.cell[p]];
+      const auto &nodes =
+        TestFixture::Basis::nodes_of(this->grid, points.cell[p]);
       Matrix<dim> L{};
-      for (int i = 0; i < 1 << dim; ++i)
+      for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
         {
           const auto G =
             this->grid.gradient(points.cell[p], i, own.position(p));
@@ -211,7 +233,7 @@ TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
             for (int e = 0; e < dim; ++e)
               L[d][e] +=
                 G[e] *
-                this->grid.nodes[cell.node[i] + NodeLayout<dim>::velocity + d];
+                this->grid.nodes[nodes.node[i] + NodeLayout<dim>::velocity + d];
         }
       for (int d = 0; d < dim; ++d)
         {
@@ -250,29 +272,39 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
 {
   constexpr int dim = TestFixture::dim;
   using Layout      = typename TestFixture::Layout;
+  using Basis       = typename TestFixture::Basis;
+  constexpr int n   = Basis::n_nodes;
   for (int across = 0; across < dim; ++across)
     {
+      const auto mirrored = [&](const int i) {
+        const int last = Basis::stride(1) - 1; // of the nodes along an edge
+        return i + (last - 2 * Basis::power(i, across)) * Basis::stride(across);
+      };
       // one cell with a few points, and its mirror image
       CellGeometry<dim> cell;
+      SplineCell<dim>   spline;
       for (int d = 0; d < dim; ++d)
         {
           cell.origin[d]       = 0;
           cell.inverse_edge[d] = 1 + 0.5 * d;
+          spline.lower[d] = spline.upper[d] = 0.5;
         }
       for (int i = 0; i < 1 << dim; ++i)
         cell.node[i] = i * Layout::stride;
-      std::vector<double> nodes((1 << dim) * Layout::stride);
+      for (int i = 0; i < int(spline.node.size()); ++i)
+        spline.node[i] = i * Layout::stride;
+      std::vector<double> nodes(n * Layout::stride);
       for (double &value : nodes)
         value = this->random();
       auto mirrored_nodes = nodes;
-      for (int i = 0; i < 1 << dim; ++i)
+      for (int i = 0; i < n; ++i)
         for (int d = 0; d < dim; ++d)
-          mirrored_nodes[(i ^ 1 << across) * Layout::stride + Layout::velocity +
-                         d] = (d == across ? -1 : 1) *
-                              nodes[i * Layout::stride + Layout::velocity + d];
+          mirrored_nodes[mirrored(i) * Layout::stride + Layout::velocity + d] =
+            (d == across ? -1 : 1) *
+            nodes[i * Layout::stride + Layout::velocity + d];
 
       std::vector<std::array<double, dim>> places(5), mirrored_places;
-      std::vector<double> sums(1 << dim), mirrored_sums(1 << dim);
+      std::vector<double> sums(n), mirrored_sums(n);
       // means of the divergence around the nodes, of whatever neighbours do
       constexpr auto      stride = NodalMeanLayout::stride;
       std::vector<double> means(stride << dim), mirrored_means(means.size());
@@ -286,36 +318,39 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
             x = this->random(0, 1);
           mirrored_places.push_back(xi);
           mirrored_places.back()[across] = 1 - xi[across];
-          for (int k = 0; k < (1 << dim) - 1; ++k)
+          for (int k = 0; k < n - 1; ++k)
             {
-              double monomial = 1, mirrored = 1;
-              for (int d = 0; d < dim; ++d)
-                if (k >> d & 1)
-                  {
-                    monomial *= xi[d];
-                    mirrored *= mirrored_places.back()[d];
-                  }
-              sums[k] += monomial;
-              mirrored_sums[k] += mirrored;
+              const auto monomial = [&](const std::array<double, dim> &at) {
+                double result = 1;
+                for (int d = 0; d < dim; ++d)
+                  result *= std::pow(at[d], Basis::power(k, d));
+                return result;
+              };
+              sums[k] += monomial(xi);
+              mirrored_sums[k] += monomial(mirrored_places.back());
             }
         }
 
-      const auto strain = [&](const std::vector<double>     &records,
+      const auto strain = [&](std::vector<double>           &records,
                               const std::vector<double>     &moments,
                               const std::vector<double>     &divergence,
                               const std::array<double, dim> &xi) {
         CellSums<dim> view;
         view.now = moments.data();
-        const NodalCoefficients<dim, Layout::velocity, dim> velocities(
-          cell, records.data());
+        GridView<dim> grid;
+        grid.cells   = &cell;
+        grid.splines = &spline;
+        grid.nodes   = records.data();
+        const NodalCoefficients<Basis, Layout::velocity, dim> velocities(grid,
+                                                                         0);
         const auto                              velocity = velocities.field(0);
         const NodalMean<dim, TestFixture::kind> nodal(divergence.data(), cell);
-        const StrainOperator<dim,
+        const StrainOperator<Basis,
                              TestFixture::kind,
                              std::decay_t<decltype(velocity)>>
                                      B(velocity,
             cell,
-            CellMeans<dim>(&view, 0),
+            CellMeans<Basis>(&view, 0),
             nodal,
             projection_of(TestFixture::kind),
             1.);

@@ -149,8 +149,8 @@ TYPED_TEST(Sweep, UpdatesEveryPointAsTheLawSays)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<dim, Law, Projection::none>;
-  using Averaged    = LawSweep<dim, Law, Projection::cell>;
+  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
   using Layout      = NodeLayout<dim>;
   for (const auto &law : samples<Law>())
     for (int variant = 0; variant < 16; ++variant)
@@ -239,7 +239,7 @@ TYPED_TEST(Sweep, WhatLiesBehindThePointsDoesNotMatter)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Averaged    = LawSweep<dim, Law, Projection::cell>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
   for (const auto &law : samples<Law>())
     for (const double behind : {0., -7., 1e300})
       {
@@ -279,8 +279,8 @@ TYPED_TEST(Sweep, HomogeneousMotionIsNotAffectedByProjection)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<dim, Law, Projection::none>;
-  using Averaged    = LawSweep<dim, Law, Projection::cell>;
+  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
   for (const auto &law : samples<Law>())
     for (const double size : {0., 10.})
       {
@@ -319,7 +319,7 @@ TYPED_TEST(Sweep, RelaxationKeepsTheMean)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Averaged    = LawSweep<dim, Law, Projection::cell>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
   for (const auto &law : samples<Law>())
     for (const double relaxation : {0., 0.25, 1.})
       {
@@ -376,8 +376,8 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<dim, Law, Projection::none>;
-  using Averaged    = LawSweep<dim, Law, Projection::cell>;
+  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
   const auto law    = samples<Law>().front();
   this->random_motion();
   for (const bool projected : {false, true})
@@ -424,8 +424,8 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
           auto gathered = this->grid.next_sums;
           for (std::uint32_t cell = 0; cell < this->grid.n_cells; ++cell)
             if (!sums.is_open(cell))
-              std::fill_n(&gathered[cell * CellSums<dim>::stride],
-                          CellSums<dim>::stride,
+              std::fill_n(&gathered[cell << dim],
+                          1 << dim,
                           0.);
           this->grid.gather(moved.view());
           for (std::size_t k = 0; k < gathered.size(); ++k)
@@ -443,7 +443,7 @@ TYPED_TEST(Sweep, SummariesAreSumsOverPoints)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<dim, Law, Projection::none>;
+  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
   for (const auto &law : samples<Law>())
     {
       auto                own    = this->stressed_points(law);
@@ -574,17 +574,17 @@ TYPED_TEST(Sweep, DeviatoricHistoryTendsToTheMeanOfTheCell)
       for (const auto &law : samples<Law>())
         for (const double share : {0.3, 1.})
           {
-            expect(LawSweep<dim, Law, Projection::cell_shear>(
+            expect(LawSweep<Linear<dim>, Law, Projection::cell_shear>(
                      law, {Projection::cell_shear}),
                    law,
                    2,
                    share);
-            expect(LawSweep<dim, Law, Projection::hybrid>(law,
+            expect(LawSweep<Linear<dim>, Law, Projection::hybrid>(law,
                                                           {Projection::hybrid}),
                    law,
                    2,
                    share);
-            expect(LawSweep<dim, Law, Projection::cell_full>(
+            expect(LawSweep<Linear<dim>, Law, Projection::cell_full>(
                      law, {Projection::cell_full}),
                    law,
                    0,

@@ -13,11 +13,21 @@ using namespace limber::testing_support;
 
 namespace
 {
-  template <class Dimension>
+  template <int dimension, KernelKind kernel_kind>
+  struct Case
+  {
+    static constexpr int        dim    = dimension;
+    static constexpr KernelKind kernel = kernel_kind;
+  };
+
+
+
+  template <class Case>
   class GridToPoints : public testing::Test
   {
   public:
-    static constexpr int dim = Dimension::value;
+    static constexpr int dim = Case::dim;
+    using Grid               = SmallGrid<dim, Case::kernel>;
     using Layout             = NodeLayout<dim>;
 
     /** Values at the nodes of a linear field a + A x, from a slot on. */
@@ -42,13 +52,15 @@ namespace
       return result;
     }
 
-    Random         random;
-    SmallGrid<dim> grid;
+    Random random;
+    Grid   grid;
   };
 
-  using Dimensions = testing::Types<std::integral_constant<int, 2>,
-                                    std::integral_constant<int, 3>>;
-  TYPED_TEST_SUITE(GridToPoints, Dimensions);
+  using Cases = testing::Types<Case<2, KernelKind::linear>,
+                               Case<3, KernelKind::linear>,
+                               Case<2, KernelKind::quadratic>,
+                               Case<3, KernelKind::quadratic>>;
+  TYPED_TEST_SUITE(GridToPoints, Cases);
 } // namespace
 
 
@@ -149,7 +161,7 @@ TYPED_TEST(GridToPoints, RemapIsTheDirectSum)
       grid_to_points<dim>(points, this->grid.view(), what, nullptr);
 
       for (std::size_t p = 0; p < points.size; ++p)
-        for (int i = 0; i < 1 << dim; ++i)
+        for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
           {
             const auto cell = points.cell[p];
             const auto x    = own.position(p);

@@ -160,7 +160,7 @@ TYPED_TEST(Hourglass, ResistanceIsThatOfTheFormula)
       const double h =
         *std::min_element(this->grid.edge.begin(), this->grid.edge.end());
       const double mass =
-        this->grid.sums[c * CellSums<dim>::stride + CellSums<dim>::mass];
+        this->grid.sums[(c << dim) + CellSums<dim>::mass];
       for (int i = 0; i < 1 << dim; ++i)
         for (int d = 0; d < dim; ++d)
           EXPECT_NEAR(this->record(

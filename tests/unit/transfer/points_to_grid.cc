@@ -13,12 +13,22 @@ using namespace limber::testing_support;
 
 namespace
 {
-  template <class Dimension>
+  template <int dimension, KernelKind kernel_kind>
+  struct Case
+  {
+    static constexpr int        dim    = dimension;
+    static constexpr KernelKind kernel = kernel_kind;
+  };
+
+
+
+  template <class Case>
   class PointsToGrid : public testing::Test
   {
   public:
-    static constexpr int dim = Dimension::value;
+    static constexpr int dim = Case::dim;
     using Layout             = NodeLayout<dim>;
+    using Grid               = SmallGrid<dim, Case::kernel>;
 
     /** The sums as the textbook has them, point by point, node by node. */
     std::vector<double>
@@ -27,7 +37,7 @@ namespace
       const auto          points = own.view();
       std::vector<double> result(grid.nodes.size());
       for (std::size_t p = 0; p < points.size; ++p)
-        for (int i = 0; i < 1 << dim; ++i)
+        for (int i = 0; i < Grid::n_in_cell; ++i)
           {
             const auto          cell   = points.cell[p];
             const auto          x      = own.position(p);
@@ -69,13 +79,15 @@ namespace
           << "node " << k / Layout::stride << ", slot " << k % Layout::stride;
     }
 
-    Random         random;
-    SmallGrid<dim> grid;
+    Random random;
+    Grid   grid;
   };
 
-  using Dimensions = testing::Types<std::integral_constant<int, 2>,
-                                    std::integral_constant<int, 3>>;
-  TYPED_TEST_SUITE(PointsToGrid, Dimensions);
+  using Cases = testing::Types<Case<2, KernelKind::linear>,
+                               Case<3, KernelKind::linear>,
+                               Case<2, KernelKind::quadratic>,
+                               Case<3, KernelKind::quadratic>>;
+  TYPED_TEST_SUITE(PointsToGrid, Cases);
 } // namespace
 
 
@@ -176,7 +188,7 @@ TYPED_TEST(PointsToGrid, TotalsAreKept)
   constexpr int dim = TestFixture::dim;
   using Layout      = NodeLayout<dim>;
   for (const bool affine : {false, true})
-    for (const Projection kind : all_projections)
+    for (const Projection kind : projections_of<TypeParam::kernel>())
       {
         auto       own    = random_points<dim>(this->grid, this->random);
         const auto points = own.view();

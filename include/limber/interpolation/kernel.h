@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_kernel_h
+#define limber_interpolation_kernel_h
+
+namespace limber
+{
+  /** The functions of the nodes: a word for each type of basis (basis.h). */
+  enum class KernelKind
+  {
+    linear,   // Q1 shape functions
+    quadratic // quadratic B-splines
+  };
+} // namespace limber
+
+#endif

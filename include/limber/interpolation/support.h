@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_support_h
+#define limber_interpolation_support_h
+
+#include <limber/interpolation/basis.h>
+
+namespace limber
+{
+  /**
+   * The nodes whose functions do not vanish at a place, whatever the basis:
+   * for what is done seldom, or at few points. Sweeps over all points have
+   * faster ways.
+   */
+  template <int dim>
+  struct Support
+  {
+    static constexpr int most = Quadratic<dim>::n_nodes;
+
+    int                                       n = 0; // of nodes
+    std::array<std::uint32_t, most>           node;  // local numbers
+    std::array<double, most>                  value; // N_i
+    std::array<std::array<double, dim>, most> gradient; // of N_i, 1/m
+  };
+
+
+
+  namespace internal
+  {
+    /** One-dimensional values and slopes of the functions of a cell. */
+    template <int dim>
+    struct Factors
+    {
+      std::array<double, 3> value, slope;
+    };
+
+    template <int dim>
+    Factors<dim>
+    factors(const Linear<dim>, const CellGeometry<dim> &, int, const double xi)
+    {
+      return {{{1 - xi, xi}}, {{-1, 1}}};
+    }
+
+    template <int dim>
+    Factors<dim>
+    factors(const Quadratic<dim>,
+            const SplineCell<dim> &nodes,
+            const int              d,
+            const double           xi)
+    {
+      const auto w = Quadratic<dim>::weights(nodes, d, xi);
+      return {w.value, w.slope};
+    }
+  } // namespace internal
+
+
+
+  /**
+   * At a place @p x in a cell, or near it: the functions are continued. On
+   * request without gradients.
+   */
+  template <int dim, bool gradients = true>
+  Support<dim>
+  support_at(const GridView<dim>           &grid,
+             const std::uint32_t            cell,
+             const std::array<double, dim> &x)
+  {
+    return with_basis(grid, [&](const auto basis) {
+      using Basis                         = std::decay_t<decltype(basis)>;
+      const CellGeometry<dim> &geometry   = grid.cells[cell];
+      const auto              &nodes      = Basis::nodes_of(grid, cell);
+      std::array<internal::Factors<dim>, dim> w;
+      for (int d = 0; d < dim; ++d)
+        w[d] = internal::factors(basis,
+                                 nodes,
+                                 d,
+                                 (x[d] - geometry.origin[d]) *
+                                   geometry.inverse_edge[d]);
+      Support<dim> result;
+      result.n = Basis::n_nodes;
+#pragma GCC unroll 27
+      for (int i = 0; i < Basis::n_nodes; ++i)
+        {
+          const auto value = [&](const int e) {
+            return w[e].value[Basis::power(i, e)];
+          };
+          result.node[i]  = nodes.node[i] / NodeLayout<dim>::stride;
+          result.value[i] = value(0) * value(1);
+          if constexpr (dim == 3)
+            result.value[i] *= value(2);
+          if constexpr (gradients)
+            for (int d = 0; d < dim; ++d)
+              {
+                result.gradient[i][d] =
+                  geometry.inverse_edge[d] * w[d].slope[Basis::power(i, d)];
+                for (int e = 0; e < dim; ++e)
+                  if (e != d)
+                    result.gradient[i][d] *= value(e);
+              }
+        }
+      return result;
+    });
+  }
+} // namespace limber
+
+#endif

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/spline_nodes.h>
+#include <limber/interpolation/quadratic.h>
+
+#include <algorithm>
+#include <map>
+
+namespace limber
+{
+  namespace
+  {
+    /**
+     * Numbers the nodes. A node is known by a cell and where it lies in that:
+     * in the middle, or in a face, an edge, a corner in the sides of the grid.
+     * Such a place has the digits 0, 1, 2 in base three, one for each
+     * direction: lower side, between, upper side.
+     */
+    template <int dim>
+    class Numbers
+    {
+    public:
+      using Basis = Quadratic<dim>;
+
+      explicit Numbers(const BackgroundGrid<dim> &grid)
+        : grid(grid)
+        , node_of_cell(grid.n_cells())
+      {
+        add_cells(0, grid.n_owned_cells());
+        nodes.n_owned = n_numbers;
+        add_cells(grid.n_owned_cells(), grid.n_cells());
+        nodes.sides.assign(n_numbers, 0);
+        for (const auto &[key, node] : in_sides)
+          find_side(key.first, key.second, node);
+        share();
+      }
+
+      std::vector<SplineCell<dim>>
+      cells() const
+      {
+        std::vector<SplineCell<dim>> result(grid.n_cells());
+        for (std::uint32_t cell = 0; cell < result.size(); ++cell)
+          {
+            SplineCell<dim> &spline = result[cell];
+            for (int d = 0; d < dim; ++d)
+              {
+                spline.lower[d] = ends_at(cell, d, 0) ? 1 : 0.5;
+                spline.upper[d] = ends_at(cell, d, 2) ? 1 : 0.5;
+              }
+            for (int i = 0; i < Basis::n_nodes; ++i)
+              {
+                const std::uint32_t node = node_at(cell, i);
+                spline.node[i]           = node == unknown_node ?
+                                             unknown_node :
+                                             node * NodeLayout<dim>::stride;
+              }
+          }
+        return result;
+      }
+
+      NodeTable<dim> nodes;
+
+    private:
+      using Key = std::pair<std::uint32_t, int>; // cell, place
+
+      static constexpr int middle = Basis::n_nodes / 2;
+
+      void
+      add_cells(const std::uint32_t begin, const std::uint32_t end)
+      {
+        for (std::uint32_t cell = begin; cell < end; ++cell)
+          node_of_cell[cell] = n_numbers++;
+        for (std::uint32_t cell = begin; cell < end; ++cell)
+          for (const int place : places_in_sides(cell))
+            in_sides[{cell, place}] = n_numbers++;
+      }
+
+      /** Whether the cell ends at the lower (0) or upper (2) side along d. */
+      bool
+      ends_at(const std::uint32_t cell, const int d, const int end) const
+      {
+        const CellGeometry<dim> &geometry = grid.geometry[cell];
+        const double             edge     = 1 / geometry.inverse_edge[d];
+        return end == 0 ?
+                 geometry.origin[d] - grid.description.lower[d] < 0.5 * edge :
+                 grid.description.upper[d] - geometry.origin[d] < 1.5 * edge;
+      }
+
+      std::vector<int>
+      places_in_sides(const std::uint32_t cell) const
+      {
+        std::vector<int> result;
+        for (int place = 0; place < Basis::n_nodes; ++place)
+          {
+            bool exists = place != middle;
+            for (int d = 0; d < dim; ++d)
+              if (const int end = Basis::power(place, d); end != 1)
+                exists = exists && ends_at(cell, d, end);
+            if (exists)
+              result.push_back(place);
+          }
+        return result;
+      }
+
+      /** Node i of a cell: of a neighbour, or in a side of the grid. */
+      std::uint32_t
+      node_at(const std::uint32_t cell, const int i) const
+      {
+        const CellGeometry<dim> &geometry = grid.geometry[cell];
+        std::array<double, dim>  x; // the middle of the neighbour
+        int                      place = middle;
+        for (int d = 0; d < dim; ++d)
+          {
+            const int end  = Basis::power(i, d);
+            double    step = end - 1;
+            if (end != 1 && ends_at(cell, d, end))
+              {
+                place += (end - 1) * Basis::stride(d);
+                step = 0;
+              }
+            x[d] = geometry.origin[d] + (0.5 + step) / geometry.inverse_edge[d];
+          }
+        const std::uint32_t neighbour = grid.bins.cell_at(x);
+        if (neighbour == invalid_cell)
+          return unknown_node;
+        return place == middle ? node_of_cell[neighbour] :
+                                 in_sides.at({neighbour, place});
+      }
+
+      void
+      find_side(const std::uint32_t cell,
+                const int           place,
+                const std::uint32_t node)
+      {
+        const CellGeometry<dim> &geometry = grid.geometry[cell];
+        dealii::Point<dim>      &x        = nodes.places[node];
+        for (int d = 0; d < dim; ++d)
+          {
+            const int end = Basis::power(place, d);
+            x[d] = end == 0 ? grid.description.lower[d] :
+                   end == 2 ? grid.description.upper[d] :
+                              geometry.origin[d] + 0.5 / geometry.inverse_edge[d];
+            if (end != 1)
+              nodes.sides[node] |= 1 << (2 * d + end / 2);
+          }
+      }
+
+      // Ranks that share a cell share its nodes, and list them alike.
+      void
+      share()
+      {
+        nodes.shared.communicator = grid.shared_cells.communicator;
+        for (const auto &neighbour : grid.shared_cells.neighbours)
+          {
+            SharedRecords::Neighbour of_nodes;
+            of_nodes.rank = neighbour.rank;
+            for (const std::uint32_t cell : neighbour.records)
+              {
+                of_nodes.records.push_back(node_of_cell[cell]);
+                for (const int place : places_in_sides(cell))
+                  of_nodes.records.push_back(in_sides.at({cell, place}));
+              }
+            nodes.shared.neighbours.push_back(std::move(of_nodes));
+          }
+      }
+
+      const BackgroundGrid<dim>   &grid;
+      std::vector<std::uint32_t>   node_of_cell;
+      std::map<Key, std::uint32_t> in_sides;
+      std::uint32_t                n_numbers = 0;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  SplineNodes<dim>
+  number_spline_nodes(const BackgroundGrid<dim> &grid)
+  {
+    Numbers<dim> numbers(grid);
+    auto         cells = numbers.cells();
+    return {std::move(numbers.nodes), std::move(cells)};
+  }
+
+
+
+  template SplineNodes<2>
+  number_spline_nodes(const BackgroundGrid<2> &);
+  template SplineNodes<3>
+  number_spline_nodes(const BackgroundGrid<3> &);
+} // namespace limber

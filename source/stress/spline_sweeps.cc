@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/quadratic.h>
+#include <limber/stress/make_sweep.h>
+
+namespace limber
+{
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_spline_sweep(const AnyLaw &any, const StrainProjection &projection)
+  {
+    return std::visit(
+      [&](const auto &law) {
+        return make_sweep<Quadratic<dim>>(law, projection);
+      },
+      any);
+  }
+
+
+
+  template std::unique_ptr<const StressUpdate<2>>
+  make_spline_sweep(const AnyLaw &, const StrainProjection &);
+  template std::unique_ptr<const StressUpdate<3>>
+  make_spline_sweep(const AnyLaw &, const StrainProjection &);
+} // namespace limber

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/cell_means.h>
+#include <limber/interpolation/nodal_means.h>
+#include <limber/transfer/give_to_splines.h>
+#include <limber/transfer/points_to_splines.h>
+
+#include <stdexcept>
+
+namespace limber
+{
+  namespace
+  {
+    /** A body gives no forces. */
+    struct NoForce
+    {
+      static constexpr bool any = false;
+    };
+
+
+
+    /**
+     * Stress at the points of a body for forces on nodes: B^T of the
+     * projection (strain_operator.h). What a projection averages acts on the
+     * means of the gradients, and is summed up over a batch first.
+     */
+    template <Projection projection, bool has_deviator>
+    struct StressForce
+    {
+      static constexpr bool       any      = true;
+      static constexpr Projection kind     = projection;
+      static constexpr bool       deviator = has_deviator;
+
+      static constexpr bool mean_pressure = averages_volume_in_cells(kind);
+      static constexpr bool mean_shear =
+        deviator && averages_shear_in_cells(kind);
+      static constexpr bool mean_normals =
+        deviator && kind == Projection::cell_full;
+      static constexpr bool has_means = mean_pressure || mean_shear;
+    };
+
+
+
+    template <int dim>
+    using StressSums =
+      std::array<std::array<PointPack<dim>, dim>, dim>; // t_de with e <= d
+
+
+
+    /** V times stress of a pack: what acts at points, and that on means. */
+    template <class Force, int dim, class Lanes>
+    __attribute__((always_inline)) inline void
+    split_stress(const PointView<dim>                  &points,
+                 const Lanes                           &lanes,
+                 const std::array<PointPack<dim>, dim> &xi,
+                 const NodalMean<dim, Force::kind>     &nodal,
+                 const double                           inverse_density,
+                 StressSums<dim>                       &at_points,
+                 StressSums<dim>                       &on_means)
+    {
+      using Number = PointPack<dim>;
+      const Number V =
+        lanes.only_active(inverse_density * lanes.load(points.mass));
+      for (auto &row : at_points)
+        set_zero(row);
+
+      if constexpr (Force::deviator)
+        {
+          const auto s = [&](const int k) {
+            return V * lanes.load(points.deviator[k]);
+          };
+          StressSums<dim> t;
+          t[0][0] = s(0);
+          t[1][1] = s(1);
+          t[1][0] = s(2);
+          if constexpr (dim == 3)
+            {
+              t[2][2] = -(t[0][0] + t[1][1]);
+              t[2][1] = s(3);
+              t[2][0] = s(4);
+            }
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e <= d; ++e)
+              if (d == e ? Force::mean_normals : Force::mean_shear)
+                on_means[d][e] += t[d][e];
+              else
+                at_points[d][e] = t[d][e];
+        }
+      Number p;
+      if constexpr (averages_around_nodes(Force::kind))
+        p = V * nodal.template value<Number>(xi);
+      else
+        p = V * lanes.load(points.pressure);
+      for (int d = 0; d < dim; ++d)
+        (Force::mean_pressure ? on_means : at_points)[d][d] -= p;
+    }
+
+
+
+    /** Stress that acts on the means of gradients over a cell. */
+    template <int dim, class Sums>
+    __attribute__((always_inline)) inline void
+    add_means(const CellGeometry<dim>         &cell,
+              const SplineCell<dim>           &nodes,
+              const CellMeans<Quadratic<dim>> &means,
+              const StressSums<dim>           &stress,
+              Sums                            &sums)
+    {
+      using Basis  = Quadratic<dim>;
+      using Record = typename Sums::Record;
+      std::array<Record, dim> columns{};
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e <= d; ++e)
+          {
+            const double t = sum(stress[d][e]);
+            columns[e][Sums::lane_of(NodeLayout<dim>::force + d)] -=
+              t * cell.inverse_edge[e];
+            if (d != e)
+              columns[d][Sums::lane_of(NodeLayout<dim>::force + e)] -=
+                t * cell.inverse_edge[d];
+          }
+      std::array<Record, Basis::n_nodes> on_coefficients;
+      set_zero(on_coefficients);
+#pragma GCC unroll 27
+      for (int k = 0; k < Basis::n_nodes; ++k)
+#pragma GCC unroll 3
+        for (int e = 0; e < dim; ++e)
+          if (Basis::power(k, e) > 0)
+            on_coefficients[k] += means.derivative_of(k, e) * columns[e];
+      Basis::to_nodes(on_coefficients, nodes);
+      for (int i = 0; i < Basis::n_nodes; ++i)
+        sums.sums[i] += on_coefficients[i];
+    }
+
+
+
+    template <int dim, bool momentum, bool affine, class Force>
+    std::size_t
+    sweep(const PointView<dim> &points,
+          const GridView<dim>  &grid,
+          const GiveToGrid     &what,
+          const CellSums<dim>  *sums)
+    {
+      using Layout = NodeLayout<dim>;
+      using Number = PointPack<dim>;
+      using Basis  = Quadratic<dim>;
+      // mass, force and momentum lie next to each other
+      constexpr unsigned int first   = momentum ? Layout::mass : Layout::force;
+      constexpr unsigned int n_slots = momentum ? 1 + 2 * dim : dim;
+      using Sums   = SplineSums<dim, first, n_slots>;
+      using Record = typename Sums::Record;
+
+      return for_each_batch(
+        points, [&](const CellBatch &batch) __attribute__((always_inline)) {
+          const CellGeometry<dim> &cell  = grid.cells[batch.cell];
+          const SplineCell<dim>   &nodes = grid.splines[batch.cell];
+          Sums                     of_batch;
+          [[maybe_unused]] StressSums<dim> on_means;
+          if constexpr (Force::any)
+            for (auto &row : on_means)
+              set_zero(row);
+
+          for_each_pack<dim>(
+            batch, [&](const auto &lanes) __attribute__((always_inline)) {
+              const auto xi = lanes.natural(points, cell);
+              const SplineWeights<dim, Force::any> weights(cell, nodes, xi);
+              Sums                                 to_nodes;
+              to_nodes.clear();
+              if constexpr (momentum)
+                give_momentum<dim, affine>(points,
+                                           cell,
+                                           nodes,
+                                           lanes,
+                                           xi,
+                                           weights.value,
+                                           Layout::momentum,
+                                           to_nodes);
+              if constexpr (Force::any)
+                {
+                  const NodalMean<dim, Force::kind> nodal(what.nodal_pressure,
+                                                          cell);
+                  StressSums<dim>                   t;
+                  split_stress<Force, dim>(points,
+                                           lanes,
+                                           xi,
+                                           nodal,
+                                           what.inverse_density,
+                                           t,
+                                           on_means);
+#pragma GCC unroll 3
+                  for (int e = 0; e < dim; ++e)
+                    {
+                      std::array<Number, Sums::width> slots;
+                      set_zero(slots);
+#pragma GCC unroll 3
+                      for (int d = 0; d < dim; ++d)
+                        slots[Sums::lane_of(Layout::force + d)] =
+                          d < e ? -t[e][d] : -t[d][e];
+                      const auto records = records_of<Record>(slots);
+                      for (int p = 0; p < lanes.n; ++p)
+                        to_nodes.add(weights.gradient[e], p, records[p]);
+                    }
+                }
+              of_batch.take(to_nodes, lanes.first == batch.begin);
+            });
+
+          if constexpr (Force::any)
+            if constexpr (Force::has_means)
+              add_means<dim>(cell,
+                             nodes,
+                             CellMeans<Basis>(sums, batch.cell),
+                             on_means,
+                             of_batch);
+          of_batch.add_to_nodes(nodes, grid.nodes);
+        });
+    }
+
+
+
+    template <int dim, class Force>
+    std::size_t
+    choose_sums(const PointView<dim> &points,
+                const GridView<dim>  &grid,
+                const GiveToGrid     &what,
+                const CellSums<dim>  *sums)
+    {
+      if constexpr (Force::any)
+        if (!what.momentum)
+          return sweep<dim, false, false, Force>(points, grid, what, sums);
+      return what.affine ?
+               sweep<dim, true, true, Force>(points, grid, what, sums) :
+               sweep<dim, true, false, Force>(points, grid, what, sums);
+    }
+
+
+
+    template <int dim, bool deviator>
+    std::size_t
+    choose_projection(const PointView<dim> &points,
+                      const GridView<dim>  &grid,
+                      const GiveToGrid     &what,
+                      const CellSums<dim>  *sums)
+    {
+      const auto with = [&](const auto kind) {
+        return choose_sums<dim, StressForce<decltype(kind)::value, deviator>>(
+          points, grid, what, sums);
+      };
+      using P = Projection;
+      switch (what.projection.kind)
+        {
+          case P::automatic: // has been chosen long before
+          case P::assumed_strain: // has no modes here
+            break;
+          case P::none:
+            return with(std::integral_constant<P, P::none>());
+          case P::cell:
+            return with(std::integral_constant<P, P::cell>());
+          case P::cell_shear:
+            return with(std::integral_constant<P, P::cell_shear>());
+          case P::cell_full:
+            return with(std::integral_constant<P, P::cell_full>());
+          case P::node:
+            return with(std::integral_constant<P, P::node>());
+          case P::hybrid:
+            return with(std::integral_constant<P, P::hybrid>());
+        }
+      throw std::logic_error("no such projection with splines");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::size_t
+  points_to_splines(const PointView<dim> &points,
+                    const GridView<dim>  &grid,
+                    const GiveToGrid     &what,
+                    const CellSums<dim>  *sums)
+  {
+    if (!what.force)
+      return what.momentum ?
+               choose_sums<dim, NoForce>(points, grid, what, sums) :
+               0;
+    return points.deviator[0] != nullptr ?
+             choose_projection<dim, true>(points, grid, what, sums) :
+             choose_projection<dim, false>(points, grid, what, sums);
+  }
+
+
+
+  template std::size_t
+  points_to_splines(const PointView<2> &,
+                    const GridView<2> &,
+                    const GiveToGrid &,
+                    const CellSums<2> *);
+  template std::size_t
+  points_to_splines(const PointView<3> &,
+                    const GridView<3> &,
+                    const GiveToGrid &,
+                    const CellSums<3> *);
+} // namespace limber
