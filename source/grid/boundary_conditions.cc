@@ -153,6 +153,43 @@ namespace limber
 
 
 
+  template <int dim>
+  void
+  BoundaryConditions<dim>::hold(const NodalFields<dim> &nodes,
+                                const std::uint32_t     node,
+                                double *const           change) const
+  {
+    const auto velocity =
+      read<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      {
+        if (!(nodes.table.sides[node] >> side & 1))
+          continue;
+        const unsigned int normal = side / 2;
+        switch (sides[side].condition)
+          {
+            case SideCondition::free:
+              break;
+            case SideCondition::slip:
+              change[normal] = 0;
+              break;
+            case SideCondition::no_slip:
+            case SideCondition::velocity:
+              std::fill_n(change, dim, 0.);
+              break;
+            case SideCondition::friction:
+              if (velocity[normal] != 0)
+                break;
+              if (velocity.norm_square() == 0)
+                std::fill_n(change, dim, 0.);
+              change[normal] = 0;
+              break;
+          }
+      }
+  }
+
+
+
   template class BoundaryConditions<2>;
   template class BoundaryConditions<3>;
 } // namespace limber

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -15,10 +16,12 @@ namespace limber
     declare_points_and_state(Parameters &parameters, const unsigned int dim)
     {
       parameters.declare("Points per cell edge",
-                         "2",
-                         admissible::positive_integers(dim, true, "2"),
+                         "auto",
+                         admissible::positive_integers(dim, true, "2")
+                           .or_word("auto"),
                          "Number of points along the edge of a cell, for all "
-                         "directions or for each.");
+                         "directions or for each; auto: 2, but 3 of solids "
+                         "with quadratic kernels.");
       declare_word(parameters,
                    "Placement",
                    "regular",
@@ -175,10 +178,18 @@ namespace limber
 
     template <int dim>
     void
-    read_points(const Section &section, Body<dim> &body)
+    read_points(const Section &section, const bool smooth, Body<dim> &body)
     {
-      const std::vector<double> points =
-        section.numbers("Points per cell edge");
+      const std::string   entry = "Points per cell edge";
+      std::vector<double> points;
+      if (section.text(entry) != "auto")
+        points = section.numbers(entry);
+      else
+        // With two splines creep some ten times as much with every crossing.
+        points = {
+          smooth && !read_word(section, "Material", law_words()).takes_pressure ?
+            3. :
+            2.};
       for (unsigned int d = 0; d < dim; ++d)
         body.points_per_cell_edge[d] =
           static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
@@ -310,6 +321,15 @@ namespace limber
 
 
 
+    /**
+     * Splines alone follow a solid well up to this ratio of its bulk and shear
+     * moduli (Poisson's ratio 0.475), means around nodes from there on: below,
+     * they make it too soft.
+     */
+    constexpr double large_moduli_ratio = 20;
+
+
+
     /** The treatment for a material; says in the log what and why. */
     template <int dim>
     Projection
@@ -317,18 +337,31 @@ namespace limber
                         const bool       fluid,
                         Problem<dim>    &problem)
     {
-      const bool smooth = problem.grid.kernel == KernelKind::quadratic;
-      problem.notes.push_back(
-        "Body " + in_quotes(body.name) + ": locking treatment 'auto' is " +
-        (fluid  ? "'cell', as a liquid resists volume changes only." :
-         smooth ? "'node', which does not lock in volume and does not jump "
-                  "where points cross cells." :
-                  "'assumed strain', which neither locks in volume nor in "
-                  "bending and leaves no motion of a cell without "
-                  "resistance."));
-      return fluid  ? Projection::cell :
-             smooth ? Projection::node :
-                      Projection::assumed_strain;
+      const bool   smooth = problem.grid.kernel == KernelKind::quadratic;
+      const Moduli moduli = moduli_of(body.law, body.material);
+      const bool   soft   = moduli.bulk <= large_moduli_ratio * moduli.shear;
+      struct Choice
+      {
+        Projection  kind;
+        const char *reason;
+      };
+      const Choice choice =
+        fluid ? Choice{Projection::cell,
+                       "'cell', as a liquid resists volume changes only."} :
+        smooth && soft ?
+                Choice{Projection::none,
+                       "'none', as splines do not lock at this Poisson's "
+                       "ratio."} :
+        smooth ? Choice{Projection::node,
+                        "'node', which does not lock in volume and does not "
+                        "jump where points cross cells."} :
+                 Choice{Projection::assumed_strain,
+                        "'assumed strain', which neither locks in volume nor "
+                        "in bending and leaves no motion of a cell without "
+                        "resistance."};
+      problem.notes.push_back("Body " + in_quotes(body.name) +
+                              ": locking treatment 'auto' is " + choice.reason);
+      return choice.kind;
     }
 
 
@@ -496,7 +529,9 @@ namespace limber
       body.name  = name;
       body.shape = read_shape(section, constants, corners(problem.grid));
       check_inside_grid(section, body, problem.grid);
-      read_points(section, body);
+      read_points(section,
+                  problem.grid.kernel == KernelKind::quadratic,
+                  body);
       read_lattice(section, problem.grid, body);
       body.initial_velocity = read_formula(section,
                                            "Initial velocity",

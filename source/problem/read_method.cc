@@ -27,6 +27,17 @@ namespace limber
                  "flip",
                  transfer_words(),
                  "How velocity goes from the nodes back to the points.");
+    parameters.declare("Transfer order",
+                       "4",
+                       admissible::positive_integer("4"),
+                       "k of FMPM(k) and XPIC(k): 1 is PIC, more keep shorter "
+                       "waves; each beyond the first costs a pass over the "
+                       "points.");
+    parameters.declare("Transfer period",
+                       "1",
+                       admissible::positive_integer("10"),
+                       "FMPM and XPIC act every so many steps; in between the "
+                       "transfer is FLIP.");
     parameters.declare("Damping time",
                        "0",
                        admissible::non_negative_number("0.1"),
@@ -75,6 +86,10 @@ namespace limber
     Method method;
     method.order = read_word(section, "Stress update", stress_update_words());
     method.transfer          = read_word(section, "Transfer", transfer_words());
+    method.transfer_order =
+      static_cast<unsigned int>(section.number("Transfer order"));
+    method.transfer_period =
+      static_cast<unsigned int>(section.number("Transfer period"));
     method.damping_time      = section.number("Damping time");
     method.damping_rate      = section.number("Damping rate");
     method.courant_number    = section.number("Courant number");
@@ -89,6 +104,33 @@ namespace limber
                        in_quotes(section.text("Transfer")) +
                        ". Usually one of them was changed alone. Set "
                        "'Transfer = flip' or 'Damping time = 0'.");
+    const auto refuse = [&](const std::string &entry,
+                            const std::string &reason,
+                            const std::string &remedy) {
+      throw InputError("The entry " + in_quotes(section.text(entry)) + " in " +
+                       section.where(entry) + " " + reason +
+                       ". Usually one of them was changed alone. Set " +
+                       remedy + ".");
+    };
+    const std::string transfer =
+      "'Transfer = " + section.text("Transfer") + "'";
+    if (!filters_velocity(method.transfer))
+      {
+        if (method.transfer_order != Method().transfer_order)
+          refuse("Transfer order",
+                 "has no effect with " + transfer,
+                 "'Transfer = fmpm' or 'Transfer order = 4'");
+        if (method.transfer_period != Method().transfer_period)
+          refuse("Transfer period",
+                 "has no effect with " + transfer,
+                 "'Transfer = fmpm' or 'Transfer period = 1'");
+      }
+    else if (method.order != StressUpdateOrder::automatic &&
+             method.order != StressUpdateOrder::last)
+      refuse("Stress update",
+             "does not go with " + transfer +
+               ", which strains with the velocity that it filters",
+             "'Stress update = last'");
     return method;
   }
 

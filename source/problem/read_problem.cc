@@ -21,6 +21,14 @@ namespace limber
     {
       if (problem.method.order != StressUpdateOrder::automatic)
         return;
+      if (filters_velocity(problem.method.transfer))
+        {
+          problem.method.order = StressUpdateOrder::last;
+          problem.notes.push_back(
+            "Stress update 'auto' is 'last', with the velocity that the "
+            "transfer filters.");
+          return;
+        }
       const auto solid =
         std::find_if(problem.bodies.begin(),
                      problem.bodies.end(),

@@ -95,7 +95,13 @@ namespace limber
     static const Words<Transfer> words = {
       {"pic", Transfer::pic, "points take the velocity; strong damping"},
       {"flip", Transfer::flip, "points take the change of velocity"},
-      {"apic", Transfer::apic, "points carry an affine velocity field"}};
+      {"apic", Transfer::apic, "points carry an affine velocity field"},
+      {"fmpm",
+       Transfer::fmpm,
+       "points take the velocity, with the full mass matrix to some order"},
+      {"xpic",
+       Transfer::xpic,
+       "the same of the velocity before the step, and its change"}};
     return words;
   }
 

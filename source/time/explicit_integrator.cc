@@ -72,6 +72,8 @@ namespace limber
     , loads(problem, grid, bodies)
     , parallel(dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
   {
+    if (filters_velocity(problem.method.transfer))
+      full_mass.emplace(grid, boundaries);
     for (const auto &body : bodies)
       {
         viscosity =
@@ -100,6 +102,8 @@ namespace limber
   ExplicitIntegrator<dim>::reinit()
   {
     nodes.reinit();
+    if (full_mass)
+      full_mass->reinit();
     for (auto &body : bodies)
       {
         if (body->cell_sums)
@@ -145,6 +149,7 @@ namespace limber
           points_to_nodes();
           accelerate_nodes();
           account_loads(NodeLayout<dim>::velocity);
+          filter_velocity();
           grid_to_points(/*remap=*/false, /*move=*/false);
           update_stress(step, /*remapped=*/false, /*move=*/true);
           break;
@@ -320,7 +325,9 @@ namespace limber
     TakeFromGrid  what;
     what.affine = method.transfer == Transfer::apic;
     what.flip_share =
-      method.transfer == Transfer::pic ? 0 :
+      method.transfer == Transfer::pic ||
+          (full_mass && steps_since_filter == 0) ?
+        0 :
       method.damping_time > 0 ? std::max(0., 1 - step / method.damping_time) :
                                 1;
     what.remap = remap;
@@ -336,6 +343,25 @@ namespace limber
         displacement     = std::max(displacement, found.displacement);
         ledger.transfer += found.removed;
       }
+    lap(Verb::grid_to_points);
+  }
+
+
+
+  // Points then take it as with PIC; in steps between, as with FLIP.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::filter_velocity()
+  {
+    if (!full_mass)
+      return;
+    const Method &method = problem.method;
+    steps_since_filter   = (steps_since_filter + 1) % method.transfer_period;
+    if (steps_since_filter == 0)
+      full_mass->apply(nodes,
+                       bodies,
+                       method.transfer_order,
+                       method.transfer == Transfer::xpic);
     lap(Verb::grid_to_points);
   }
 
@@ -453,8 +479,12 @@ namespace limber
   IntegratorState<dim>
   ExplicitIntegrator<dim>::state() const
   {
-    return {
-      wave_speed, point_speed, displacement, largest_mass, loads.pieces()};
+    return {wave_speed,
+            point_speed,
+            displacement,
+            largest_mass,
+            steps_since_filter,
+            loads.pieces()};
   }
 
 
@@ -466,7 +496,8 @@ namespace limber
     wave_speed   = former.wave_speed;
     point_speed  = former.point_speed;
     displacement = former.displacement;
-    largest_mass = former.largest_mass;
+    largest_mass       = former.largest_mass;
+    steps_since_filter = former.steps_since_filter;
     loads.restore(former.face_pieces);
     reinit();
   }

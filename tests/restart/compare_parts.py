@@ -68,6 +68,8 @@ def run(arguments, folder, ranks, resume=False, end="", limit=0):
     """Returns the exit code; a part that is to be stopped makes ten steps."""
     command = [arguments.limber, arguments.scene,
                "--output-directory", str(folder)]
+    for setting in arguments.set:
+        command += ["--set", setting]
     if ranks > 1:
         command = ["mpirun", "-np", str(ranks)] + command
     if resume:
@@ -143,6 +145,7 @@ def main():
     parser.add_argument("--limber", required=True)
     parser.add_argument("--scene", required=True)
     parser.add_argument("--parts", nargs="+", required=True)
+    parser.add_argument("--set", action="append", default=[])
     arguments = parser.parse_args()
 
     with tempfile.TemporaryDirectory() as top:

@@ -46,6 +46,16 @@ namespace limber
     void
     apply_trial(NodalFields<dim> &nodes, unsigned int first, double time) const;
 
+    /**
+     * Take from a change of the new velocity of a node, dim numbers at @p
+     * change, what the sides on which it lies do not admit. Sides with friction
+     * hold what they have brought to rest.
+     */
+    void
+    hold(const NodalFields<dim> &nodes,
+         std::uint32_t           node,
+         double                 *change) const;
+
   private:
     bool
     act(unsigned int                  side,

@@ -48,6 +48,18 @@ namespace limber
 
 
 
+  /** Resistance of a law at rest against changes of volume and of shape, Pa. */
+  struct Moduli
+  {
+    double bulk = 0, shear = 0;
+  };
+
+  /** Of the law of that name; @p values in the order of its entries. */
+  Moduli
+  moduli_of(const std::string &law, const std::vector<double> &values);
+
+
+
   /** Call a generic function with a null pointer to each law in turn. */
   template <class Function, std::size_t... index>
   void

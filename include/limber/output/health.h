@@ -2,6 +2,8 @@
 #ifndef limber_output_health_h
 #define limber_output_health_h
 
+#include <limber/interpolation/kernel.h>
+
 #include <string>
 #include <vector>
 
@@ -41,6 +43,7 @@ namespace limber
     std::string  name;
     bool         is_liquid       = false;
     unsigned int points_per_edge = 2; // the smallest of all directions
+    KernelKind   kernel          = KernelKind::linear;
 
     // At the start
     unsigned long points       = 0;
@@ -94,7 +97,7 @@ namespace limber
    * for each cell that a point enters, by the points along the edge of a cell.
    */
   double
-  creep_per_crossing(unsigned int points_per_edge);
+  creep_per_crossing(unsigned int points_per_edge, KernelKind kernel);
 } // namespace limber
 
 #endif

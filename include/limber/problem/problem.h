@@ -55,8 +55,17 @@ namespace limber
   {
     pic,
     flip,
-    apic
+    apic,
+    fmpm, // full mass, of some order (FMPM(k))
+    xpic  // the same of the velocity before the step (XPIC(k))
   };
+
+  /** Whether the velocity of the nodes is filtered before points take it. */
+  constexpr bool
+  filters_velocity(const Transfer transfer)
+  {
+    return transfer == Transfer::fmpm || transfer == Transfer::xpic;
+  }
 
   enum class SideCondition
   {
@@ -177,6 +186,8 @@ namespace limber
   {
     StressUpdateOrder order    = StressUpdateOrder::automatic;
     Transfer          transfer = Transfer::flip;
+    unsigned int transfer_order  = 4; // k of FMPM(k) and XPIC(k)
+    unsigned int transfer_period = 1; // they act every so many steps, else FLIP
     double damping_time        = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
     double damping_rate        = 0;   // alpha of the acceleration -alpha v, 1/s
     double courant_number      = 0.4; // C

@@ -5,6 +5,7 @@
 #include <limber/base/timing.h>
 #include <limber/grid/boundary_conditions.h>
 #include <limber/state/material_body.h>
+#include <limber/time/full_mass_filter.h>
 #include <limber/time/loads.h>
 #include <limber/transfer/hourglass.h>
 
@@ -43,6 +44,7 @@ namespace limber
     double                              point_speed  = 0;
     double                              displacement = 0;
     double                              largest_mass = 0;
+    unsigned long                       steps_since_filter = 0;
     typename ExternalLoads<dim>::Pieces face_pieces;
   };
 
@@ -157,6 +159,8 @@ namespace limber
     interpolate_hanging();
     void
     grid_to_points(bool remap, bool move);
+    void
+    filter_velocity();
     double
     relaxation(const Body<dim> &body,
                HistoryTreatment history,
@@ -195,6 +199,8 @@ namespace limber
     ExternalLoads<dim>                               loads;
     const bool                                       parallel;
     Stopwatch                                        stopwatch;
+    std::optional<FullMassFilter<dim>> full_mass; // for FMPM and XPIC alone
+    unsigned long                      steps_since_filter = 0;
 
     double time = 0, step = 0; // of the step that is being done, s
 

@@ -47,7 +47,7 @@ namespace limber::test
       if (needs_cell_means(treatment))
         bodies[0]->cell_sums.emplace(grid);
       if (averages_around_nodes(treatment))
-        bodies[0]->nodal_means.emplace(grid);
+        bodies[0]->nodal_means.emplace(grid.vertices);
       seed();
       nodes.set_occupied(points().sort_by_cell());
       totals.bodies.resize(1);

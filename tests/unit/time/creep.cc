@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+#include <cmath>
+
+/**
+ * @file A bar at 20 degrees to the grid is pulled at both ends by a constant
+ * tension and moves through the grid. Its elastic strain should stay; what it
+ * grows by for every cell that its points pass, over the elastic strain, is the
+ * creep of the kernel (doc/theory/kernels.md has these numbers).
+ */
+
+using namespace limber;
+
+namespace
+{
+  constexpr double edge = 0.05, speed = 0.5; // of cells, m; along x, m/s
+  constexpr double angle   = dealii::numbers::PI / 9;
+  constexpr double tension = 10, young = 1000; // Pa
+
+  std::string
+  pulled_bar()
+  {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto   corner = [&](const double along, const double across) {
+      return digits(0.3 + along * c - across * s) + ", " +
+             digits(0.2 + along * s + across * c);
+    };
+    const std::string ramp = " * if(t < 0.25, 0.5 - 0.5 * cos(4*pi*t), 1)";
+    const auto load = [&](const std::string &name,
+                          const std::string &face,
+                          const double       sign) {
+      return "subsection Face load " + name + "\n set Body = bar\n set Face = " +
+             face + "\n set Traction = " + digits(sign * tension * c) +
+             ramp + "; " + digits(sign * tension * s) + ramp + "\n end\n";
+    };
+    return R"(
+    set Bodies = bar
+    subsection Body bar
+      set Shape = block
+      subsection Block
+        set Corners = )" +
+           corner(0, 0) + "; " + corner(1, 0) + "; " + corner(1, 0.25) + "; " +
+           corner(0, 0.25) + R"(
+      end
+      set Placement = fitted
+      set Initial velocity = 0.5; 0
+      set Material = neo hookean
+      subsection Neo hookean
+        set Density = 1
+        set Young's modulus = 1000
+        set Poisson's ratio = 0.3
+      end
+      set Locking treatment = none
+    end
+    subsection Grid
+      set Upper corner = 2.5, 1
+      set Cells = 50, 20
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+    end
+    subsection Loads
+      set Face loads = pull, hold
+      )" + load("pull", "right", 1) +
+           load("hold", "left", -1) + R"(
+    end)";
+  }
+
+
+
+  /** The mean strain along the bar, from the places of its points. */
+  double
+  strain(SceneRun<2> &run, const std::vector<dealii::Point<2>> &start)
+  {
+    // slope of the displacement along the bar over the place in it
+    double n = 0, x = 0, u = 0, xx = 0, xu = 0;
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      {
+        const auto   X     = start[run.bodies[0]->points.id(p)];
+        const auto   d     = run.position(p) - X;
+        const double along = X[0] * std::cos(angle) + X[1] * std::sin(angle);
+        const double moved = d[0] * std::cos(angle) + d[1] * std::sin(angle);
+        n += 1;
+        x += along;
+        u += moved;
+        xx += along * along;
+        xu += along * moved;
+      }
+    return (n * xu - x * u) / (n * xx - x * x);
+  }
+
+
+
+  double
+  creep_per_cell(const std::string &kernel, const unsigned int points)
+  {
+    SceneRun<2>      run(pulled_bar(),
+                         {"Method/Kernel=" + kernel,
+                          "Body bar/Points per cell edge=" +
+                            std::to_string(points)});
+    const auto       start = run.positions();
+    constexpr double begin = 0.3, end = 1.3;
+    // over two periods of what the bar still vibrates
+    const auto mean_strain_from = [&](const double time) {
+      run.advance_to(time);
+      double       sum = 0;
+      unsigned int n   = 0;
+      run.advance_to(time + 0.121, [&]() {
+        sum += strain(run, start);
+        ++n;
+      });
+      return sum / n;
+    };
+    const double before  = mean_strain_from(begin);
+    const double after   = mean_strain_from(end);
+    const double elastic = tension / young * (1 - 0.3 * 0.3);
+    const double result =
+      (after - before) / elastic / ((end - begin) * speed / edge);
+    std::printf("%s, %u points along an edge: %.4f of the elastic strain per "
+                "cell\n",
+                kernel.c_str(),
+                points,
+                result);
+    return result;
+  }
+} // namespace
+
+
+
+TEST(Creep, OfABarUnderTensionThatMovesThroughTheGrid)
+{
+  // the ratchet of linear functions
+  EXPECT_GT(creep_per_cell("linear", 2), 0.1);
+  EXPECT_GT(creep_per_cell("linear", 3), 0.02);
+  // smooth functions
+  EXPECT_LT(std::abs(creep_per_cell("quadratic", 2)), 0.01);
+  EXPECT_LT(std::abs(creep_per_cell("quadratic", 3)), 0.001);
+}

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+#include <cmath>
+
+/**
+ * @file What kernels and transfers do to waves, against closed formulas. A
+ * bar between two walls has the frequency f of its first mode lowered by
+ * df / f = -a theta^2, theta = pi / N, on N cells (folded and open knots agree
+ * to this order); a wave that FMPM(k) passes on loses the share (1 - S)^k of
+ * its amplitude in a step, with S the symbol of S+ S; PIC acts as a viscosity.
+ */
+
+using namespace limber;
+
+namespace
+{
+  using std::string;
+
+  /** A bar of unit cells between walls, of unit wave speed; nu = 0. */
+  string
+  bar(const unsigned int n, const string &velocity)
+  {
+    return R"(
+    set Bodies = bar
+    subsection Body bar
+      subsection Box
+        set Upper corner = )" +
+           std::to_string(n) + R"(, 1
+      end
+      set Points per cell edge = 2
+      set Initial velocity = )" +
+           velocity + R"(
+      subsection Linear elastic
+        set Density = 1
+        set Young's modulus = 1
+        set Poisson's ratio = 0
+      end
+      set Locking treatment = none
+    end
+    subsection Grid
+      set Upper corner = )" +
+           std::to_string(n) + R"(, 1
+      set Cells = )" +
+           std::to_string(n) + R"(, 1
+    end)";
+  }
+
+
+
+  struct Choice
+  {
+    string kernel, transfer;
+
+    std::vector<string>
+    entries() const
+    {
+      std::vector<string> result = {"Method/Kernel=" + kernel,
+                                    "Method/Stress update=last"};
+      if (transfer.substr(0, 4) == "fmpm" || transfer.substr(0, 4) == "xpic")
+        {
+          result.push_back("Method/Transfer=" + transfer.substr(0, 4));
+          result.push_back("Method/Transfer order=" + transfer.substr(5));
+        }
+      else
+        result.push_back("Method/Transfer=" + transfer);
+      return result;
+    }
+  };
+
+
+
+  /** Of sin(theta x) in the velocity of the points between two places. */
+  double
+  share_of_wave(SceneRun<2> &run,
+            const double theta,
+            const double from,
+            const double to)
+  {
+    double sum = 0, norm = 0;
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      if (const double x = run.position(p)[0]; x > from && x < to)
+        {
+          const double shape = std::sin(theta * x);
+          sum += shape * run.velocity(p)[0];
+          norm += shape * shape;
+        }
+    return sum / norm;
+  }
+
+
+
+  /**
+   * f / f_exact - 1 of the first mode, from its first and its fifth zero: what
+   * no node sees of the motion shifts both alike.
+   */
+  double
+  frequency_error(const unsigned int n, const Choice &method)
+  {
+    const double k = dealii::numbers::PI / n;
+    SceneRun<2>  run(bar(n, "1e-6 * sin(pi * x / " + std::to_string(n) + "); 0"),
+                    method.entries());
+    const double step  = 0.01;
+    const auto   shape = [&]() { return share_of_wave(run, k, 0, n); };
+    std::vector<double> zeros;
+    double              before = shape();
+    while (zeros.size() < 5)
+      {
+        run.advance(step);
+        const double now = shape();
+        if ((now > 0) != (before > 0))
+          zeros.push_back(run.time - step * now / (now - before));
+        before = now;
+      }
+    return 4 * dealii::numbers::PI / (k * (zeros[4] - zeros[0])) - 1;
+  }
+} // namespace
+
+
+
+// Table B4: a = 0.1354 and 0.260 with FLIP; with the full mass waves are as
+// good as the functions of the nodes are.
+TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
+{
+  struct Expected
+  {
+    Choice method;
+    double a, tolerance;
+  };
+  for (const auto &[method, a, tolerance] :
+       {Expected{{"linear", "flip"}, 0.1354, 0.005},
+        Expected{{"quadratic", "flip"}, 0.260, 0.010},
+        Expected{{"linear", "fmpm 4"}, -0.052, 0.008},
+        Expected{{"quadratic", "fmpm 4"}, 0.0104, 0.004},
+        Expected{{"quadratic", "xpic 4"}, 0.0104, 0.004}})
+    for (const unsigned int n : {8u, 16u})
+      {
+        SCOPED_TRACE(method.kernel + ", " + method.transfer + ", " +
+                     std::to_string(n) + " cells");
+        const double theta = dealii::numbers::PI / n;
+        EXPECT_NEAR(-frequency_error(n, method) / (theta * theta),
+                    a,
+                    tolerance);
+      }
+}
+
+
+
+// No node sees velocities +1 and -1 of the points of a cell.
+TEST(Dispersion, NullSpaceIsGoneAfterOneStep)
+{
+  for (const string kernel : {"linear", "quadratic"})
+    for (const string order : {"1", "2", "4", "16"})
+      {
+        SCOPED_TRACE(kernel + ", FMPM(" + order + ")");
+        SceneRun<2> run(bar(8, "1e-6 * if(x - floor(x) < 0.5, 1, -1); 0"),
+                        Choice{kernel, "fmpm " + order}.entries());
+        const auto  size = [&]() {
+          double result = 0;
+          for (std::size_t p = 0; p < run.points().size; ++p)
+            result += run.velocity(p).norm_square();
+          return std::sqrt(result / run.points().size);
+        };
+        const double before = size();
+        run.advance(1e-6);
+        EXPECT_LT(size(), 1e-12 * before);
+      }
+}
+
+
+
+// Dense points: S = (2 + c) / 3 and (33 + 26 c + c2) / 60. A step so short that
+// stress does nothing leaves only the transfer.
+TEST(Dispersion, FmpmLosesOfAWaveWhatItsOrderSays)
+{
+  constexpr unsigned int n     = 32;
+  const double           theta = dealii::numbers::PI / 8; // a wave of sixteen cells
+  for (const string kernel : {"linear", "quadratic"})
+    {
+      const double c = std::cos(theta), c2 = std::cos(2 * theta);
+      const double S = kernel == "linear" ? (2 + c) / 3 :
+                                            (33 + 26 * c + c2) / 60;
+      for (const unsigned int k : {1u, 2u, 3u})
+        {
+          SCOPED_TRACE(kernel + ", FMPM(" + std::to_string(k) + ")");
+          auto entries =
+            Choice{kernel, "fmpm " + std::to_string(k)}.entries();
+          entries.push_back("Body bar/Points per cell edge=8, 1");
+          SceneRun<2> run(bar(n, "1e-6 * sin(pi / 8 * x); 0"), entries);
+          run.advance(1e-9); // from then on it is a wave of the nodes
+          const double           before = share_of_wave(run, theta, 8, 24);
+          constexpr unsigned int steps  = 4;
+          run.advance(1e-9, steps);
+          const double lost =
+            1 - std::pow(share_of_wave(run, theta, 8, 24) / before, 1. / steps);
+          EXPECT_NEAR(lost, std::pow(1 - S, k), 0.03 * std::pow(1 - S, k));
+        }
+    }
+}
+
+
+
+// With 2 points per edge nu = 3/16 and 1/4 h^2 / dt, for waves along the bar as
+// for shear.
+TEST(Dispersion, PicIsAViscosity)
+{
+  const double theta = dealii::numbers::PI / 16;
+  for (const string kernel : {"linear", "quadratic"})
+    {
+      SCOPED_TRACE(kernel);
+      SceneRun<2> run(bar(64, "1e-6 * sin(pi / 16 * x); 0"),
+                      Choice{kernel, "pic"}.entries());
+      const double           before = share_of_wave(run, theta, 16, 48);
+      constexpr unsigned int steps  = 4;
+      run.advance(1e-9, steps);
+      const double nu = -std::log(share_of_wave(run, theta, 16, 48) / before) /
+                        (steps * theta * theta);
+      const double expected = kernel == "linear" ? 3. / 16 : 1. / 4;
+      EXPECT_NEAR(nu, expected, 0.03 * expected);
+    }
+}
