@@ -133,7 +133,7 @@ namespace limber
     geometry.assign(cells.locally_owned_size() + cells.n_ghost_indices(), {});
     vertices.places.clear();
     vertices.sides.assign(nodes.locally_owned_size() + nodes.n_ghost_indices(),
-                         0);
+                          0);
     cell_numbers.assign(triangulation.n_active_cells(), invalid_cell);
 
     double                                       smallest = 1e300;

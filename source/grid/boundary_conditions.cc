@@ -52,8 +52,7 @@ namespace limber
           velocity = 0;
           return true;
         case SideCondition::velocity:
-          velocity =
-            sides[side].velocity.vector(nodes.places.at(node), time);
+          velocity = sides[side].velocity.vector(nodes.places.at(node), time);
           return true;
         case SideCondition::friction:
           {
@@ -154,38 +153,31 @@ namespace limber
 
 
   template <int dim>
-  void
-  BoundaryConditions<dim>::hold(const NodalFields<dim> &nodes,
-                                const std::uint32_t     node,
-                                double *const           change) const
+  std::array<unsigned int, dim>
+  BoundaryConditions<dim>::held(const NodalFields<dim> &nodes,
+                                const std::uint32_t     node) const
   {
     const auto velocity =
       read<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
+    std::array<unsigned int, dim> result{};
     for (unsigned int side = 0; side < 2 * dim; ++side)
       {
         if (!(nodes.table.sides[node] >> side & 1))
           continue;
-        const unsigned int normal = side / 2;
-        switch (sides[side].condition)
-          {
-            case SideCondition::free:
-              break;
-            case SideCondition::slip:
-              change[normal] = 0;
-              break;
-            case SideCondition::no_slip:
-            case SideCondition::velocity:
-              std::fill_n(change, dim, 0.);
-              break;
-            case SideCondition::friction:
-              if (velocity[normal] != 0)
-                break;
-              if (velocity.norm_square() == 0)
-                std::fill_n(change, dim, 0.);
-              change[normal] = 0;
-              break;
-          }
+        const unsigned int  normal    = side / 2;
+        const SideCondition condition = sides[side].condition;
+        const bool          rubs =
+          condition == SideCondition::friction && velocity[normal] == 0;
+        const bool holds_all = condition == SideCondition::no_slip ||
+                               condition == SideCondition::velocity ||
+                               (rubs && velocity.norm_square() == 0);
+        if (holds_all || rubs || condition == SideCondition::slip)
+          result[normal] |= 1 << normal;
+        if (holds_all)
+          for (unsigned int &component : result)
+            component |= 1 << normal;
       }
+    return result;
   }
 
 

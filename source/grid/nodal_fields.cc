@@ -301,8 +301,7 @@ namespace limber
     is_occupied[cell] = 1;
     (cell < grid.n_owned_cells() ? occupied_owned : occupied_ghost)
       .push_back(cell);
-    for_each_node(cell,
-                  [&](const std::uint32_t node) { activate_node(node); });
+    for_each_node(cell, [&](const std::uint32_t node) { activate_node(node); });
   }
 
 

@@ -60,9 +60,9 @@ namespace limber
         sums[Layout::value] = mass > 0 ? sums[Layout::value] / mass : 0;
       }
     table.take_from_masters(records.data(),
-                           Layout::stride,
-                           Layout::value,
-                           Layout::value + 1);
+                            Layout::stride,
+                            Layout::value,
+                            Layout::value + 1);
   }
 
 

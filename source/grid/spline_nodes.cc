@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/spline_nodes.h>
-#include <limber/interpolation/quadratic.h>
 
 #include <algorithm>
 #include <map>
@@ -9,6 +8,24 @@ namespace limber
 {
   namespace
   {
+    /** 3^d: from a node of a cell to the next along d. */
+    constexpr int
+    stride(const int d)
+    {
+      return d == 0 ? 1 : 3 * stride(d - 1);
+    }
+
+
+
+    /** Which of the three along d a node of a cell is, or a place in it. */
+    constexpr int
+    digit(const int i, const int d)
+    {
+      return i / stride(d) % 3;
+    }
+
+
+
     /**
      * Numbers the nodes. A node is known by a cell and where it lies in that:
      * in the middle, or in a face, an edge, a corner in the sides of the grid.
@@ -19,8 +36,6 @@ namespace limber
     class Numbers
     {
     public:
-      using Basis = Quadratic<dim>;
-
       explicit Numbers(const BackgroundGrid<dim> &grid)
         : grid(grid)
         , node_of_cell(grid.n_cells())
@@ -46,7 +61,7 @@ namespace limber
                 spline.lower[d] = ends_at(cell, d, 0) ? 1 : 0.5;
                 spline.upper[d] = ends_at(cell, d, 2) ? 1 : 0.5;
               }
-            for (int i = 0; i < Basis::n_nodes; ++i)
+            for (int i = 0; i < n_places; ++i)
               {
                 const std::uint32_t node = node_at(cell, i);
                 spline.node[i]           = node == unknown_node ?
@@ -62,7 +77,8 @@ namespace limber
     private:
       using Key = std::pair<std::uint32_t, int>; // cell, place
 
-      static constexpr int middle = Basis::n_nodes / 2;
+      static constexpr int n_places = stride(dim);
+      static constexpr int middle   = n_places / 2;
 
       void
       add_cells(const std::uint32_t begin, const std::uint32_t end)
@@ -89,11 +105,11 @@ namespace limber
       places_in_sides(const std::uint32_t cell) const
       {
         std::vector<int> result;
-        for (int place = 0; place < Basis::n_nodes; ++place)
+        for (int place = 0; place < n_places; ++place)
           {
             bool exists = place != middle;
             for (int d = 0; d < dim; ++d)
-              if (const int end = Basis::power(place, d); end != 1)
+              if (const int end = digit(place, d); end != 1)
                 exists = exists && ends_at(cell, d, end);
             if (exists)
               result.push_back(place);
@@ -110,11 +126,11 @@ namespace limber
         int                      place = middle;
         for (int d = 0; d < dim; ++d)
           {
-            const int end  = Basis::power(i, d);
+            const int end  = digit(i, d);
             double    step = end - 1;
             if (end != 1 && ends_at(cell, d, end))
               {
-                place += (end - 1) * Basis::stride(d);
+                place += (end - 1) * stride(d);
                 step = 0;
               }
             x[d] = geometry.origin[d] + (0.5 + step) / geometry.inverse_edge[d];
@@ -135,12 +151,23 @@ namespace limber
         dealii::Point<dim>      &x        = nodes.places[node];
         for (int d = 0; d < dim; ++d)
           {
-            const int end = Basis::power(place, d);
-            x[d] = end == 0 ? grid.description.lower[d] :
-                   end == 2 ? grid.description.upper[d] :
-                              geometry.origin[d] + 0.5 / geometry.inverse_edge[d];
+            const int end = digit(place, d);
+            x[d] =
+              end == 0 ? grid.description.lower[d] :
+              end == 2 ? grid.description.upper[d] :
+                         geometry.origin[d] + 0.5 / geometry.inverse_edge[d];
             if (end != 1)
               nodes.sides[node] |= 1 << (2 * d + end / 2);
+          }
+        for (int directions = 0; directions < 1 << dim; ++directions)
+          {
+            int reached = place;
+            for (int d = 0; d < dim; ++d)
+              if (directions >> d & 1)
+                reached += (1 - digit(place, d)) * stride(d);
+            nodes.inward[node][directions] = reached == middle ?
+                                               node_of_cell[cell] :
+                                               in_sides.at({cell, reached});
           }
       }
 

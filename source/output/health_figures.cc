@@ -165,7 +165,7 @@ namespace limber
         BodyFigures figures;
         figures.name      = body.name;
         figures.is_liquid = body.is_liquid;
-        figures.kernel = start.problem.grid.kernel;
+        figures.kernel    = start.problem.grid.kernel;
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());

@@ -320,7 +320,7 @@ namespace limber
     void
     add_nodal_values(const State<dim> &state, Picture<dim, dim> &picture)
     {
-      using Layout = NodeLayout<dim>;
+      using Layout             = NodeLayout<dim>;
       const GridView<dim> grid = state.grid.view();
       for (unsigned int c = 0; c < picture.patches.size(); ++c)
         for (unsigned int i = 0; i < 1 << dim; ++i)
@@ -336,8 +336,7 @@ namespace limber
                 const double *const record = state.nodes.record(at.node[k]);
                 data(0, i) += at.value[k] * record[Layout::mass];
                 for (int d = 0; d < dim; ++d)
-                  data(1 + d, i) +=
-                    at.value[k] * record[Layout::velocity + d];
+                  data(1 + d, i) += at.value[k] * record[Layout::velocity + d];
               }
           }
     }

@@ -101,8 +101,11 @@ namespace limber
     for (std::size_t p = 0; p < points.size; ++p)
       pressures[p] = point_pressure(p);
     nodal.clear(nodes.active_nodes());
-    sum_weighted<dim>(
-      points, nodes.grid.view(), volume_ratios.data(), pressures.data(), nodal.data());
+    sum_weighted<dim>(points,
+                      nodes.grid.view(),
+                      volume_ratios.data(),
+                      pressures.data(),
+                      nodal.data());
     nodal.start_completion(nodes.node_plan());
     nodal.finish_completion(nodes.active_nodes());
   }

@@ -94,8 +94,7 @@ namespace limber
         projection.clear(state.nodes.active_nodes());
         double *const records = projection.data();
         for (std::size_t b = 0; b < residual.size(); ++b)
-          for_each_support(b, [&](const std::size_t   p,
-                                  const Support<dim> &at) {
+          for_each_support(b, [&](const std::size_t p, const Support<dim> &at) {
             const double mass = points(b).mass[p];
             for (int i = 0; i < at.n; ++i)
               {
@@ -137,8 +136,7 @@ namespace limber
         for (const HangingNode &hanging : table.hanging)
           update(hanging.node);
         for (std::size_t b = 0; b < along.size(); ++b)
-          for_each_support(b, [&](const std::size_t   p,
-                                  const Support<dim> &at) {
+          for_each_support(b, [&](const std::size_t p, const Support<dim> &at) {
             along[b][p] = 0;
             for (int i = 0; i < at.n; ++i)
               along[b][p] += at.value[i] * direction[at.node[i]];

@@ -15,13 +15,13 @@ namespace limber
     void
     declare_points_and_state(Parameters &parameters, const unsigned int dim)
     {
-      parameters.declare("Points per cell edge",
-                         "auto",
-                         admissible::positive_integers(dim, true, "2")
-                           .or_word("auto"),
-                         "Number of points along the edge of a cell, for all "
-                         "directions or for each; auto: 2, but 3 of solids "
-                         "with quadratic kernels.");
+      parameters.declare(
+        "Points per cell edge",
+        "auto",
+        admissible::positive_integers(dim, true, "2").or_word("auto"),
+        "Number of points along the edge of a cell, for all "
+        "directions or for each; auto: 2, but 3 of solids "
+        "with quadratic kernels.");
       declare_word(parameters,
                    "Placement",
                    "regular",
@@ -187,7 +187,8 @@ namespace limber
       else
         // With two splines creep some ten times as much with every crossing.
         points = {
-          smooth && !read_word(section, "Material", law_words()).takes_pressure ?
+          smooth &&
+              !read_word(section, "Material", law_words()).takes_pressure ?
             3. :
             2.};
       for (unsigned int d = 0; d < dim; ++d)
@@ -374,11 +375,11 @@ namespace limber
       const auto refuse = [&](const std::string &entry,
                               const std::string &reason,
                               const std::string &remedy) {
-        throw InputError("The entry " + in_quotes(section.text(entry)) +
-                         " in " + section.where(entry) +
-                         " does not go with 'Method/Kernel = quadratic': " +
-                         reason + ". Set " + remedy +
-                         ", or 'Kernel = linear'.");
+        throw InputError(
+          "The entry " + in_quotes(section.text(entry)) + " in " +
+          section.where(entry) +
+          " does not go with 'Method/Kernel = quadratic': " + reason +
+          ". Set " + remedy + ", or 'Kernel = linear'.");
       };
       if (body.treatment == Projection::assumed_strain)
         refuse("Locking treatment",
@@ -529,9 +530,7 @@ namespace limber
       body.name  = name;
       body.shape = read_shape(section, constants, corners(problem.grid));
       check_inside_grid(section, body, problem.grid);
-      read_points(section,
-                  problem.grid.kernel == KernelKind::quadratic,
-                  body);
+      read_points(section, problem.grid.kernel == KernelKind::quadratic, body);
       read_lattice(section, problem.grid, body);
       body.initial_velocity = read_formula(section,
                                            "Initial velocity",

@@ -85,16 +85,16 @@ namespace limber
 
     Method method;
     method.order = read_word(section, "Stress update", stress_update_words());
-    method.transfer          = read_word(section, "Transfer", transfer_words());
+    method.transfer = read_word(section, "Transfer", transfer_words());
     method.transfer_order =
       static_cast<unsigned int>(section.number("Transfer order"));
     method.transfer_period =
       static_cast<unsigned int>(section.number("Transfer period"));
-    method.damping_time      = section.number("Damping time");
-    method.damping_rate      = section.number("Damping rate");
-    method.courant_number    = section.number("Courant number");
-    method.time_step         = section.number("Time step");
-    method.lost_points_limit = section.number("Lost points limit");
+    method.damping_time        = section.number("Damping time");
+    method.damping_rate        = section.number("Damping rate");
+    method.courant_number      = section.number("Courant number");
+    method.time_step           = section.number("Time step");
+    method.lost_points_limit   = section.number("Lost points limit");
     method.energy_growth_limit = section.number("Energy growth limit");
 
     if (method.damping_time > 0 && method.transfer != Transfer::flip)

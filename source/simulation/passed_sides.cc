@@ -61,7 +61,8 @@ namespace limber
         for (unsigned int side = 0; side < 2 * dim; ++side)
           {
             if (state.problem.sides[side].condition == SideCondition::free ||
-                beyond[side] <= chance_overstep * state.problem.grid.edge(side / 2))
+                beyond[side] <=
+                  chance_overstep * state.problem.grid.edge(side / 2))
               continue;
             const std::string  name = side_names(dim)[side];
             std::ostringstream text;

@@ -100,13 +100,12 @@ namespace limber
 
     for (const Body<dim> &body : problem.bodies)
       {
-        auto stress = make_stress_update<dim>(
-          body.law,
-          body.material,
-          body.treatment,
-          body.hourglass,
-          body.frame,
-          grid.description.kernel);
+        auto        stress = make_stress_update<dim>(body.law,
+                                              body.material,
+                                              body.treatment,
+                                              body.hourglass,
+                                              body.frame,
+                                              grid.description.kernel);
         PointLayout layout;
         layout.deviator      = stress->has_deviator();
         layout.n_history     = stress->n_history();

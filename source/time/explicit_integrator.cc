@@ -323,15 +323,15 @@ namespace limber
   {
     const Method &method = problem.method;
     TakeFromGrid  what;
-    what.affine = method.transfer == Transfer::apic;
-    what.flip_share =
-      method.transfer == Transfer::pic ||
-          (full_mass && steps_since_filter == 0) ?
-        0 :
-      method.damping_time > 0 ? std::max(0., 1 - step / method.damping_time) :
-                                1;
-    what.remap = remap;
-    what.move  = move ? step : 0;
+    what.affine     = method.transfer == Transfer::apic;
+    what.flip_share = method.transfer == Transfer::pic ||
+                          (full_mass && steps_since_filter == 0) ?
+                        0 :
+                      method.damping_time > 0 ?
+                        std::max(0., 1 - step / method.damping_time) :
+                        1;
+    what.remap      = remap;
+    what.move       = move ? step : 0;
     for (auto &body : bodies)
       {
         const auto sums  = sums_of(*body);
@@ -493,9 +493,9 @@ namespace limber
   void
   ExplicitIntegrator<dim>::restore(const IntegratorState<dim> &former)
   {
-    wave_speed   = former.wave_speed;
-    point_speed  = former.point_speed;
-    displacement = former.displacement;
+    wave_speed         = former.wave_speed;
+    point_speed        = former.point_speed;
+    displacement       = former.displacement;
     largest_mass       = former.largest_mass;
     steps_since_filter = former.steps_since_filter;
     loads.restore(former.face_pieces);

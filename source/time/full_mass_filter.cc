@@ -23,67 +23,120 @@ namespace limber
   FullMassFilter<dim>::reinit()
   {
     records.reinit(std::size_t(table.n()) * Layout::stride);
+    lumped.reinit(std::size_t(table.n()) * dim);
   }
 
 
 
   template <int dim>
   void
-  FullMassFilter<dim>::apply(
-    NodalFields<dim>                                &nodes,
-    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
-    const unsigned int                               order,
-    const bool                                       former_only)
+  FullMassFilter<dim>::apply(NodalFields<dim>  &nodes,
+                             Bodies            &bodies,
+                             const unsigned int order,
+                             const bool         former_only)
   {
-    for (const std::uint32_t node : nodes.active_nodes())
-      {
-        const double *const own  = nodes.record(node);
-        double *const       term = record(node);
-        std::fill_n(term, Layout::stride, 0.);
-        for (int d = 0; d < dim; ++d)
-          {
-            term[Layout::velocity + d] = own[Layout::velocity + d];
-            if (former_only)
-              term[Layout::velocity + d] -= own[Layout::increment + d];
-          }
-      }
+    former = former_only;
+    start(nodes);
     for (unsigned int j = 1; j < order; ++j)
       {
-        bring_to_points_and_back(nodes, bodies);
-        for (const std::uint32_t node : nodes.active_nodes())
-          {
-            double *const own  = nodes.record(node);
-            double *const term = record(node);
-            if (!(own[Layout::mass] > 0))
-              continue;
-            for (int d = 0; d < dim; ++d)
-              {
-                term[Layout::velocity + d] -=
-                  term[Layout::remapped + d] / own[Layout::mass];
-                term[Layout::remapped + d] = 0;
-              }
-            if (table.sides[node])
-              boundaries.hold(nodes, node, term + Layout::velocity);
-            for (int d = 0; d < dim; ++d)
-              own[Layout::velocity + d] += term[Layout::velocity + d];
-          }
+        multiply_by_full_mass(nodes, bodies);
+        correct(nodes);
+      }
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const       own = nodes.record(node);
+        const double *const v   = record(node) + Layout::velocity;
+        if (!(own[Layout::mass] > 0))
+          continue;
+        const auto held = this->held(nodes, node);
+        for (int d = 0; d < dim; ++d)
+          if (held[d] == 0)
+            own[Layout::velocity + d] =
+              v[d] + (former ? own[Layout::increment + d] : 0);
       }
     nodes.interpolate_hanging();
   }
 
 
 
-  // The sweep that updates the velocities of points, on velocities that are
-  // not theirs.
+  // v(1)
   template <int dim>
   void
-  FullMassFilter<dim>::bring_to_points_and_back(
-    NodalFields<dim>                                &nodes,
-    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
+  FullMassFilter<dim>::start(const NodalFields<dim> &nodes)
+  {
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        const double *const own = nodes.record(node);
+        double *const       v   = record(node) + Layout::velocity;
+        std::fill_n(record(node), Layout::stride, 0.);
+        std::fill_n(lumped_mass(node), dim, own[Layout::mass]);
+        const auto held = this->held(nodes, node);
+        for (int d = 0; d < dim; ++d)
+          v[d] = own[Layout::velocity + d] -
+                 (former && held[d] == 0 ? own[Layout::increment + d] : 0);
+      }
+    if (table.inward.empty())
+      return;
+
+    // D v(1) = p, plus what held nodes bring along
+    const auto add = [&](const std::uint32_t to,
+                         const int           d,
+                         const double        mass,
+                         const double        velocity) {
+      double &D = lumped_mass(to)[d], &v = record(to)[Layout::velocity + d];
+      v = (D * v + mass * velocity) / (D + mass);
+      D += mass;
+    };
+    for (const std::uint32_t node : nodes.active_boundary_nodes())
+      if (const double mass = nodes.record(node)[Layout::mass]; mass > 0)
+        {
+          const auto held = this->held(nodes, node);
+          for (int d = 0; d < dim; ++d)
+            if (held[d] != 0)
+              add(table.inward.at(node)[held[d]],
+                  d,
+                  mass,
+                  record(node)[Layout::velocity + d]);
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  FullMassFilter<dim>::correct(const NodalFields<dim> &nodes)
+  {
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        const double *const own = nodes.record(node);
+        if (!(own[Layout::mass] > 0))
+          continue;
+        double *const v       = record(node) + Layout::velocity;
+        double *const product = record(node) + Layout::remapped;
+        const auto    held    = this->held(nodes, node);
+        for (int d = 0; d < dim; ++d)
+          {
+            if (held[d] == 0)
+              v[d] += (momentum(own, d) - product[d]) / lumped_mass(node)[d];
+            product[d] = 0;
+          }
+      }
+  }
+
+
+
+  // The sweep that updates the velocities of points takes and gives: here
+  // velocities that are not theirs.
+  template <int dim>
+  void
+  FullMassFilter<dim>::multiply_by_full_mass(NodalFields<dim> &nodes,
+                                             Bodies           &bodies)
   {
     constexpr std::size_t room = 1 << dim; // that sweeps want beyond
-    table.take_from_masters(
-      records.data(), Layout::stride, Layout::velocity, Layout::stride);
+    table.take_from_masters(records.data(),
+                            Layout::stride,
+                            Layout::velocity,
+                            Layout::stride);
     GridView<dim> grid = nodes.view();
     grid.nodes         = records.data();
     TakeFromGrid take;

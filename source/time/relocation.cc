@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 /**
  * @file What happens to points between the sweeps of two steps: cells and
@@ -73,6 +74,13 @@ namespace limber
     complete_cells(&MaterialBody<dim>::cell_sums);
 
     travelled += displacement;
+    // A rank knows all functions of its own cells, but of those around only
+    // linear ones.
+    if (parallel && grid.has_splines() && any_entered_ghosts > 0)
+      {
+        exchange_points();
+        exchanged = true;
+      }
     lap(Verb::relocate);
   }
 
@@ -114,11 +122,9 @@ namespace limber
   ExplicitIntegrator<dim>::reorganise()
   {
     stopwatch.start();
-    // The next step may be somewhat longer than the last one. A rank knows all
-    // functions of its own cells, but of those around only linear ones.
+    // The next step may be somewhat longer than the last one.
     const bool exchange =
-      parallel && (travelled + 1.5 * displacement > travel_limit ||
-                   (grid.has_splines() && any_entered_ghosts > 0));
+      parallel && travelled + 1.5 * displacement > travel_limit;
     // A sort costs about as much as the detours of n / 4 surplus batches. All
     // ranks sort in the same step, or each would wait while the others do.
     if (exchange)
@@ -126,7 +132,7 @@ namespace limber
     else if (most_excess_batches > most_points / 4)
       sort_points(/*agree=*/false);
     lap(Verb::relocate);
-    return exchange;
+    return std::exchange(exchanged, false) || exchange;
   }
 
 

@@ -35,8 +35,7 @@ namespace limber
         if (!(mass > 0))
           continue;
         const double mean =
-          sums.now[cell * sums.stride + sums.volumetric()] /
-          mass;
+          sums.now[cell * sums.stride + sums.volumetric()] / mass;
         for (int a = 0; a < 1 << dim; ++a)
           {
             double *const node = grid.nodes + grid.cells[cell].node[a];

@@ -77,9 +77,8 @@ namespace limber
     {
       for (int d = 0; d < dim; ++d)
         {
-          const auto gradient =
-            Linear<dim>::template gradient<PointPack<dim>>(
-              nodal.component(dim + d), xi);
+          const auto gradient = Linear<dim>::template gradient<PointPack<dim>>(
+            nodal.component(dim + d), xi);
           for (int e = 0; e < dim; ++e)
             lanes.store(gradient[e] * grid.cells[cell].inverse_edge[e],
                         points.affine[d * dim + e]);
@@ -104,10 +103,10 @@ namespace limber
                const std::array<PointPack<dim>, dim> &xi,
                const Nodal &)
     {
-      using Number                    = PointPack<dim>;
-      using Basis                     = Quadratic<dim>;
-      const CellGeometry<dim> &geometry = grid.cells[cell];
-      const SplineCell<dim>   &nodes    = grid.splines[cell];
+      using Number                             = PointPack<dim>;
+      using Basis                              = Quadratic<dim>;
+      const CellGeometry<dim>        &geometry = grid.cells[cell];
+      const SplineCell<dim>          &nodes    = grid.splines[cell];
       const SplineWeights<dim, false> weights(geometry, nodes, xi);
       for (int e = 0; e < dim; ++e)
         {
@@ -116,7 +115,7 @@ namespace limber
           Number                  D{};
           for (int i = 0; i < Basis::n_nodes; ++i)
             {
-              const Number arm = places[Basis::power(i, e)] - xi[e];
+              const Number arm    = places[Basis::power(i, e)] - xi[e];
               const Number weight = arm * load<Number>(weights.value[i]);
               D += weight * arm;
               for (int d = 0; d < dim; ++d)
@@ -168,20 +167,17 @@ namespace limber
                     Basis::template value<Number>(nodal.component(d), xi);
                   Number velocity = flip;
                   if constexpr (affine)
-                    velocity =
-                      Basis::template value<Number>(grid_velocity, xi);
+                    velocity = Basis::template value<Number>(grid_velocity, xi);
                   else if (what.flip_share != 1.)
                     velocity +=
                       (1. - what.flip_share) *
-                      (Basis::template value<Number>(grid_velocity, xi) -
-                       flip);
+                      (Basis::template value<Number>(grid_velocity, xi) - flip);
                   lanes.store(velocity, points.velocity[d]);
                   kept_squared += flip * flip;
                   squared += velocity * velocity;
                   if constexpr (moves)
-                    shift[d] =
-                      what.move *
-                      Basis::template value<Number>(grid_velocity, xi);
+                    shift[d] = what.move *
+                               Basis::template value<Number>(grid_velocity, xi);
                 }
               if constexpr (affine)
                 set_affine<dim>(
@@ -196,11 +192,11 @@ namespace limber
                     move_points<dim>(points, grid, batch.cell, lanes, shift);
                   displacement = larger(displacement, moved.displacement);
                   if (sums && moved.inside)
-                    CellGatherer<Basis>(*sums).add(batch.cell,
-                                                 moved.xi,
-                                                 lanes.only_active(
-                                                   lanes.load(points.mass)),
-                                                 lanes.load(points.volumetric));
+                    CellGatherer<Basis>(*sums).add(
+                      batch.cell,
+                      moved.xi,
+                      lanes.only_active(lanes.load(points.mass)),
+                      lanes.load(points.volumetric));
                   else if (sums)
                     CellGatherer<Basis>(*sums).add_one_by_one(
                       points, grid, lanes.first, lanes.first + lanes.n);

@@ -146,14 +146,14 @@ namespace limber
       // mass, force and momentum lie next to each other
       constexpr unsigned int first   = momentum ? Layout::mass : Layout::force;
       constexpr unsigned int n_slots = momentum ? 1 + 2 * dim : dim;
-      using Sums   = SplineSums<dim, first, n_slots>;
-      using Record = typename Sums::Record;
+      using Sums                     = SplineSums<dim, first, n_slots>;
+      using Record                   = typename Sums::Record;
 
       return for_each_batch(
         points, [&](const CellBatch &batch) __attribute__((always_inline)) {
-          const CellGeometry<dim> &cell  = grid.cells[batch.cell];
-          const SplineCell<dim>   &nodes = grid.splines[batch.cell];
-          Sums                     of_batch;
+          const CellGeometry<dim>         &cell  = grid.cells[batch.cell];
+          const SplineCell<dim>           &nodes = grid.splines[batch.cell];
+          Sums                             of_batch;
           [[maybe_unused]] StressSums<dim> on_means;
           if constexpr (Force::any)
             for (auto &row : on_means)
@@ -247,7 +247,7 @@ namespace limber
       using P = Projection;
       switch (what.projection.kind)
         {
-          case P::automatic: // has been chosen long before
+          case P::automatic:      // has been chosen long before
           case P::assumed_strain: // has no modes here
             break;
           case P::none:

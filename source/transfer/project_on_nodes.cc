@@ -54,9 +54,9 @@ namespace limber
       constexpr int dim = Basis::dim;
       using Number      = PointPack<dim>;
       for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim>                 &cell = grid.cells[batch.cell];
+        const CellGeometry<dim> &cell = grid.cells[batch.cell];
         const NodalCoefficients<Basis, first, dim> velocity(grid, batch.cell);
-        NodalSums<dim>                           sums;
+        NodalSums<dim>                             sums;
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {
             const auto xi = lanes.natural(points, cell);

@@ -2,7 +2,7 @@
 #ifndef limber_tests_support_projections_h
 #define limber_tests_support_projections_h
 
-#include <limber/interpolation/kernel.h>
+#include <limber/materials/kernel.h>
 #include <limber/materials/projection.h>
 
 #include <vector>

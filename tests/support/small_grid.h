@@ -3,7 +3,7 @@
 #define limber_tests_support_small_grid_h
 
 #include <limber/interpolation/basis.h>
-#include <limber/interpolation/kernel.h>
+#include <limber/materials/kernel.h>
 #include <limber/points/point_view.h>
 #include <limber/transfer/grid_to_points.h>
 
@@ -81,8 +81,9 @@ namespace limber
 
 
     template <int dim, KernelKind kernel>
-    using BasisOf = std::
-      conditional_t<kernel == KernelKind::quadratic, Quadratic<dim>, Linear<dim>>;
+    using BasisOf = std::conditional_t<kernel == KernelKind::quadratic,
+                                       Quadratic<dim>,
+                                       Linear<dim>>;
 
 
 
@@ -91,7 +92,7 @@ namespace limber
     class SmallGrid
     {
     public:
-      using Basis = BasisOf<dim, kernel>;
+      using Basis                       = BasisOf<dim, kernel>;
       static constexpr bool has_splines = kernel == KernelKind::quadratic;
       // of the cell with all that does not vanish in it
       static constexpr int n_in_cell = Basis::n_nodes;
@@ -162,9 +163,9 @@ namespace limber
       view()
       {
         GridView<dim> result;
-        result.cells    = cells.data();
-        result.nodes    = nodes.data();
-        result.bins     = bins;
+        result.cells = cells.data();
+        result.nodes = nodes.data();
+        result.bins  = bins;
         if constexpr (has_splines)
           result.splines = splines.data();
         result.occupied = occupied.data();
@@ -325,14 +326,13 @@ namespace limber
         if (degree == 0)
           return knot(i) <= x && x < knot(i + 1) ? 1 : 0;
         double     result = 0;
-        const auto add    = [&](const int    first,
-                             const double numerator,
-                             const double sign) {
-          const double width = knot(first + degree) - knot(first);
-          if (width > 0)
-            result += (derivative ? sign * degree : numerator) / width *
-                      spline(first, degree - 1, x, d, false);
-        };
+        const auto add =
+          [&](const int first, const double numerator, const double sign) {
+            const double width = knot(first + degree) - knot(first);
+            if (width > 0)
+              result += (derivative ? sign * degree : numerator) / width *
+                        spline(first, degree - 1, x, d, false);
+          };
         add(i, x - knot(i), 1);
         add(i + 1, knot(i + 1 + degree) - x, -1);
         return result;

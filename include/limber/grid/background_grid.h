@@ -100,7 +100,7 @@ namespace limber
     std::vector<CellGeometry<dim>> geometry;
     std::vector<std::uint32_t>     bin_table;
     BinView<dim>                   bins;
-    double smallest_edge = 0; // m, over all ranks
+    double                         smallest_edge = 0; // m, over all ranks
     // Cells that other ranks hold as well
     SharedRecords  shared_cells;
     NodeTable<dim> vertices; // of cells

@@ -47,14 +47,12 @@ namespace limber
     apply_trial(NodalFields<dim> &nodes, unsigned int first, double time) const;
 
     /**
-     * Take from a change of the new velocity of a node, dim numbers at @p
-     * change, what the sides on which it lies do not admit. Sides with friction
-     * hold what they have brought to rest.
+     * For each component of the new velocity of a node the directions (bits)
+     * in which a side holds it, so that nothing may change it. Sides with
+     * friction hold what they have brought to rest.
      */
-    void
-    hold(const NodalFields<dim> &nodes,
-         std::uint32_t           node,
-         double                 *change) const;
+    std::array<unsigned int, dim>
+    held(const NodalFields<dim> &nodes, std::uint32_t node) const;
 
   private:
     bool

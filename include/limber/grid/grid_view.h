@@ -128,10 +128,10 @@ namespace limber
   {
     static constexpr unsigned int mass = 0;
 
-    const double  *now     = nullptr; // of the present places, complete
-    double        *next    = nullptr; // of the places after the step
-    std::uint32_t *turn_of = nullptr; // last in which a cell got sums
-    std::uint32_t  turn    = 0;       // in which the next sums are gathered
+    const double  *now     = nullptr;  // of the present places, complete
+    double        *next    = nullptr;  // of the places after the step
+    std::uint32_t *turn_of = nullptr;  // last in which a cell got sums
+    std::uint32_t  turn    = 0;        // in which the next sums are gathered
     unsigned int   stride  = 1 << dim; // as many as a cell has nodes
 
     /** The slot of the sum of m times the volumetric variable. */

@@ -187,9 +187,9 @@ namespace limber
     find_roles();
 
     // What a node has to do with other ranks, directly or through masters
-    static constexpr std::uint8_t is_shared               = 1;
+    static constexpr std::uint8_t is_shared        = 1;
     static constexpr std::uint8_t is_of_owned_cell = 2;
-    static constexpr std::uint8_t may_be_added_to         = 4; // as agreed
+    static constexpr std::uint8_t may_be_added_to  = 4; // as agreed
 
     LazyArray<double>          values;
     LazyArray<std::uint8_t>    roles; // of nodes

@@ -6,6 +6,7 @@
 
 #include <limber/grid/shared_records.h>
 
+#include <array>
 #include <unordered_map>
 #include <vector>
 
@@ -59,6 +60,11 @@ namespace limber
     std::unordered_map<std::uint32_t, dealii::Point<dim>> places;
     // Those that other ranks hold as well
     SharedRecords shared;
+    // Of splines: for a node in sides, and a set of directions (bits), the node
+    // that is reached by steps inward in those of them in which it lies at a
+    // side
+    std::unordered_map<std::uint32_t, std::array<std::uint32_t, 1 << dim>>
+      inward;
   };
 } // namespace limber
 

@@ -175,7 +175,7 @@ namespace limber
   template <class Basis, unsigned int first, unsigned int n_components>
   class NodalCoefficients
   {
-    static constexpr int          dim   = Basis::dim;
+    static constexpr int          dim = Basis::dim;
     static constexpr unsigned int width =
       n_components <= 2 ? 2 : (n_components <= 4 ? 4 : 8);
     // Lanes beyond the wanted slots must not reach beyond the record.

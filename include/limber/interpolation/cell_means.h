@@ -57,7 +57,7 @@ namespace limber
     auto
     derivatives_of(const VectorField &c) const
     {
-      constexpr auto stride = Basis::stride;
+      constexpr auto                                    stride = Basis::stride;
       std::array<typename VectorField::Components, dim> result;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
@@ -66,8 +66,8 @@ namespace limber
 #pragma GCC unroll 27
           for (int k = 0; k < n_nodes; ++k)
             if (Basis::power(k, d) > 0 && k != stride(d))
-              sum += c.components(k) *
-                     (Basis::power(k, d) * record[k - stride(d)]);
+              sum +=
+                c.components(k) * (Basis::power(k, d) * record[k - stride(d)]);
           result[d] = c.components(stride(d)) + inverse_mass * sum;
         }
       return result;

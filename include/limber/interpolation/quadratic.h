@@ -98,7 +98,7 @@ namespace limber
           if (power(i, d) == 0)
             {
               Number &a0 = a[i], &a1 = a[i + stride(d)],
-                     &a2 = a[i + 2 * stride(d)];
+                     &a2         = a[i + 2 * stride(d)];
               const Number lower = cell.lower[d] * (a0 - a1);
               const Number upper = cell.upper[d] * (a2 - a1);
               a0                 = a1 + lower;
@@ -119,7 +119,7 @@ namespace limber
           if (power(i, d) == 0)
             {
               Number &a0 = a[i], &a1 = a[i + stride(d)],
-                     &a2     = a[i + 2 * stride(d)];
+                     &a2         = a[i + 2 * stride(d)];
               const Number all   = a0;
               const Number lower = cell.lower[d] * (a0 - 2. * a1 + a2);
               const Number upper = cell.upper[d] * a2;
@@ -157,13 +157,12 @@ namespace limber
         return plane_with_slopes(c, xi, 0).slope;
       else
         {
-          const auto a = plane_with_slopes(c, xi, 0);
-          const auto b = plane_with_slopes(c, xi, 9);
-          const auto e = plane_with_slopes(c, xi, 18);
+          const auto              a = plane_with_slopes(c, xi, 0);
+          const auto              b = plane_with_slopes(c, xi, 9);
+          const auto              e = plane_with_slopes(c, xi, 18);
           std::array<Number, dim> result;
           for (int d = 0; d < 2; ++d)
-            result[d] =
-              a.slope[d] + xi[2] * (b.slope[d] + xi[2] * e.slope[d]);
+            result[d] = a.slope[d] + xi[2] * (b.slope[d] + xi[2] * e.slope[d]);
           result[2] = b.value + (2. * xi[2]) * e.value;
           return result;
         }

@@ -165,7 +165,7 @@ namespace limber
     // Components as lanes: what is summed up here belongs to a cell, not to a
     // point, and eight points a cell would have to pay for it one by one.
     __attribute__((always_inline)) void
-    set_hourglass(const CellMeans<Basis>   &means,
+    set_hourglass(const CellMeans<Basis> &means,
                   const StrainProjection &projection)
     {
       Components scales{};
@@ -283,10 +283,10 @@ namespace limber
     using Nodes  = typename Linear<dim>::Nodes;
 
     /** @p nodal is the pressure S p, Pa. */
-    StressOperator(const CellGeometry<dim>    &cell,
-                   const StrainProjection     &projection,
+    StressOperator(const CellGeometry<dim>      &cell,
+                   const StrainProjection       &projection,
                    const CellMeans<Linear<dim>> &means,
-                   const NodalMean<dim, kind> &nodal)
+                   const NodalMean<dim, kind>   &nodal)
       : cell(cell)
       , projection(projection)
       , means(means)
@@ -550,10 +550,10 @@ namespace limber
                            t[d][d] * (h[d] * xi[e]) + t[d][e] * (h[e] * xi[d]));
     }
 
-    const CellGeometry<dim>    &cell;
-    const StrainProjection     &projection;
+    const CellGeometry<dim>      &cell;
+    const StrainProjection       &projection;
     const CellMeans<Linear<dim>> &means;
-    const NodalMean<dim, kind> &nodal;
+    const NodalMean<dim, kind>   &nodal;
 
     Number                                        pressure{};
     std::array<std::array<Number, dim>, dim>      stress{};

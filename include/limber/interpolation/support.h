@@ -16,9 +16,9 @@ namespace limber
   {
     static constexpr int most = Quadratic<dim>::n_nodes;
 
-    int                                       n = 0; // of nodes
-    std::array<std::uint32_t, most>           node;  // local numbers
-    std::array<double, most>                  value; // N_i
+    int                                       n = 0;    // of nodes
+    std::array<std::uint32_t, most>           node;     // local numbers
+    std::array<double, most>                  value;    // N_i
     std::array<std::array<double, dim>, most> gradient; // of N_i, 1/m
   };
 
@@ -65,9 +65,9 @@ namespace limber
              const std::array<double, dim> &x)
   {
     return with_basis(grid, [&](const auto basis) {
-      using Basis                         = std::decay_t<decltype(basis)>;
-      const CellGeometry<dim> &geometry   = grid.cells[cell];
-      const auto              &nodes      = Basis::nodes_of(grid, cell);
+      using Basis                       = std::decay_t<decltype(basis)>;
+      const CellGeometry<dim> &geometry = grid.cells[cell];
+      const auto              &nodes    = Basis::nodes_of(grid, cell);
       std::array<internal::Factors<dim>, dim> w;
       for (int d = 0; d < dim; ++d)
         w[d] = internal::factors(basis,

@@ -2,7 +2,7 @@
 #ifndef limber_output_health_h
 #define limber_output_health_h
 
-#include <limber/interpolation/kernel.h>
+#include <limber/materials/kernel.h>
 
 #include <string>
 #include <vector>

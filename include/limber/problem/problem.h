@@ -6,7 +6,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
-#include <limber/interpolation/kernel.h>
+#include <limber/materials/kernel.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/projection.h>
 #include <limber/problem/shapes.h>
@@ -184,15 +184,15 @@ namespace limber
 
   struct Method
   {
-    StressUpdateOrder order    = StressUpdateOrder::automatic;
-    Transfer          transfer = Transfer::flip;
-    unsigned int transfer_order  = 4; // k of FMPM(k) and XPIC(k)
+    StressUpdateOrder order          = StressUpdateOrder::automatic;
+    Transfer          transfer       = Transfer::flip;
+    unsigned int      transfer_order = 4; // k of FMPM(k) and XPIC(k)
     unsigned int transfer_period = 1; // they act every so many steps, else FLIP
-    double damping_time        = 0;   // s; FLIP share 1 - dt/time, 0: pure FLIP
-    double damping_rate        = 0;   // alpha of the acceleration -alpha v, 1/s
-    double courant_number      = 0.4; // C
-    double time_step           = 0;   // s; 0: from the Courant number
-    double lost_points_limit   = 0;   // share of all points that may be lost
+    double       damping_time    = 0; // s; FLIP share 1 - dt/time, 0: pure FLIP
+    double       damping_rate    = 0; // alpha of the acceleration -alpha v, 1/s
+    double       courant_number  = 0.4; // C
+    double       time_step       = 0;   // s; 0: from the Courant number
+    double       lost_points_limit = 0; // share of all points that may be lost
     double energy_growth_limit = 1; // drift over energy scale that stops a run
   };
 

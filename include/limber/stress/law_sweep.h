@@ -141,13 +141,13 @@ namespace limber
 
       Batch(const Batch &) = delete; // the parts know each other's addresses
 
-      const std::uint32_t                    cell_number;
-      const CellGeometry<dim>               &cell;
-      const Nodal                            nodal; // new, then re-mapped
-      const Field                            strained;
-      const CellMeans<Basis>                 means;
-      const double                           shift;
-      const NodalMean<dim, kind>             divergence;
+      const std::uint32_t                      cell_number;
+      const CellGeometry<dim>                 &cell;
+      const Nodal                              nodal; // new, then re-mapped
+      const Field                              strained;
+      const CellMeans<Basis>                   means;
+      const double                             shift;
+      const NodalMean<dim, kind>               divergence;
       const StrainOperator<Basis, kind, Field> strain;
     };
 

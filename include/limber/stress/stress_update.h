@@ -2,7 +2,7 @@
 #ifndef limber_stress_stress_update_h
 #define limber_stress_stress_update_h
 
-#include <limber/interpolation/kernel.h>
+#include <limber/materials/kernel.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
@@ -148,7 +148,7 @@ namespace limber
                      Projection                 kind,
                      HourglassResponse          response,
                      Frame                      frame  = Frame::current,
-                     KernelKind kernel = KernelKind::linear);
+                     KernelKind                 kernel = KernelKind::linear);
 } // namespace limber
 
 #endif

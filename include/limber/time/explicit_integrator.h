@@ -40,10 +40,10 @@ namespace limber
   struct IntegratorState
   {
     // Of the last step, over all ranks: m/s, m/s, cells, kg
-    double                              wave_speed   = 0;
-    double                              point_speed  = 0;
-    double                              displacement = 0;
-    double                              largest_mass = 0;
+    double                              wave_speed         = 0;
+    double                              point_speed        = 0;
+    double                              displacement       = 0;
+    double                              largest_mass       = 0;
     unsigned long                       steps_since_filter = 0;
     typename ExternalLoads<dim>::Pieces face_pieces;
   };
@@ -223,6 +223,7 @@ namespace limber
     double any_lost            = 0;
     double any_entered_shared  = 0;
     double any_entered_ghosts  = 0;
+    bool   exchanged           = false; // since the last step began
     double most_points         = 0; // on one rank
     double most_excess_batches = 0; // on one rank, see below
     double fastest_node        = 0; // cells in this step

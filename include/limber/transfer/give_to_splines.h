@@ -14,10 +14,10 @@ namespace limber
   template <int dim, bool slopes>
   struct SplineWeights
   {
-    using Basis                        = Quadratic<dim>;
-    using Number                       = PointPack<dim>;
-    static constexpr int         width = pack_width<Number>;
-    static constexpr int         n     = Basis::n_nodes;
+    using Basis                              = Quadratic<dim>;
+    using Number                             = PointPack<dim>;
+    static constexpr int         width       = pack_width<Number>;
+    static constexpr int         n           = Basis::n_nodes;
     static constexpr std::size_t n_gradients = slopes ? dim : 0;
 
     __attribute__((always_inline))
@@ -34,12 +34,12 @@ namespace limber
             for (Number &slope : w[d].slope)
               slope *= cell.inverse_edge[d];
         }
-      // Every weight is a product of factors that are exact to the last bits:
-      // small masses of nodes remain positive.
+        // Every weight is a product of factors that are exact to the last bits:
+        // small masses of nodes remain positive.
 #pragma GCC unroll 27
       for (int i = 0; i < n; ++i)
         {
-          const Number &x = w[0].value[Basis::power(i, 0)];
+          const Number &x      = w[0].value[Basis::power(i, 0)];
           Number        others = w[1].value[Basis::power(i, 1)];
           if constexpr (dim == 3)
             others *= w[2].value[Basis::power(i, 2)];
@@ -207,21 +207,21 @@ namespace limber
    */
   template <int dim, bool affine, class Lanes, class Sums>
   __attribute__((always_inline)) inline void
-  give_momentum(const PointView<dim>          &points,
-                const CellGeometry<dim>       &cell,
-                const SplineCell<dim>         &nodes,
-                const Lanes                   &lanes,
+  give_momentum(const PointView<dim>                  &points,
+                const CellGeometry<dim>               &cell,
+                const SplineCell<dim>                 &nodes,
+                const Lanes                           &lanes,
                 const std::array<PointPack<dim>, dim> &xi,
                 const double (&weights)[Quadratic<dim>::n_nodes][1 << dim],
-                const unsigned int             momentum, // its first slot
-                Sums                          &sums)
+                const unsigned int momentum, // its first slot
+                Sums              &sums)
   {
-    using Number           = PointPack<dim>;
-    using Basis            = Quadratic<dim>;
-    using Record           = typename Sums::Record;
+    using Number            = PointPack<dim>;
+    using Basis             = Quadratic<dim>;
+    using Record            = typename Sums::Record;
     constexpr bool has_mass = Sums::start == 0;
 
-    const Number mass = lanes.load(points.mass);
+    const Number                    mass = lanes.load(points.mass);
     std::array<Number, Sums::width> slots;
     set_zero(slots);
     if constexpr (has_mass)

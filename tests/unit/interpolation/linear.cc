@@ -194,7 +194,7 @@ TYPED_TEST(LinearFunctions, CoefficientsAreThoseOfTheSlotsAskedFor)
 
   const std::uint32_t number = grid.n_cells - 1;
   const auto         &cell   = grid.cells[number];
-  const auto          check = [&](const auto &nodal, const unsigned int slot, int c) {
+  const auto check = [&](const auto &nodal, const unsigned int slot, int c) {
     std::array<double, 1 << dim> a;
     for (int i = 0; i < 1 << dim; ++i)
       a[i] = grid.nodes[cell.node[i] + slot];

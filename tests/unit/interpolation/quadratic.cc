@@ -23,7 +23,7 @@ namespace
     /** Of all nodes of a cell at natural coordinates: N_i, dN_i / dxi_d. */
     struct AtPlace
     {
-      std::array<double, Basis::n_nodes>                      value;
+      std::array<double, Basis::n_nodes>                  value;
       std::array<std::array<double, Basis::n_nodes>, dim> gradient;
     };
 
@@ -151,7 +151,7 @@ TYPED_TEST(QuadraticFunctions, HaveNoJumpInTheGradientBetweenCells)
             x[e]                = grid.cells[c].origin[e] +
                    (below[e] + (e == d ? 1 : 0)) * grid.edge[e];
           }
-        x[d] = grid.cells[c].origin[d] + 1.5 * grid.edge[d];
+        x[d]                     = grid.cells[c].origin[d] + 1.5 * grid.edge[d];
         const std::uint32_t next = grid.bins.cell_at(x);
         if (next == invalid_cell)
           continue;

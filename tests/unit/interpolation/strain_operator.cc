@@ -304,7 +304,7 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
             nodes[i * Layout::stride + Layout::velocity + d];
 
       std::vector<std::array<double, dim>> places(5), mirrored_places;
-      std::vector<double> sums(n), mirrored_sums(n);
+      std::vector<double>                  sums(n), mirrored_sums(n);
       // means of the divergence around the nodes, of whatever neighbours do
       constexpr auto      stride = NodalMeanLayout::stride;
       std::vector<double> means(stride << dim), mirrored_means(means.size());

@@ -424,9 +424,7 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
           auto gathered = this->grid.next_sums;
           for (std::uint32_t cell = 0; cell < this->grid.n_cells; ++cell)
             if (!sums.is_open(cell))
-              std::fill_n(&gathered[cell << dim],
-                          1 << dim,
-                          0.);
+              std::fill_n(&gathered[cell << dim], 1 << dim, 0.);
           this->grid.gather(moved.view());
           for (std::size_t k = 0; k < gathered.size(); ++k)
             EXPECT_NEAR(gathered[k],
@@ -579,8 +577,8 @@ TYPED_TEST(Sweep, DeviatoricHistoryTendsToTheMeanOfTheCell)
                    law,
                    2,
                    share);
-            expect(LawSweep<Linear<dim>, Law, Projection::hybrid>(law,
-                                                          {Projection::hybrid}),
+            expect(LawSweep<Linear<dim>, Law, Projection::hybrid>(
+                     law, {Projection::hybrid}),
                    law,
                    2,
                    share);

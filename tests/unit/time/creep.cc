@@ -28,13 +28,13 @@ namespace
              digits(0.2 + along * s + across * c);
     };
     const std::string ramp = " * if(t < 0.25, 0.5 - 0.5 * cos(4*pi*t), 1)";
-    const auto load = [&](const std::string &name,
-                          const std::string &face,
-                          const double       sign) {
-      return "subsection Face load " + name + "\n set Body = bar\n set Face = " +
-             face + "\n set Traction = " + digits(sign * tension * c) +
-             ramp + "; " + digits(sign * tension * s) + ramp + "\n end\n";
-    };
+    const auto        load =
+      [&](const std::string &name, const std::string &face, const double sign) {
+        return "subsection Face load " + name +
+               "\n set Body = bar\n set Face = " + face +
+               "\n set Traction = " + digits(sign * tension * c) + ramp + "; " +
+               digits(sign * tension * s) + ramp + "\n end\n";
+      };
     return R"(
     set Bodies = bar
     subsection Body bar
@@ -100,7 +100,7 @@ namespace
   creep_per_cell(const std::string &kernel, const unsigned int points)
   {
     SceneRun<2>      run(pulled_bar(),
-                         {"Method/Kernel=" + kernel,
+                    {"Method/Kernel=" + kernel,
                           "Body bar/Points per cell edge=" +
                             std::to_string(points)});
     const auto       start = run.positions();

@@ -107,7 +107,8 @@ namespace
                        const Velocity      &velocity)
   {
     const std::size_t   n = body.place.size();
-    std::vector<double> mass(run.grid.vertices.n()), sum(mass.size()), result(n);
+    std::vector<double> mass(run.grid.vertices.n()), sum(mass.size()),
+      result(n);
     for (const bool to_nodes : {true, false})
       for (std::size_t p = 0; p < n; ++p)
         {

@@ -60,9 +60,9 @@ namespace
     {
       for (const std::uint32_t cell : cells)
         {
-          double *const record = &grid.sums[cell << dim];
-          record[CellSums<dim>::mass]       = mass[cell];
-          record[(1 << dim) - 1] = mass[cell] * mean[cell];
+          double *const record        = &grid.sums[cell << dim];
+          record[CellSums<dim>::mass] = mass[cell];
+          record[(1 << dim) - 1]      = mass[cell] * mean[cell];
         }
       std::fill(grid.nodes.begin(), grid.nodes.end(), 0.);
       gather_chequerboards<dim>(cells, grid.view(), grid.cell_sums());

@@ -159,8 +159,7 @@ TYPED_TEST(Hourglass, ResistanceIsThatOfTheFormula)
       this->resist(0.5, 1e-9);
       const double h =
         *std::min_element(this->grid.edge.begin(), this->grid.edge.end());
-      const double mass =
-        this->grid.sums[(c << dim) + CellSums<dim>::mass];
+      const double mass = this->grid.sums[(c << dim) + CellSums<dim>::mass];
       for (int i = 0; i < 1 << dim; ++i)
         for (int d = 0; d < dim; ++d)
           EXPECT_NEAR(this->record(

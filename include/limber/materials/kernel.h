@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_interpolation_kernel_h
-#define limber_interpolation_kernel_h
+#ifndef limber_materials_kernel_h
+#define limber_materials_kernel_h
 
 namespace limber
 {
