@@ -242,6 +242,7 @@ namespace limber
     summary.message   = message;
     summary.failure   = failure;
     summary.suspected = suspected;
+    integrator.bring_points_home();
     summary.health =
       judge(health.look(state, totals, balance_of_start.state().energy_scale));
     if (statistics)

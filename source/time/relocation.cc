@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 /**
  * @file What happens to points between the sweeps of two steps: cells and
@@ -74,14 +73,21 @@ namespace limber
     complete_cells(&MaterialBody<dim>::cell_sums);
 
     travelled += displacement;
-    // A rank knows all functions of its own cells, but of those around only
-    // linear ones.
-    if (parallel && grid.has_splines() && any_entered_ghosts > 0)
-      {
-        exchange_points();
-        exchanged = true;
-      }
     lap(Verb::relocate);
+  }
+
+
+
+  // A rank knows all functions of its own cells, but of those around only linear
+  // ones.
+  template <int dim>
+  bool
+  ExplicitIntegrator<dim>::bring_points_home()
+  {
+    if (!parallel || !grid.has_splines() || !(any_entered_ghosts > 0))
+      return false;
+    exchange_points();
+    return true;
   }
 
 
@@ -122,17 +128,19 @@ namespace limber
   ExplicitIntegrator<dim>::reorganise()
   {
     stopwatch.start();
+    bool exchanged = bring_points_home();
     // The next step may be somewhat longer than the last one.
-    const bool exchange =
-      parallel && travelled + 1.5 * displacement > travel_limit;
+    if (parallel && travelled + 1.5 * displacement > travel_limit)
+      {
+        exchange_points();
+        exchanged = true;
+      }
     // A sort costs about as much as the detours of n / 4 surplus batches. All
     // ranks sort in the same step, or each would wait while the others do.
-    if (exchange)
-      exchange_points();
     else if (most_excess_batches > most_points / 4)
       sort_points(/*agree=*/false);
     lap(Verb::relocate);
-    return std::exchange(exchanged, false) || exchange;
+    return exchanged;
   }
 
 
@@ -173,7 +181,8 @@ namespace limber
     for (auto &body : bodies)
       body->points.hand_over();
     loads.exchange_pieces();
-    travelled = 0;
+    travelled          = 0;
+    any_entered_ghosts = 0;
     sort_points(/*agree=*/true);
     gather_cells();
   }
@@ -225,6 +234,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::gather_cells();
   template bool
+  ExplicitIntegrator<2>::bring_points_home();
+  template bool
   ExplicitIntegrator<2>::reorganise();
   template void
   ExplicitIntegrator<2>::remove_lost_points();
@@ -243,6 +254,8 @@ namespace limber
     std::optional<CellFields<3>> MaterialBody<3>::*);
   template void
   ExplicitIntegrator<3>::gather_cells();
+  template bool
+  ExplicitIntegrator<3>::bring_points_home();
   template bool
   ExplicitIntegrator<3>::reorganise();
   template void

@@ -72,6 +72,15 @@ namespace limber
     reorganise();
 
     /**
+     * With splines, give points in ghost cells to the ranks that own these, who
+     * alone know all nodes of their cells; records of nodes are given up. To
+     * be called before anything but a step evaluates functions at points;
+     * returns whether there were any. Collective.
+     */
+    bool
+    bring_points_home();
+
+    /**
      * One step from @p time over @p step seconds; collective. Throws
      * ComputationError when the step cannot be done; where nodal velocities
      * show it, points still are what they were.
@@ -223,7 +232,6 @@ namespace limber
     double any_lost            = 0;
     double any_entered_shared  = 0;
     double any_entered_ghosts  = 0;
-    bool   exchanged           = false; // since the last step began
     double most_points         = 0; // on one rank
     double most_excess_batches = 0; // on one rank, see below
     double fastest_node        = 0; // cells in this step
