@@ -14,7 +14,8 @@ from draws import Draws
 KINDS = {"text": 38, "json": 17, "admissible": 25, "folder": 12, "mesh": 8}
 
 # Few steps, and an end by itself where steps take long.
-SHORT = ["End step=5", "Checkpoint/Wall time limit=5"]
+# Small as well: a large grid may take longer than a mutant is given.
+SHORT = ["End step=5", "Checkpoint/Wall time limit=5", "Memory limit=1"]
 SMALL_REFERENCE = ["Reference/Elements over depth=1", "End time=0.01",
                    "Reference/Time step=0.002"]
 
@@ -56,7 +57,7 @@ def study_command(draws, name):
 
 def with_few_steps(text):
     """A study whose runs are short; what it says is mutated afterwards."""
-    few = b"End step=3 | Checkpoint/Wall time limit=2"
+    few = b"End step=3 | Checkpoint/Wall time limit=2 | Memory limit=1"
     lines = text.split(b"\n")
     for number, line in enumerate(lines):
         if line.startswith(b"set Settings"):
