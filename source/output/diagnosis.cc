@@ -36,8 +36,10 @@ namespace limber
                 brief(courant_number) + " fails in cells filled to less than " +
                 brief(0.5 * courant_number * courant_number) +
                 " edges (body '" + body.body +
-                "' now: " + brief(2 * body.filling) +
-                "). Set 'Method/Stress update = auto'."};
+                "' now: " + brief(2 * body.filling) + "). Set " +
+                (filters_velocity(method.transfer) ?
+                   "'Method/Kernel = quadratic', or 'Transfer = flip'." :
+                   "'Method/Stress update = auto'.")};
     }
 
 

@@ -133,7 +133,7 @@ namespace limber
       SizeEstimate  size;
       size.cells             = product(problem.grid.cells);
       size.bytes_of_programs = of_program * ranks;
-      const bool splines = problem.grid.kernel == KernelKind::quadratic;
+      const bool splines     = problem.grid.kernel == KernelKind::quadratic;
       size.bytes_of_cells =
         size.cells * (of_cell[k] + (splines ? of_spline_cell[k] : 0)) *
           (in_parallel ? grid_built_anew : 1) +

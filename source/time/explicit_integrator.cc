@@ -358,10 +358,15 @@ namespace limber
     const Method &method = problem.method;
     steps_since_filter   = (steps_since_filter + 1) % method.transfer_period;
     if (steps_since_filter == 0)
-      full_mass->apply(nodes,
-                       bodies,
-                       method.transfer_order,
-                       method.transfer == Transfer::xpic);
+      {
+        const auto impulses =
+          full_mass->apply(nodes,
+                           bodies,
+                           method.transfer_order,
+                           method.transfer == Transfer::xpic);
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          ledger.side_impulse[side] += impulses[side];
+      }
     lap(Verb::grid_to_points);
   }
 

@@ -9,7 +9,8 @@ namespace limber
   template <int dim>
   FullMassFilter<dim>::FullMassFilter(const BackgroundGrid<dim>     &grid,
                                       const BoundaryConditions<dim> &boundaries)
-    : table(grid.nodes())
+    : communicator(grid.communicator)
+    , table(grid.nodes())
     , boundaries(boundaries)
     , on_points(dim)
   {
@@ -29,7 +30,7 @@ namespace limber
 
 
   template <int dim>
-  void
+  typename FullMassFilter<dim>::Impulses
   FullMassFilter<dim>::apply(NodalFields<dim>  &nodes,
                              Bodies            &bodies,
                              const unsigned int order,
@@ -42,6 +43,7 @@ namespace limber
         multiply_by_full_mass(nodes, bodies);
         correct(nodes);
       }
+    const Impulses result = impulses(nodes);
     for (const std::uint32_t node : nodes.active_nodes())
       {
         double *const       own = nodes.record(node);
@@ -55,6 +57,52 @@ namespace limber
               v[d] + (former ? own[Layout::increment + d] : 0);
       }
     nodes.interpolate_hanging();
+    return result;
+  }
+
+
+
+  // Where no side holds anything, the sum of m v stays what it is. What it
+  // changes by is shared among the sides in proportion to the mass that they
+  // hold.
+  template <int dim>
+  typename FullMassFilter<dim>::Impulses
+  FullMassFilter<dim>::impulses(const NodalFields<dim> &nodes)
+  {
+    dealii::Tensor<1, dim> change;
+    Impulses               held_mass; // by side and component
+    dealii::Tensor<1, dim> all_held;
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        const double *const own = nodes.record(node);
+        if (!nodes.owns(node) || !(own[Layout::mass] > 0))
+          continue;
+        const auto held = this->held(nodes, node);
+        for (int d = 0; d < dim; ++d)
+          if (held[d] == 0)
+            change[d] +=
+              own[Layout::mass] * record(node)[Layout::velocity + d] -
+              momentum(own, d);
+          else
+            for (unsigned int side = 0; side < 2 * dim; ++side)
+              if ((table.sides[node] >> side & 1) && (held[d] >> side / 2 & 1))
+                {
+                  held_mass[side][d] += own[Layout::mass];
+                  all_held[d] += own[Layout::mass];
+                }
+      }
+    Impulses result;
+    for (int d = 0; d < dim; ++d)
+      {
+        const double total =
+          dealii::Utilities::MPI::sum(all_held[d], communicator);
+        const double moved =
+          dealii::Utilities::MPI::sum(change[d], communicator);
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          if (total > 0)
+            result[side][d] = moved * held_mass[side][d] / total;
+      }
+    return result;
   }
 
 

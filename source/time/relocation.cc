@@ -78,8 +78,8 @@ namespace limber
 
 
 
-  // A rank knows all functions of its own cells, but of those around only linear
-  // ones.
+  // A rank knows all functions of its own cells, but of those around only
+  // linear ones.
   template <int dim>
   bool
   ExplicitIntegrator<dim>::bring_points_home()

@@ -6,8 +6,8 @@
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
-#include <limber/materials/kernel.h>
 #include <limber/materials/frame.h>
+#include <limber/materials/kernel.h>
 #include <limber/materials/projection.h>
 #include <limber/problem/shapes.h>
 

@@ -2,8 +2,8 @@
 #ifndef limber_stress_stress_update_h
 #define limber_stress_stress_update_h
 
-#include <limber/materials/kernel.h>
 #include <limber/materials/frame.h>
+#include <limber/materials/kernel.h>
 #include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
 

@@ -44,9 +44,11 @@ namespace limber
     /**
      * Put v(@p order) in the place of the new velocity of active nodes or,
      * with @p former_only, that of the velocity before the step plus the
-     * increment of the step. Collective.
+     * increment of the step. Collective. Returns the impulses of sides that
+     * this takes, kg m/s, on owned nodes.
      */
-    void
+    using Impulses = std::array<dealii::Tensor<1, dim>, 2 * dim>;
+    Impulses
     apply(NodalFields<dim>                                &nodes,
           std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
           unsigned int                                     order,
@@ -60,6 +62,8 @@ namespace limber
     start(const NodalFields<dim> &nodes);
     void
     correct(const NodalFields<dim> &nodes);
+    Impulses
+    impulses(const NodalFields<dim> &nodes);
     void
     multiply_by_full_mass(NodalFields<dim> &nodes, Bodies &bodies);
 
@@ -92,6 +96,7 @@ namespace limber
       return own[Layout::mass] * velocity;
     }
 
+    const MPI_Comm                 communicator;
     const NodeTable<dim>          &table;
     const BoundaryConditions<dim> &boundaries;
     bool                           former = false;
