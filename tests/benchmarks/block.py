@@ -4,8 +4,7 @@
     block.py [path of limber] [runs]
 
 Prints best and median over the runs (default 5) of CPU time in ns per point
-and step for both treatments in 2D and 3D, with splines, with these and FMPM
-beside the FLIP of the same stress update, in a box with 16 times the cells, the speed-up of
+and step for both treatments in 2D and 3D, with splines, with these and FMPM, in a box with 16 times the cells, the speed-up of
 two ranks in wall time, and bytes per point (peak resident set, program included)
 for a finer block. Variants take turns, so that a drift of the machine's speed
 meets all alike.
@@ -29,8 +28,7 @@ BIG_BOX = {"2d": ["Grid/Upper corner=4.96, 4.96", "Grid/Cells=496, 496"],
                   "Grid/Cells=160, 80, 80"]}
 NONE = "Body block/Locking treatment=none"
 SPLINES = "Method/Kernel=quadratic"
-LAST = "Method/Stress update=last"
-FMPM = ["Method/Transfer=fmpm", LAST, NONE]
+FMPM = ["Method/Transfer=fmpm", "Method/Stress update=last", NONE]
 FINE = {"2d": ["Grid/Cells=1984, 1984", "End time=0.00025"],
         "3d": ["Grid/Cells=160, 160, 160", "End time=0.001"]}
 
@@ -56,7 +54,6 @@ def main():
                     "none": ([NONE], 1),
                     "splines, cell": ([SPLINES], 1),
                     "splines, none": ([SPLINES, NONE], 1),
-                    "splines, none, USL": ([SPLINES, NONE, LAST], 1),
                     "splines, none, FMPM(4)": ([SPLINES, *FMPM], 1),
                     "cell, 16 times the box": (BIG_BOX[scene], 1),
                     "cell, two ranks": ([], 2)}
