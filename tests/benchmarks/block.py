@@ -4,10 +4,10 @@
     block.py [path of limber] [runs]
 
 Prints best and median over the runs (default 5) of CPU time in ns per point
-and step for both treatments in 2D and 3D, with splines, with these and FMPM, in a box with 16 times the cells, the speed-up of
-two ranks in wall time, and bytes per point (peak resident set, program included)
-for a finer block. Variants take turns, so that a drift of the machine's speed
-meets all alike.
+and step for both treatments in 2D and 3D, with splines, with splines and FMPM,
+in a box with 16 times the cells, the speed-up of two ranks in wall time, and
+bytes per point (peak resident set, program included) for a finer block. Variants
+take turns, so that a drift of the machine's speed meets all alike.
 """
 
 import json
