@@ -14,7 +14,8 @@ namespace limber
 {
   namespace
   {
-    // Bytes, as measured; in two and in three dimensions
+    // Bytes, as measured; in two and in three dimensions. Those of splines and
+    // of the filter are reckoned from the tables they take.
     constexpr double of_program              = 165e6;
     constexpr double of_cell[]               = {400, 750};
     constexpr double of_spline_cell[]        = {80, 170};

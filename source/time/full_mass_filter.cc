@@ -64,7 +64,7 @@ namespace limber
 
   // Where no side holds anything, the sum of m v stays what it is. What it
   // changes by is shared among the sides in proportion to the mass that they
-  // hold.
+  // hold. By difference: a fault of the filter would be booked along with it.
   template <int dim>
   typename FullMassFilter<dim>::Impulses
   FullMassFilter<dim>::impulses(const NodalFields<dim> &nodes)
