@@ -154,7 +154,7 @@ main(int argc, char *argv[])
   const bool                               first =
     dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
 
-  end_all_ranks_without_memory();
+  const LastWord last_word;
 
   // Failures are the same on every rank, so one speaks and all end. What is
   // not foreseen may concern one rank alone: it speaks and ends the others.
@@ -180,9 +180,7 @@ main(int argc, char *argv[])
   catch (const std::exception &unforeseen)
     {
       const auto failure = as_failure(unforeseen);
-      std::cerr << "Error: " << failure.what() << std::endl;
-      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-        MPI_Abort(MPI_COMM_WORLD, int(failure.code));
+      last_word.say(failure);
       return int(failure.code);
     }
 }

@@ -6,7 +6,11 @@
 #include <limber/base/text.h>
 #include <limber/base/unforeseen.h>
 
+#include <unistd.h>
+
+#include <atomic>
 #include <cstdio>
+#include <iostream>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -38,16 +42,38 @@ namespace limber
 
 
 
+    // Shared by the ranks of a machine, as a handler without memory can have
+    // no messages from them. Null with one rank.
+    std::atomic<int> *has_spoken = nullptr;
+
+
+
+    // What a rank that comes second does until the first has ended it. Signals
+    // wake it, so it counts.
+    void
+    wait_for_the_end()
+    {
+      for (unsigned int seconds = 0; seconds < 30; ++seconds)
+        sleep(1);
+    }
+
+
+
     [[noreturn]] void
     end_all_ranks()
     {
       std::set_new_handler(nullptr);
-      std::fputs("Error: ", stderr);
-      std::fprintf(stderr,
-                   without_memory,
-                   resident_memory() / 1e9,
-                   machine_memory(1) / 1e9);
-      std::fputs("\n", stderr);
+      if (has_spoken->exchange(1) == 0)
+        {
+          std::fputs("Error: ", stderr);
+          std::fprintf(stderr,
+                       without_memory,
+                       resident_memory() / 1e9,
+                       machine_memory(1) / 1e9);
+          std::fputs("\n", stderr);
+        }
+      else
+        wait_for_the_end();
       MPI_Abort(MPI_COMM_WORLD, int(ExitCode::computation_failed));
       throw std::bad_alloc();
     }
@@ -79,10 +105,52 @@ namespace limber
 
 
 
-  void
-  end_all_ranks_without_memory()
+  LastWord::LastWord()
+    : spoken(MPI_WIN_NULL)
   {
-    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-      std::set_new_handler(end_all_ranks);
+    if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
+      return;
+
+    MPI_Comm machine;
+    MPI_Comm_split_type(
+      MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    const bool first = dealii::Utilities::MPI::this_mpi_process(machine) == 0;
+
+    void    *memory = nullptr;
+    MPI_Aint size   = sizeof(std::atomic<int>);
+    int      unit   = 1;
+    MPI_Win_allocate_shared(
+      first ? size : 0, unit, MPI_INFO_NULL, machine, &memory, &spoken);
+    MPI_Win_shared_query(spoken, 0, &size, &unit, &memory);
+    has_spoken = static_cast<std::atomic<int> *>(memory);
+    if (first)
+      new (has_spoken) std::atomic<int>(0);
+    MPI_Barrier(machine);
+    MPI_Comm_free(&machine);
+    std::set_new_handler(end_all_ranks);
+  }
+
+
+
+  LastWord::~LastWord()
+  {
+    if (has_spoken == nullptr)
+      return;
+    std::set_new_handler(nullptr);
+    has_spoken = nullptr;
+    MPI_Win_free(&spoken);
+  }
+
+
+
+  void
+  LastWord::say(const Failure &failure) const
+  {
+    if (has_spoken == nullptr || has_spoken->exchange(1) == 0)
+      std::cerr << "Error: " << failure.what() << std::endl;
+    else
+      wait_for_the_end();
+    if (has_spoken != nullptr)
+      MPI_Abort(MPI_COMM_WORLD, int(failure.code));
   }
 } // namespace limber

@@ -78,16 +78,13 @@ def expect(condition, text, *said):
         FAILED.append(text)
 
 
-def expect_refused(answer, *fragments, code=1, ranks=1):
-    """One message of our own, on the error stream, with these fragments.
-
-    Ranks that fail at the same moment each have theirs.
-    """
+def expect_refused(answer, *fragments, code=1):
+    """One message of our own, on the error stream, with these fragments."""
     found, _, said = answer
     messages = [line for line in said.splitlines()
                 if line.startswith("Error: ")]
     text = messages[0] if messages else ""
-    expect(found == code and 1 <= len(messages) <= ranks and
+    expect(found == code and len(messages) == 1 and
            len(text.split()) <= 60 and len(text) < 700 and
            all(fragment in text for fragment in fragments),
            f"code {code}: " + text[:160], found, said)
@@ -127,8 +124,7 @@ def memory(folder):
     for ranks in (1, 2):
         answer = limber(BLOCK, "--output-directory", folder / "run",
                         changes=changes, limit=1.2e9, ranks=ranks)
-        expect_refused(answer, "Memory is exhausted", "Grid/Cells", code=2,
-                       ranks=ranks)
+        expect_refused(answer, "Memory is exhausted", "Grid/Cells", code=2)
     expect_refused(limber(BLOCK, "--validate", changes=changes[1:],
                           limit=1.2e9), "1.2 GB")
 

@@ -4,6 +4,8 @@
 
 #include <limber/base/exceptions.h>
 
+#include <mpi.h>
+
 #include <exception>
 
 namespace limber
@@ -16,12 +18,31 @@ namespace limber
   as_failure(const std::exception &unforeseen);
 
   /**
-   * Where one of several ranks finds no memory, the others wait for it and its
-   * destructors may wait for them. So it says what happened at once, and ends
-   * all with the exit code of a failed computation.
+   * What several ranks do with a fault that they cannot agree upon: the first
+   * on a machine says it and ends all with its exit code; the others wait for
+   * that end. Exists once, while MPI runs; creation and end are collective.
    */
-  void
-  end_all_ranks_without_memory();
+  class LastWord
+  {
+  public:
+    /**
+     * From here on a rank that finds no memory ends all: the others wait for
+     * it, and its destructors may wait for them.
+     */
+    LastWord();
+    ~LastWord();
+
+    LastWord(const LastWord &) = delete;
+    LastWord &
+    operator=(const LastWord &) = delete;
+
+    /** Says the failure; returns if there is one rank only. */
+    void
+    say(const Failure &failure) const;
+
+  private:
+    MPI_Win spoken;
+  };
 } // namespace limber
 
 #endif
