@@ -122,7 +122,7 @@ namespace limber
                    "its constants.");
       declare_word(parameters,
                    "Frame",
-                   "current",
+                   "auto",
                    frame_words(),
                    "At which places of the points the functions of the grid "
                    "are taken.");
@@ -178,7 +178,9 @@ namespace limber
 
     template <int dim>
     void
-    read_points(const Section &section, const bool smooth, Body<dim> &body)
+    read_points(const Section              &section,
+                const GridDescription<dim> &grid,
+                Body<dim>                  &body)
     {
       const std::string   entry = "Points per cell edge";
       std::vector<double> points;
@@ -186,11 +188,8 @@ namespace limber
         points = section.numbers(entry);
       else
         // With two splines creep some ten times as much with every crossing.
-        points = {
-          smooth &&
-              !read_word(section, "Material", law_words()).takes_pressure ?
-            3. :
-            2.};
+        points = {grid.kernel == KernelKind::quadratic && !body.is_liquid ? 3. :
+                                                                            2.};
       for (unsigned int d = 0; d < dim; ++d)
         body.points_per_cell_edge[d] =
           static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
@@ -367,35 +366,6 @@ namespace limber
 
 
 
-    /** What goes with linear functions alone. */
-    template <int dim>
-    void
-    check_kernel(const Section &section, const Body<dim> &body)
-    {
-      const auto refuse = [&](const std::string &entry,
-                              const std::string &reason,
-                              const std::string &remedy) {
-        throw InputError(
-          "The entry " + in_quotes(section.text(entry)) + " in " +
-          section.where(entry) +
-          " does not go with 'Method/Kernel = quadratic': " + reason +
-          ". Set " + remedy + ", or 'Kernel = linear'.");
-      };
-      if (body.treatment == Projection::assumed_strain)
-        refuse("Locking treatment",
-               "splines have no hourglass modes to which it could give a "
-               "strain",
-               "'Locking treatment = node'");
-      if (body.hourglass_control > 0)
-        refuse("Hourglass control",
-               "splines have no hourglass modes",
-               "'Hourglass control = 0'");
-      if (body.frame == Frame::initial)
-        refuse("Frame", "that frame has linear functions", "'Frame = current'");
-    }
-
-
-
     /** A history that is not kept needs means to tend to. */
     template <int dim>
     void
@@ -530,8 +500,6 @@ namespace limber
       body.name  = name;
       body.shape = read_shape(section, constants, corners(problem.grid));
       check_inside_grid(section, body, problem.grid);
-      read_points(section, problem.grid.kernel == KernelKind::quadratic, body);
-      read_lattice(section, problem.grid, body);
       body.initial_velocity = read_formula(section,
                                            "Initial velocity",
                                            dim,
@@ -542,11 +510,6 @@ namespace limber
       body.is_liquid =
         read_word(section, "Material", law_words()).takes_pressure;
       body.frame = read_word(section, "Frame", frame_words());
-      read_treatment(section, body, problem);
-      if (problem.grid.kernel == KernelKind::quadratic)
-        check_kernel(section, body);
-      if (body.frame == Frame::initial)
-        check_initial_frame(section, root, body);
       return body;
     }
   } // namespace
@@ -559,6 +522,14 @@ namespace limber
   {
     for (const std::string &name : root.list("Bodies"))
       problem.bodies.push_back(read_body(root, name, problem));
+    choose_frames_and_kernel(root, problem);
+    for (auto &body : problem.bodies)
+      {
+        const Section section = root.subsection("Body " + body.name);
+        read_points(section, problem.grid, body);
+        read_lattice(section, problem.grid, body);
+        read_treatment(section, body, problem);
+      }
   }
 
 

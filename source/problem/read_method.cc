@@ -51,7 +51,7 @@ namespace limber
                        "under slow loads to rest.");
     declare_word(parameters,
                  "Kernel",
-                 "linear",
+                 "auto",
                  kernel_words(),
                  "Functions of the nodes: their weights at a point.");
     parameters.declare("Courant number",

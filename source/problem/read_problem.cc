@@ -92,8 +92,6 @@ namespace limber
     if (root.text("Memory limit") != "auto")
       problem.memory_limit = 1e9 * root.number("Memory limit");
     problem.grid = read_grid<dim>(root.subsection("Grid"));
-    problem.grid.kernel =
-      read_word(root.subsection("Method"), "Kernel", kernel_words());
     read_boundaries(root.subsection("Boundaries"), problem);
     read_volume_loads(loads, problem);
     read_bodies(root, problem);

@@ -46,6 +46,9 @@ namespace limber
   kernel_words()
   {
     static const Words<KernelKind> words = {
+      {"auto",
+       KernelKind::automatic,
+       "'quadratic' if points of a solid may cross cells, else 'linear'"},
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
       {"quadratic",
        KernelKind::quadratic,
@@ -166,6 +169,10 @@ namespace limber
   frame_words()
   {
     static const Words<Frame> words = {
+      {"auto",
+       Frame::automatic,
+       "'initial' for one elastic body that a side holds or that has no walls "
+       "to meet, else 'current'"},
       {"current",
        Frame::current,
        "where the points are: bodies may flow, meet and cross cells"},

@@ -9,8 +9,9 @@ namespace limber
   /** Where the functions of the grid are taken at the points of a body. */
   enum class Frame
   {
-    current, // where the points are: they may flow, meet, and cross cells
-    initial  // where they were at the start (total Lagrangian): none crosses
+    automatic, // current or initial, by body and sides
+    current,   // where the points are: they may flow, meet, and cross cells
+    initial    // where they were at the start (total Lagrangian): none crosses
   };
 
 

@@ -7,8 +7,9 @@ namespace limber
   /** The functions of the nodes: a word for each type of basis (basis.h). */
   enum class KernelKind
   {
-    linear,   // Q1 shape functions
-    quadratic // quadratic B-splines
+    automatic, // linear or quadratic, by bodies and frames
+    linear,    // Q1 shape functions
+    quadratic  // quadratic B-splines
   };
 } // namespace limber
 

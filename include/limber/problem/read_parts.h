@@ -144,16 +144,15 @@ namespace limber
                  const SceneNames  &names);
 
   /**
-   * Refuses what the frame of the initial configuration cannot do (source/
-   * problem/initial_frame.cc).
+   * Chooses what is 'auto' of the frames and the kernel, with a note for the
+   * log; refuses what either cannot do (source/problem/frame_and_kernel.cc).
+   * Needs the sides, and of the bodies all but treatment and points.
    */
   template <int dim>
   void
-  check_initial_frame(const Section   &section,
-                      const Section   &root,
-                      const Body<dim> &body);
+  choose_frames_and_kernel(const Section &root, Problem<dim> &problem);
 
-  /** Needs grid and gravity. */
+  /** Needs grid, sides and gravity; chooses the kernel with the frames. */
   template <int dim>
   void
   read_bodies(const Section &root, Problem<dim> &problem);

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/materials/law_list.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+namespace limber
+{
+  namespace
+  {
+    /** An entry that a choice does not go with. */
+    struct Obstacle
+    {
+      std::string cause;
+      std::string remedy; // what to set, besides leaving the choice
+    };
+
+    bool
+    is_set(const Section &section, const std::string &control)
+    {
+      return section.text(control) != "auto" && section.number(control) > 0;
+    }
+
+
+
+    /** What the frame of the initial configuration cannot do. */
+    std::optional<Obstacle>
+    obstacle_to_initial_frame(const Section &section, const Section &root)
+    {
+      if (!read_word(section, "Material", law_words()).is_elastic)
+        return Obstacle{"needs a stress that follows from the deformation "
+                        "alone, which the material " +
+                          in_quotes(section.text("Material")) +
+                          " does not have",
+                        ", or an elastic material, for instance 'neo hookean'"};
+      const Projection treatment =
+        read_word(section, "Locking treatment", locking_words());
+      if (treatment != Projection::automatic && treatment != Projection::none &&
+          treatment != Projection::cell &&
+          treatment != Projection::assumed_strain)
+        return Obstacle{
+          "has no locking treatment " +
+            in_quotes(section.text("Locking treatment")),
+          ", or 'Locking treatment = assumed strain', 'cell' or 'none'"};
+      if (is_set(section, "Hourglass control"))
+        return Obstacle{"leaves no motion of a cell without resistance, so "
+                        "that 'Hourglass control' has nothing to do",
+                        ", or 'Hourglass control = 0'"};
+      if (is_set(section, "Chequerboard control"))
+        return Obstacle{"has no chequerboard control",
+                        ", or 'Chequerboard control = 0'"};
+      for (const std::string history : {"History", "Deviatoric history"})
+        if (read_word(section, history, history_words()) !=
+            HistoryTreatment::keep)
+          return Obstacle{"has no histories that could scatter: the stress "
+                          "follows from the deformation",
+                          ", or '" + history + " = keep'"};
+      const Section method = root.subsection("Method");
+      if (read_word(method, "Stress update", stress_update_words()) ==
+          StressUpdateOrder::first)
+        return Obstacle{"does not go with 'Method/Stress update = first'",
+                        ", or 'Stress update = last, remapped'"};
+      if (read_word(method, "Kernel", kernel_words()) == KernelKind::quadratic)
+        return Obstacle{"has linear functions",
+                        ", or 'Method/Kernel = linear' or 'auto'"};
+      if (root.list("Bodies").size() > 1)
+        return Obstacle{"is for a scene of one body: it would not notice that "
+                        "it meets another one",
+                        ""};
+      return {};
+    }
+
+
+
+    /** An entry that splines have no meaning for. */
+    struct Misfit
+    {
+      std::string entry, reason, remedy;
+    };
+
+    std::optional<Misfit>
+    misfit_of_splines(const Section &section)
+    {
+      if (read_word(section, "Locking treatment", locking_words()) ==
+          Projection::assumed_strain)
+        return Misfit{"Locking treatment",
+                      "splines have no hourglass modes to which it could give "
+                      "a strain",
+                      "'Locking treatment = node'"};
+      if (is_set(section, "Hourglass control"))
+        return Misfit{"Hourglass control",
+                      "splines have no hourglass modes",
+                      "'Hourglass control = 0'"};
+      return {};
+    }
+
+
+
+    /**
+     * Whether the body ends in a side with a face, not in a line or a corner
+     * as a ball does that lies on the floor.
+     */
+    template <int dim>
+    bool
+    has_face_in(const unsigned int          side,
+                const Body<dim>            &body,
+                const GridDescription<dim> &grid)
+    {
+      constexpr unsigned int samples   = 16;
+      const unsigned int     normal    = side / 2;
+      const Corners<dim>     box       = body.shape->bounding_box();
+      const double           tolerance = 1e-6 * grid.edge(normal);
+
+      dealii::Point<dim> place;
+      place[normal] = side % 2 == 0 ? grid.lower[normal] + tolerance :
+                                      grid.upper[normal] - tolerance;
+      if (place[normal] < box.first[normal] ||
+          place[normal] > box.second[normal])
+        return false;
+      const unsigned int count = dim == 2 ? samples : samples * samples;
+      for (unsigned int i = 0; i < count; ++i)
+        {
+          for (unsigned int d = 0, rest = i; d < dim; ++d)
+            if (d != normal)
+              {
+                place[d] = box.first[d] + (rest % samples + 0.5) / samples *
+                                            (box.second[d] - box.first[d]);
+                rest /= samples;
+              }
+          if (body.shape->contains(place))
+            return true;
+        }
+      return false;
+    }
+
+
+
+    /**
+     * Why a body may meet something that its initial frame would not notice;
+     * empty if it is held or if there is nothing to meet. A side where it may
+     * slide is also one from which it may lift.
+     */
+    template <int dim>
+    std::string
+    what_it_may_meet(const Body<dim> &body, const Problem<dim> &problem)
+    {
+      bool held = false, walls = false;
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        {
+          const SideCondition condition = problem.sides[side].condition;
+          walls = walls || condition != SideCondition::free;
+          if (condition == SideCondition::no_slip ||
+              condition == SideCondition::velocity)
+            held = held || has_face_in(side, body, problem.grid);
+          else if (condition == SideCondition::friction &&
+                   has_face_in(side, body, problem.grid))
+            return "it may slide and lift from the side " +
+                   in_quotes(side_names(dim)[side]);
+        }
+      return held || !walls ?
+               "" :
+               "it may meet a side, as none holds it and not all are 'free'";
+    }
+
+
+
+    template <int dim>
+    void
+    choose_frame(const Section &root, Body<dim> &body, Problem<dim> &problem)
+    {
+      const Section section  = root.subsection("Body " + body.name);
+      const auto    obstacle = obstacle_to_initial_frame(section, root);
+      if (body.frame == Frame::initial && obstacle)
+        throw InputError("The frame 'initial' in " + section.where("Frame") +
+                         " " + obstacle->cause + ". Set 'Frame = current'" +
+                         obstacle->remedy + ".");
+      if (body.frame != Frame::automatic)
+        return;
+
+      const std::string meeting = what_it_may_meet(body, problem);
+      body.frame =
+        !obstacle && meeting.empty() ? Frame::initial : Frame::current;
+      if (!body.is_liquid)
+        problem.notes.push_back(
+          "Body " + in_quotes(body.name) + ": frame 'auto' is " +
+          (body.frame == Frame::initial ?
+             "'initial', in which nothing crosses cells: it is one elastic "
+             "body, held or without walls to meet." :
+           obstacle ? "'current', as 'initial' " + obstacle->cause + "." :
+                      "'current', as " + meeting + "."));
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  choose_frames_and_kernel(const Section &root, Problem<dim> &problem)
+  {
+    for (auto &body : problem.bodies)
+      choose_frame(root, body, problem);
+
+    const Section method       = root.subsection("Method");
+    problem.grid.kernel        = read_word(method, "Kernel", kernel_words());
+    const bool       automatic = problem.grid.kernel == KernelKind::automatic;
+    const Body<dim> *crossing  = nullptr;
+    for (const auto &body : problem.bodies)
+      {
+        const Section section = root.subsection("Body " + body.name);
+        const auto    misfit  = misfit_of_splines(section);
+        if (problem.grid.kernel == KernelKind::quadratic && misfit)
+          throw InputError(
+            "The entry " + in_quotes(section.text(misfit->entry)) + " in " +
+            section.where(misfit->entry) +
+            " does not go with 'Method/Kernel = quadratic': " + misfit->reason +
+            ". Set " + misfit->remedy + ", or 'Kernel = linear'.");
+        if (automatic && misfit)
+          {
+            problem.grid.kernel = KernelKind::linear;
+            problem.notes.push_back("Kernel 'auto' is 'linear', as " +
+                                    misfit->reason + " (" +
+                                    section.where(misfit->entry) + ").");
+            return;
+          }
+        if (!body.is_liquid && body.frame == Frame::current)
+          crossing = &body;
+      }
+    if (!automatic)
+      return;
+    problem.grid.kernel = crossing ? KernelKind::quadratic : KernelKind::linear;
+    problem.notes.push_back(
+      crossing ? "Kernel 'auto' is 'quadratic', as solids like body " +
+                   in_quotes(crossing->name) +
+                   " creep with linear functions when their points cross "
+                   "cells." :
+                 "Kernel 'auto' is 'linear', as no solid crosses cells.");
+  }
+
+
+
+  template void
+  choose_frames_and_kernel(const Section &, Problem<2> &);
+  template void
+  choose_frames_and_kernel(const Section &, Problem<3> &);
+} // namespace limber
