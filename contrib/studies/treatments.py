@@ -37,7 +37,7 @@ TREATMENTS = {
                                      "Deviatoric history": "replace"},
 }
 LIQUIDS = ("none", "cell", "cell, replaced", "node")
-ORDER = "last, remapped"  # of the beam; or "both ends"
+ORDER = "musl"  # of the beam; or "usavg"
 FREE_BEAM = {"0.3": 3.3990, "0.499": 3.6963}  # Hz, fine Q2 finite elements
 
 

@@ -117,7 +117,7 @@ def bar(runner):
     time = np.linspace(0, 32.5, 500)
     omega = 0.2 * np.pi
     left.plot(time, np.sin(omega * time), "k-", lw=1, label="exact")
-    for order in ("last, remapped", "both ends"):
+    for order in ("musl", "usavg"):
         folder = runner.run("bar", f"Method/Stress update={order}",
                             "Output/Statistics interval=1")
         values, _ = run_folder.statistics(folder)
@@ -148,7 +148,7 @@ def manufactured_solution(runner):
             folder = runner.run(
                 "manufactured_solution", f"Grid/Cells={n}, {n}",
                 "Output/Time interval=0.5", "Output/Fields=displacement",
-                "Method/Stress update=both ends",
+                "Method/Stress update=usavg",
                 *["Body square/Locking " + s for s in settings])
             data = last_points(folder)
             place = data["position"][:, :2] - data["displacement"][:, :2]

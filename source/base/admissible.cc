@@ -74,6 +74,26 @@ namespace limber
 
 
   Admissible
+  Admissible::with_former_words(
+    const std::map<std::string, std::string> &former) const
+  {
+    Admissible result = *this;
+    result.former     = former;
+    return result;
+  }
+
+
+
+  std::string
+  Admissible::successor(const std::string &value) const
+  {
+    const auto found = former.find(value);
+    return found == former.end() ? "" : found->second;
+  }
+
+
+
+  Admissible
   Admissible::or_word(const std::string &word) const
   {
     return Admissible(

@@ -247,6 +247,14 @@ namespace limber
                   const std::string  &place)
   {
     check_letters(entry, place);
+    if (const std::string now = declaration.admissible.successor(entry.value);
+        !now.empty())
+      throw InputError("The value " + in_quotes(entry.value) + " of entry " +
+                       in_quotes(entry.name) + " " + in_section(entry.section) +
+                       " (" + place + ") is called " + in_quotes(now) +
+                       " now. Usually the scene was written for a former "
+                       "version. Write '" +
+                       entry.name + " = " + now + "'.");
     if (!declaration.admissible.match(entry.value))
       throw InputError(
         "The value " + in_quotes(first_words(entry.value, 6)) + " of entry " +

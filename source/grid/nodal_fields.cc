@@ -108,10 +108,12 @@ namespace limber
     GridView<dim> result = grid.view();
     if (&table == &grid.vertices)
       result.splines = nullptr;
-    result.nodes    = values.data();
-    result.occupied = has_own_points.data();
-    result.entered  = &entered;
-    result.left     = &left;
+    result.nodes         = values.data();
+    result.occupied      = has_own_points.data();
+    result.entered       = &entered;
+    result.left          = &left;
+    result.is_in_ghosts  = &in_ghosts;
+    result.n_owned_cells = grid.n_owned_cells();
     return result;
   }
 
@@ -191,17 +193,6 @@ namespace limber
       result |= (roles[node] & is_shared) != 0;
     });
     return result;
-  }
-
-
-
-  template <int dim>
-  bool
-  NodalFields<dim>::has_entered_ghosts() const
-  {
-    return std::any_of(entered.begin(), entered.end(), [&](const auto cell) {
-      return cell >= grid.n_owned_cells();
-    });
   }
 
 
@@ -337,7 +328,7 @@ namespace limber
   void
   NodalFields<dim>::clear()
   {
-    left = false;
+    left = in_ghosts = false;
     for (const std::uint32_t node : active)
       std::fill_n(record(node), Layout::stride, 0.);
     // Their masters have given to them whether they are active or not.

@@ -29,10 +29,10 @@ namespace limber
                   const Method       &method)
     {
       const double courant_number = symptoms.courant_number;
-      if (method.order != StressUpdateOrder::last || courant_number > 0.7)
+      if (method.order != StressUpdateOrder::usl || courant_number > 0.7)
         return {};
       return {"small cut cell",
-              "with the stress update 'last', Courant number " +
+              "with the stress update 'usl', Courant number " +
                 brief(courant_number) + " fails in cells filled to less than " +
                 brief(0.5 * courant_number * courant_number) +
                 " edges (body '" + body.body +

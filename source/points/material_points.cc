@@ -20,7 +20,7 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
-             (layout.crossings ? 1 : 0) +
+             (layout.crossings ? 1 : 0) + (layout.domains ? dim * dim : 0) +
              (layout.initial_frame ? dim * dim : 0) +
              (layout.has_reference() ? dim : 0);
     }
@@ -54,9 +54,10 @@ namespace limber
 
   template <int dim>
   void
-  MaterialPoints<dim>::add(const std::uint32_t       cell,
-                           const dealii::Point<dim> &place,
-                           const double              mass)
+  MaterialPoints<dim>::add(const std::uint32_t           cell,
+                           const dealii::Point<dim>     &place,
+                           const double                  mass,
+                           const dealii::Tensor<2, dim> &half_edges)
   {
     const std::size_t p = size();
     for (auto &field : fields)
@@ -71,6 +72,13 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         fields[fields.size() - dim - dim * dim + d * (dim + 1)][p] = 1;
     fields[2 * dim][p] = mass;
+    if (layout.domains)
+      {
+        const PointView<dim> points = view();
+        for (int d = 0; d < dim; ++d)
+          for (int k = 0; k < dim; ++k)
+            points.domain[d * dim + k][p] = half_edges[d][k];
+      }
     this->cell.push_back(cell);
     ids.push_back(p);
   }
@@ -118,6 +126,9 @@ namespace limber
         array = fields[f++].data();
     if (layout.crossings)
       result.crossings = fields[f++].data();
+    if (layout.domains)
+      for (auto &array : result.domain)
+        array = fields[f++].data();
     if (layout.initial_frame)
       for (auto &array : result.deformation)
         array = fields[f++].data();
@@ -190,6 +201,7 @@ namespace limber
     numbered("affine", layout.affine ? dim * dim : 0);
     if (layout.crossings)
       names.push_back("crossings");
+    numbered("domain", layout.domains ? dim * dim : 0);
     numbered("deformation gradient", layout.initial_frame ? dim * dim : 0);
     if (layout.has_reference())
       components("reference position", axes);

@@ -3,6 +3,7 @@
 
 #include <limber/points/seeding.h>
 
+#include <cmath>
 #include <optional>
 #include <random>
 
@@ -119,8 +120,8 @@ namespace limber
 
 
     /**
-     * Call @p work with the cell, the place and the volume in m^3 of every
-     * point of the body, in the order of cells.
+     * Call @p work with the cell, the place, the volume in m^dim and the half
+     * edges in m (columns) of every point of the body, in the order of cells.
      */
     template <int dim, class Work>
     void
@@ -158,6 +159,16 @@ namespace limber
           if (body.placement == Placement::jittered)
             random.emplace(seed);
 
+          // with a box of their volume around them
+          const auto give = [&](const dealii::Point<dim> &place,
+                                const double              share) {
+            dealii::Tensor<2, dim> half_edges;
+            for (int d = 0; d < dim; ++d)
+              half_edges[d][d] = 0.5 * edge[d] / body.points_per_cell_edge[d] *
+                                 std::pow(share * regular.size(), 1. / dim);
+            work(grid.cell_number(cell), place, share * volume, half_edges);
+          };
+
           for (Site<dim> site : regular)
             {
               if (random)
@@ -177,12 +188,10 @@ namespace limber
                     }
                   const Site<dim> inside = inside_of(*body.shape, part);
                   if (inside.weight > 0)
-                    work(grid.cell_number(cell),
-                         inside.place,
-                         inside.weight * site.weight * volume);
+                    give(inside.place, inside.weight * site.weight);
                 }
               else if (body.shape->contains(place))
-                work(grid.cell_number(cell), place, site.weight * volume);
+                give(place, site.weight);
             }
         }
     }
@@ -218,8 +227,13 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             x[d] = place[d];
           const std::uint32_t cell = grid.bins.cell_at(x);
-          if (cell < grid.n_owned_cells())
-            work(cell, place, block.volume(part));
+          if (cell >= grid.n_owned_cells())
+            continue;
+          dealii::Tensor<2, dim> half_edges = block.jacobian(centre);
+          for (int d = 0; d < dim; ++d)
+            for (int k = 0; k < dim; ++k)
+              half_edges[d][k] *= 0.5 / body.lattice[k];
+          work(cell, place, block.volume(part), half_edges);
         }
     }
 
@@ -253,10 +267,14 @@ namespace limber
     points.reserve(n);
     for_each_point(body,
                    grid,
-                   [&](const std::uint32_t       cell,
-                       const dealii::Point<dim> &place,
-                       const double              volume) {
-                     points.add(cell, place, density(place) * volume);
+                   [&](const std::uint32_t           cell,
+                       const dealii::Point<dim>     &place,
+                       const double                  volume,
+                       const dealii::Tensor<2, dim> &half_edges) {
+                     points.add(cell,
+                                place,
+                                density(place) * volume,
+                                half_edges);
                    });
     points.finish_adding();
   }

@@ -58,10 +58,11 @@ namespace limber
                           ", or '" + history + " = keep'"};
       const Section method = root.subsection("Method");
       if (read_word(method, "Stress update", stress_update_words()) ==
-          StressUpdateOrder::first)
-        return Obstacle{"does not go with 'Method/Stress update = first'",
-                        ", or 'Stress update = last, remapped'"};
-      if (read_word(method, "Kernel", kernel_words()) == KernelKind::quadratic)
+          StressUpdateOrder::usf)
+        return Obstacle{"does not go with 'Method/Stress update = usf'",
+                        ", or 'Stress update = musl'"};
+      if (const auto kernel = read_word(method, "Kernel", kernel_words());
+          kernel == KernelKind::quadratic || kernel == KernelKind::cpdi)
         return Obstacle{"has linear functions",
                         ", or 'Method/Kernel = linear' or 'auto'"};
       if (root.list("Bodies").size() > 1)
@@ -73,7 +74,7 @@ namespace limber
 
 
 
-    /** An entry that splines have no meaning for. */
+    /** An entry that a kernel has no meaning for. */
     struct Misfit
     {
       std::string entry, reason, remedy;
@@ -92,6 +93,39 @@ namespace limber
         return Misfit{"Hourglass control",
                       "splines have no hourglass modes",
                       "'Hourglass control = 0'"};
+      return {};
+    }
+
+
+
+    std::optional<Misfit>
+    misfit_of_domains(const Section &section)
+    {
+      const Projection treatment =
+        read_word(section, "Locking treatment", locking_words());
+      if (treatment != Projection::automatic && treatment != Projection::none &&
+          treatment != Projection::node)
+        return Misfit{"Locking treatment",
+                      "domains reach over several cells, so that means over "
+                      "one are not theirs",
+                      "'Locking treatment = node' or 'none'"};
+      if (is_set(section, "Hourglass control"))
+        return Misfit{"Hourglass control",
+                      "nothing is averaged over a cell",
+                      "'Hourglass control = 0'"};
+      return {};
+    }
+
+
+
+    /** What does not go with a kernel in the section of a body. */
+    std::optional<Misfit>
+    misfit(const KernelKind kernel, const Section &section, const bool liquid)
+    {
+      if (kernel == KernelKind::quadratic)
+        return misfit_of_splines(section);
+      if (kernel == KernelKind::cpdi && !liquid)
+        return misfit_of_domains(section);
       return {};
     }
 
@@ -190,6 +224,35 @@ namespace limber
            obstacle ? "'current', as 'initial' " + obstacle->cause + "." :
                       "'current', as " + meeting + "."));
     }
+
+
+
+    template <int dim>
+    void
+    choose_kernel(const Section &root, Problem<dim> &problem)
+    {
+      const auto say = [&](const std::string &choice) {
+        problem.notes.push_back("Kernel 'auto' is " + choice + ".");
+      };
+      problem.grid.kernel = KernelKind::linear;
+      for (const auto &body : problem.bodies)
+        {
+          const Section section = root.subsection("Body " + body.name);
+          if (const auto found = misfit_of_splines(section))
+            return say("'linear', as " + found->reason + " (" +
+                       section.where(found->entry) + ")");
+        }
+      for (const auto &body : problem.bodies)
+        if (!body.is_liquid && body.frame == Frame::current)
+          {
+            problem.grid.kernel = KernelKind::quadratic;
+            return say("'quadratic', as solids like body " +
+                       in_quotes(body.name) +
+                       " creep with linear functions when their points cross "
+                       "cells");
+          }
+      say("'linear', as no solid crosses cells");
+    }
   } // namespace
 
 
@@ -201,40 +264,29 @@ namespace limber
     for (auto &body : problem.bodies)
       choose_frame(root, body, problem);
 
-    const Section method       = root.subsection("Method");
-    problem.grid.kernel        = read_word(method, "Kernel", kernel_words());
-    const bool       automatic = problem.grid.kernel == KernelKind::automatic;
-    const Body<dim> *crossing  = nullptr;
+    const Section method = root.subsection("Method");
+    problem.grid.kernel  = read_word(method, "Kernel", kernel_words());
+    if (problem.grid.kernel == KernelKind::automatic)
+      choose_kernel(root, problem);
     for (const auto &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);
-        const auto    misfit  = misfit_of_splines(section);
-        if (problem.grid.kernel == KernelKind::quadratic && misfit)
+        if (const auto found =
+              misfit(problem.grid.kernel, section, body.is_liquid))
           throw InputError(
-            "The entry " + in_quotes(section.text(misfit->entry)) + " in " +
-            section.where(misfit->entry) +
-            " does not go with 'Method/Kernel = quadratic': " + misfit->reason +
-            ". Set " + misfit->remedy + ", or 'Kernel = linear'.");
-        if (automatic && misfit)
-          {
-            problem.grid.kernel = KernelKind::linear;
-            problem.notes.push_back("Kernel 'auto' is 'linear', as " +
-                                    misfit->reason + " (" +
-                                    section.where(misfit->entry) + ").");
-            return;
-          }
-        if (!body.is_liquid && body.frame == Frame::current)
-          crossing = &body;
+            "The entry " + in_quotes(section.text(found->entry)) + " in " +
+            section.where(found->entry) +
+            " does not go with 'Method/Kernel = " + method.text("Kernel") +
+            "': " + found->reason + ". Set " + found->remedy +
+            ", or 'Kernel = linear'.");
       }
-    if (!automatic)
-      return;
-    problem.grid.kernel = crossing ? KernelKind::quadratic : KernelKind::linear;
-    problem.notes.push_back(
-      crossing ? "Kernel 'auto' is 'quadratic', as solids like body " +
-                   in_quotes(crossing->name) +
-                   " creep with linear functions when their points cross "
-                   "cells." :
-                 "Kernel 'auto' is 'linear', as no solid crosses cells.");
+    if (problem.grid.kernel == KernelKind::cpdi &&
+        read_word(method, "Transfer", transfer_words()) == Transfer::apic)
+      throw InputError(
+        "The transfer 'apic' in " + method.where("Transfer") +
+        " does not go with 'Kernel = cpdi', which has no moments "
+        "for it. Set 'Transfer = flip' or 'fmpm', or 'Kernel = "
+        "quadratic'.");
   }
 
 

@@ -337,7 +337,7 @@ namespace limber
                         const bool       fluid,
                         Problem<dim>    &problem)
     {
-      const bool   smooth = problem.grid.kernel == KernelKind::quadratic;
+      const bool   linear = problem.grid.kernel == KernelKind::linear;
       const Moduli moduli = moduli_of(body.law, body.material);
       const bool   soft   = moduli.bulk <= large_moduli_ratio * moduli.shear;
       struct Choice
@@ -348,17 +348,17 @@ namespace limber
       const Choice choice =
         fluid ? Choice{Projection::cell,
                        "'cell', as a liquid resists volume changes only."} :
-        smooth && soft ?
+        !linear && soft ?
                 Choice{Projection::none,
-                       "'none', as splines do not lock at this Poisson's "
-                       "ratio."} :
-        smooth ? Choice{Projection::node,
-                        "'node', which does not lock in volume and does not "
-                        "jump where points cross cells."} :
-                 Choice{Projection::assumed_strain,
-                        "'assumed strain', which neither locks in volume nor "
-                        "in bending and leaves no motion of a cell without "
-                        "resistance."};
+                       "'none', as smooth functions do not lock at this "
+                       "Poisson's ratio."} :
+        !linear ? Choice{Projection::node,
+                         "'node', which does not lock in volume and does not "
+                         "jump where points cross cells."} :
+                  Choice{Projection::assumed_strain,
+                         "'assumed strain', which neither locks in volume nor "
+                         "in bending and leaves no motion of a cell without "
+                         "resistance."};
       problem.notes.push_back("Body " + in_quotes(body.name) +
                               ": locking treatment 'auto' is " + choice.reason);
       return choice.kind;

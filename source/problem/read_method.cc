@@ -126,11 +126,11 @@ namespace limber
                  "'Transfer = fmpm' or 'Transfer period = 1'");
       }
     else if (method.order != StressUpdateOrder::automatic &&
-             method.order != StressUpdateOrder::last)
+             method.order != StressUpdateOrder::usl)
       refuse("Stress update",
              "does not go with " + transfer +
                ", which strains with the velocity that it filters",
-             "'Stress update = last'");
+             "'Stress update = usl'");
     return method;
   }
 

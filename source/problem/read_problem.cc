@@ -23,9 +23,9 @@ namespace limber
         return;
       if (filters_velocity(problem.method.transfer))
         {
-          problem.method.order = StressUpdateOrder::last;
+          problem.method.order = StressUpdateOrder::usl;
           problem.notes.push_back(
-            "Stress update 'auto' is 'last', with the velocity that the "
+            "Stress update 'auto' is 'usl', with the velocity that the "
             "transfer filters.");
           return;
         }
@@ -36,17 +36,17 @@ namespace limber
                        return !body.is_liquid && body.frame == Frame::current;
                      });
       const bool any_solid = solid != problem.bodies.end();
-      problem.method.order = any_solid ? StressUpdateOrder::both_ends :
-                                         StressUpdateOrder::last_remapped;
+      problem.method.order =
+        any_solid ? StressUpdateOrder::usavg : StressUpdateOrder::musl;
       problem.notes.push_back(
         any_solid ?
-          "Stress update 'auto' is 'both ends', which keeps the energy of "
+          "Stress update 'auto' is 'usavg', which keeps the energy of "
           "solids like body " +
             in_quotes(solid->name) +
-            "; 'last, remapped' takes two thirds of "
+            "; 'musl' takes two thirds of "
             "the time." :
-          "Stress update 'auto' is 'last, remapped', as nothing gains from "
-          "'both ends' but solids whose points cross cells.");
+          "Stress update 'auto' is 'musl', as nothing gains from "
+          "'usavg' but solids whose points cross cells.");
     }
   } // namespace
 

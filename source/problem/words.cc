@@ -53,8 +53,10 @@ namespace limber
       {"quadratic",
        KernelKind::quadratic,
        "quadratic B-splines, smooth from cell to cell"},
-      {"gimp", std::nullopt, not_available},
-      {"cpdi", std::nullopt, not_available}};
+      {"cpdi",
+       KernelKind::cpdi,
+       "convected particle domains of solids; liquids have linear functions"},
+      {"gimp", std::nullopt, not_available}};
     return words;
   }
 
@@ -78,15 +80,17 @@ namespace limber
     static const Words<StressUpdateOrder> words = {
       {"auto",
        StressUpdateOrder::automatic,
-       "'both ends' with solids, or else 'last, remapped'; the log says which"},
-      {"first", StressUpdateOrder::first, "USF, before the forces"},
-      {"last", StressUpdateOrder::last, "USL, with the moved nodes"},
-      {"last, remapped",
-       StressUpdateOrder::last_remapped,
-       "MUSL, velocity gradient from the updated points"},
-      {"both ends",
-       StressUpdateOrder::both_ends,
-       "USAVG, half of it first, half last; second order, keeps energy"}};
+       "'usavg' with solids, or else 'musl'; the log says which"},
+      {"usf", StressUpdateOrder::usf, "before the forces", "first"},
+      {"usl", StressUpdateOrder::usl, "with the moved nodes", "last"},
+      {"musl",
+       StressUpdateOrder::musl,
+       "velocity gradient from the updated points",
+       "last, remapped"},
+      {"usavg",
+       StressUpdateOrder::usavg,
+       "half of it first, half last; second order, keeps energy",
+       "both ends"}};
     return words;
   }
 
@@ -191,7 +195,8 @@ namespace limber
     static const Words<Projection> words = {
       {"auto",
        Projection::automatic,
-       "'assumed strain' for solids, 'cell' for liquids"},
+       "'cell' for liquids; for solids 'assumed strain' with linear functions, "
+       "else 'none' or 'node', by Poisson's ratio"},
       {"none", Projection::none, "values of the points as they are"},
       {"cell",
        Projection::cell,

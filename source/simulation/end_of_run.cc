@@ -145,7 +145,7 @@ namespace limber
 
 
   // Where nodes have shown the step to be impossible, points are what they
-  // were before it (with 'first', but for the stress); else what the step has
+  // were before it (with 'usf', but for the stress); else what the step has
   // made of them.
   template <int dim>
   std::string

@@ -100,18 +100,24 @@ namespace limber
 
     for (const Body<dim> &body : problem.bodies)
       {
+        // A liquid shears its points' domains without end.
+        const KernelKind kernel =
+          problem.grid.kernel == KernelKind::cpdi && body.is_liquid ?
+            KernelKind::linear :
+            problem.grid.kernel;
         auto        stress = make_stress_update<dim>(body.law,
                                               body.material,
                                               body.treatment,
                                               body.hourglass,
                                               body.frame,
-                                              grid.description.kernel);
+                                              kernel);
         PointLayout layout;
         layout.deviator      = stress->has_deviator();
         layout.n_history     = stress->n_history();
         layout.volumetric    = stress->volumetric();
         layout.affine        = problem.method.transfer == Transfer::apic;
         layout.crossings     = !body.is_liquid && body.frame == Frame::current;
+        layout.domains       = kernel == KernelKind::cpdi;
         layout.initial_frame = body.frame == Frame::initial;
         layout.reference =
           problem.output.time_interval > 0 &&

@@ -116,6 +116,8 @@ namespace limber
         result = make_initial_frame_sweep<dim>(law, projection);
       else if (kernel == KernelKind::quadratic)
         result = make_spline_sweep<dim>(law, projection);
+      else if (kernel == KernelKind::cpdi)
+        result = make_convected_sweep<dim>(law, projection);
       else
         result = make_sweep<Linear<dim>>(law, projection);
     });

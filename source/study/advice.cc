@@ -248,18 +248,18 @@ namespace limber
 
 
 
-    /** The limit of 'last' tends to zero with the filling of a cell. */
+    /** The limit of 'usl' tends to zero with the filling of a cell. */
     void
     advise_step(const Method &method, std::vector<Advice> &advice)
     {
-      if (method.order == StressUpdateOrder::last || method.time_step > 0 ||
+      if (method.order == StressUpdateOrder::usl || method.time_step > 0 ||
           method.courant_number >= 0.3)
         return;
       Advice found;
       found.what = "Courant number";
       found.text = "Courant number " + brief(method.courant_number) +
                    ": with this stress update 0.4 is stable with a wide margin";
-      found.changes  = "the error in time, of first order but for 'both ends', "
+      found.changes  = "the error in time, of first order but for 'usavg', "
                        "and the energy of points that cross cells";
       found.settings = {"Method/Courant number=0.4"};
       advice.push_back(found);

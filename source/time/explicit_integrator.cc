@@ -123,48 +123,30 @@ namespace limber
 
 
 
-  // The order of the strain: the whole of it before the forces (USF), the
-  // whole after the motion (USL, MUSL), or half of it at either end.
   template <int dim>
   void
   ExplicitIntegrator<dim>::advance(const double now, const double length)
   {
-    using Order = StressUpdateOrder;
-    time        = now;
-    step        = length;
+    time = now;
+    step = length;
     stopwatch.start();
 
     clear();
     control_chequerboards();
     switch (problem.method.order)
       {
-        case Order::first:
-          strain_as_points_bring_it(step);
-          accelerate_nodes();
-          account_loads(NodeLayout<dim>::velocity);
-          grid_to_points(/*remap=*/false, /*move=*/true);
+        case StressUpdateOrder::usf:
+          usf();
           break;
-
-        case Order::last:
-          points_to_nodes();
-          accelerate_nodes();
-          account_loads(NodeLayout<dim>::velocity);
-          filter_velocity();
-          grid_to_points(/*remap=*/false, /*move=*/false);
-          update_stress(step, /*remapped=*/false, /*move=*/true);
+        case StressUpdateOrder::usl:
+          usl();
           break;
-
-        case Order::last_remapped:
-          points_to_nodes();
-          accelerate_nodes();
-          strain_as_points_leave_it(step);
+        case StressUpdateOrder::musl:
+          musl();
           break;
-
-        case Order::automatic: // has been chosen long before
-        case Order::both_ends:
-          strain_as_points_bring_it(0.5 * step);
-          accelerate_nodes();
-          strain_as_points_leave_it(0.5 * step);
+        case StressUpdateOrder::automatic: // has been chosen long before
+        case StressUpdateOrder::usavg:
+          usavg();
           break;
       }
     relocate();
@@ -172,12 +154,54 @@ namespace limber
 
 
 
+  // Update stress first: strained by the velocity that the points bring.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::points_to_nodes()
+  ExplicitIntegrator<dim>::usf()
   {
-    points_to_grid(/*momentum=*/true, /*force=*/true);
-    sum_shared_nodes(0, NodeLayout<dim>::remapped);
+    strain_before_forces(step);
+    accelerate_nodes();
+    account_loads(NodeLayout<dim>::velocity);
+    g2p_and_move();
+  }
+
+
+
+  // Update stress last: strained by the new velocity of the nodes.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::usl()
+  {
+    p2g();
+    accelerate_nodes();
+    account_loads(NodeLayout<dim>::velocity);
+    filter_velocity();
+    g2p();
+    update_stress_and_move(step, NodeLayout<dim>::velocity);
+  }
+
+
+
+  // The same by the velocity that the points give back to the nodes.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::musl()
+  {
+    p2g();
+    accelerate_nodes();
+    strain_after_motion(step);
+  }
+
+
+
+  // The average of the first and the last.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::usavg()
+  {
+    strain_before_forces(0.5 * step);
+    accelerate_nodes();
+    strain_after_motion(0.5 * step);
   }
 
 
@@ -186,21 +210,18 @@ namespace limber
   // and only then the forces.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::strain_as_points_bring_it(const double length)
+  ExplicitIntegrator<dim>::strain_before_forces(const double length)
   {
     using Layout = NodeLayout<dim>;
 
-    points_to_grid(/*momentum=*/true, /*force=*/false);
-    sum_shared_nodes(0, Layout::remapped);
+    p2g_momentum();
     divide_remapped(Layout::momentum, time);
     interpolate_hanging();
-    update_stress(length, /*remapped=*/true, /*move=*/false);
+    update_stress(length);
     for (const std::uint32_t node : nodes.active_nodes())
       std::fill_n(nodes.record(node) + Layout::remapped, dim, 0.);
     lap(Verb::advance_nodes);
-
-    points_to_grid(/*momentum=*/false, /*force=*/true);
-    sum_shared_nodes(Layout::force, Layout::force + dim);
+    p2g_force();
   }
 
 
@@ -209,18 +230,17 @@ namespace limber
   // the velocity that the points would bring back to the nodes.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::strain_as_points_leave_it(const double length)
+  ExplicitIntegrator<dim>::strain_after_motion(const double length)
   {
     using Layout = NodeLayout<dim>;
 
-    grid_to_points(/*remap=*/true, /*move=*/false);
-    sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+    g2p_and_remap();
     divide_remapped(Layout::remapped, time + step);
     account_loads(Layout::remapped);
-    if (problem.method.order == StressUpdateOrder::both_ends)
+    if (problem.method.order == StressUpdateOrder::usavg)
       centre_velocity();
     interpolate_hanging();
-    update_stress(length, /*remapped=*/true, /*move=*/true);
+    update_stress_and_move(length, Layout::remapped);
   }
 
 
@@ -255,14 +275,41 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::points_to_grid(const bool momentum, const bool force)
+  ExplicitIntegrator<dim>::p2g()
   {
-    GiveToGrid what;
-    what.momentum = momentum;
-    what.force    = force;
-    what.affine   = momentum && problem.method.transfer == Transfer::apic;
-    n_batches     = 0;
-    if (force)
+    points_to_grid({true, true});
+    sum_shared_nodes(0, NodeLayout<dim>::remapped);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::p2g_momentum()
+  {
+    points_to_grid({true, false});
+    sum_shared_nodes(0, NodeLayout<dim>::remapped);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::p2g_force()
+  {
+    points_to_grid({false, true});
+    sum_shared_nodes(NodeLayout<dim>::force, NodeLayout<dim>::force + dim);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::points_to_grid(GiveToGrid what)
+  {
+    what.affine = what.momentum && problem.method.transfer == Transfer::apic;
+    n_batches   = 0;
+    if (what.force)
       project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
         sum_pressure<dim>(body.points.view(), nodes.view(), records);
       });
@@ -319,19 +366,49 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::grid_to_points(const bool remap, const bool move)
+  ExplicitIntegrator<dim>::g2p()
+  {
+    grid_to_points({});
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::g2p_and_move()
+  {
+    TakeFromGrid what;
+    what.move = step;
+    grid_to_points(what);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::g2p_and_remap()
+  {
+    using Layout = NodeLayout<dim>;
+    TakeFromGrid what;
+    what.remap = true;
+    grid_to_points(what);
+    sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::grid_to_points(TakeFromGrid what)
   {
     const Method &method = problem.method;
-    TakeFromGrid  what;
-    what.affine     = method.transfer == Transfer::apic;
-    what.flip_share = method.transfer == Transfer::pic ||
+    what.affine          = method.transfer == Transfer::apic;
+    what.flip_share      = method.transfer == Transfer::pic ||
                           (full_mass && steps_since_filter == 0) ?
-                        0 :
-                      method.damping_time > 0 ?
-                        std::max(0., 1 - step / method.damping_time) :
-                        1;
-    what.remap      = remap;
-    what.move       = move ? step : 0;
+                             0 :
+                           method.damping_time > 0 ?
+                             std::max(0., 1 - step / method.damping_time) :
+                             1;
     for (auto &body : bodies)
       {
         const auto sums  = sums_of(*body);
@@ -417,24 +494,49 @@ namespace limber
 
 
 
+  // With the velocity that has been given back, while points stay.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::update_stress(const double length,
-                                         const bool   remapped,
-                                         const bool   move)
+  ExplicitIntegrator<dim>::update_stress(const double length)
   {
-    loads.deform(nodes, remapped, length);
     StressSweep what;
     what.step     = length;
-    what.remapped = remapped;
-    what.move     = move ? step : 0;
+    what.remapped = true;
+    update_stress(what);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::update_stress_and_move(const double       length,
+                                                  const unsigned int velocity)
+  {
+    StressSweep what;
+    what.step     = length;
+    what.remapped = velocity == NodeLayout<dim>::remapped;
+    what.move     = step;
+    update_stress(what);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::update_stress(StressSweep what)
+  {
+    const double length = what.step;
+    loads.deform(nodes, what.remapped, length);
     // The means over cells are those of the beginning of the step: histories
     // tend to them before anything is strained.
     const bool begins =
-      !move || problem.method.order != StressUpdateOrder::both_ends;
+      what.move == 0 || problem.method.order != StressUpdateOrder::usavg;
     relax_deviators(length);
     project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
-      sum_divergence<dim>(body.points.view(), nodes.view(), remapped, records);
+      sum_divergence<dim>(body.points.view(),
+                          nodes.view(),
+                          what.remapped,
+                          records);
     });
     for (auto &body : bodies)
       {

@@ -132,7 +132,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::add_loads()
   {
-    const bool at_middle = problem.method.order == StressUpdateOrder::both_ends;
+    const bool at_middle = problem.method.order == StressUpdateOrder::usavg;
     if (loads.any())
       loads.add(nodes, at_middle ? time + 0.5 * step : time);
     lap(Verb::add_loads);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/explicit_integrator.h>
+#include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/grid_to_points.h>
 
 #include <algorithm>
@@ -84,7 +85,7 @@ namespace limber
   bool
   ExplicitIntegrator<dim>::bring_points_home()
   {
-    if (!parallel || !grid.has_splines() || !(any_entered_ghosts > 0))
+    if (!parallel || !grid.reaches_beyond_cells() || !(any_entered_ghosts > 0))
       return false;
     exchange_points();
     return true;
@@ -202,6 +203,15 @@ namespace limber
         cells.insert(cells.end(), of_body.begin(), of_body.end());
         n_batches_sorted += of_body.size();
         std::inplace_merge(cells.begin(), cells.begin() + before, cells.end());
+        if (const auto points = body->points.view(); points.has_domains())
+          {
+            const auto corners = cells_of_corners(points, nodes.view());
+            const auto middle  = cells.size();
+            cells.insert(cells.end(), corners.begin(), corners.end());
+            std::inplace_merge(cells.begin(),
+                               cells.begin() + middle,
+                               cells.end());
+          }
       }
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     nodes.set_occupied(std::move(cells), agree);

@@ -2,6 +2,7 @@
 #include <limber/interpolation/basis.h>
 #include <limber/interpolation/cell_means.h>
 #include <limber/transfer/add_to_nodes.h>
+#include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/give_to_splines.h>
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/sum_momentum.h>
@@ -221,6 +222,8 @@ namespace limber
                  const TakeFromGrid   &what,
                  const CellSums<dim>  *sums)
   {
+    if (points.has_domains())
+      return grid_to_domains(points, grid, what, sums);
     const auto choose = [&](const auto basis, const auto affine) {
       using Basis = std::decay_t<decltype(basis)>;
       return what.remap ?

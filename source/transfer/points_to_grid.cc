@@ -2,6 +2,7 @@
 #include <limber/interpolation/assumed_deformation.h>
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
+#include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/points_to_grid.h>
 #include <limber/transfer/points_to_splines.h>
 #include <limber/transfer/sum_momentum.h>
@@ -271,6 +272,8 @@ namespace limber
                  const GiveToGrid     &what,
                  const CellSums<dim>  *sums)
   {
+    if (points.has_domains())
+      return domains_to_grid(points, grid, what);
     if (grid.splines != nullptr)
       return points_to_splines(points, grid, what, sums);
     if (!what.force)

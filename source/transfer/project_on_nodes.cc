@@ -2,6 +2,7 @@
 #include <limber/interpolation/basis.h>
 #include <limber/interpolation/batch_lanes.h>
 #include <limber/interpolation/nodal_means.h>
+#include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/project_on_nodes.h>
 
 namespace limber
@@ -85,6 +86,8 @@ namespace limber
                  double *const         records)
   {
     using Layout = NodeLayout<dim>;
+    if (points.has_domains())
+      return sum_divergence_of_domains(points, grid, remapped, records);
     with_basis(grid, [&](const auto basis) {
       using Basis = std::decay_t<decltype(basis)>;
       if (remapped)

@@ -28,7 +28,7 @@ BIG_BOX = {"2d": ["Grid/Upper corner=4.96, 4.96", "Grid/Cells=496, 496"],
                   "Grid/Cells=160, 80, 80"]}
 NONE = "Body block/Locking treatment=none"
 SPLINES = "Method/Kernel=quadratic"
-FMPM = ["Method/Transfer=fmpm", "Method/Stress update=last", NONE]
+FMPM = ["Method/Transfer=fmpm", "Method/Stress update=usl", NONE]
 FINE = {"2d": ["Grid/Cells=1984, 1984", "End time=0.00025"],
         "3d": ["Grid/Cells=160, 160, 160", "End time=0.001"]}
 

@@ -124,7 +124,7 @@ class Advice(unittest.TestCase):
         self.assertGreater(piece.factor, 2, piece.line)
         self.assertNotIn("Courant number",
                          self.advise("cantilever.prm", *settings,
-                                     "Method/Stress update=last"))
+                                     "Method/Stress update=usl"))
 
     def test_a_beginning_is_no_ground(self):
         # One second of wall time holds no run of this.

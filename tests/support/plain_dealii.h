@@ -72,7 +72,7 @@ namespace limber
            << "  set Gravity = 0, -9.81" << (dim == 3 ? ", 0" : "") << "\n"
            << "end\n"
            << "subsection Method\n"
-           << "  set Stress update = last\n"
+           << "  set Stress update = usl\n"
            << "  set Transfer = flip\n"
            << "  set Time step = 5e-4\n"
            << "end\n";

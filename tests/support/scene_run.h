@@ -162,8 +162,10 @@ namespace limber
 
 
 
-  inline const std::vector<std::string> stress_update_orders =
-    {"first", "last", "last, remapped", "both ends"};
+  inline const std::vector<std::string> stress_update_orders = {"usf",
+                                                                "usl",
+                                                                "musl",
+                                                                "usavg"};
 } // namespace limber
 
 #endif

@@ -5,6 +5,7 @@
 #include <deal.II/base/patterns.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -52,10 +53,19 @@ namespace limber
     Admissible
     or_word(const std::string &word) const;
 
+    /** The same, which knows what words of former versions are called now. */
+    Admissible
+    with_former_words(const std::map<std::string, std::string> &former) const;
+
+    /** What a word of a former version is called now; empty for others. */
+    std::string
+    successor(const std::string &value) const;
+
   private:
-    Test                     test;
-    std::string              words, sample;
-    std::vector<std::string> choices;
+    Test                               test;
+    std::string                        words, sample;
+    std::vector<std::string>           choices;
+    std::map<std::string, std::string> former;
   };
 
 

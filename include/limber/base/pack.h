@@ -184,6 +184,18 @@ namespace limber
 
 
 
+  /** In place of `= {}`, for which GCC calls upon a slow instruction. */
+  template <class Number, std::size_t n>
+  __attribute__((always_inline)) inline void
+  set_zero(std::array<Number, n> &values)
+  {
+#pragma GCC unroll 27
+    for (Number &value : values)
+      value = Number{};
+  }
+
+
+
   /** The larger of two, lane by lane. */
   template <class Number>
   inline Number

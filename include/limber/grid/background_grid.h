@@ -62,6 +62,16 @@ namespace limber
       return description.kernel == KernelKind::quadratic;
     }
 
+    /**
+     * Whether points see nodes beyond those of their cells; a rank knows these
+     * of its own cells alone.
+     */
+    bool
+    reaches_beyond_cells() const
+    {
+      return description.kernel != KernelKind::linear;
+    }
+
     /** For sweeps that need no records of nodes. */
     GridView<dim>
     view() const;

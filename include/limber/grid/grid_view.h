@@ -89,6 +89,28 @@ namespace limber
         }
       return table[index];
     }
+
+    /** The same; a place beyond the box counts in the side next to it. */
+    std::uint32_t
+    nearest_cell(const std::array<double, dim> &x) const
+    {
+      std::int64_t index = 0;
+      for (int d = dim - 1; d >= 0; --d)
+        {
+          const double bin = (x[d] - lower[d]) * inverse_edge[d];
+          index            = index * n[d] +
+                  static_cast<std::int64_t>(
+                    std::clamp(bin, 0., static_cast<double>(n[d] - 1)));
+        }
+      return table[index];
+    }
+
+    /** Where the box ends, m. */
+    double
+    upper(const int d) const
+    {
+      return lower[d] + n[d] / inverse_edge[d];
+    }
   };
 
 
@@ -106,8 +128,11 @@ namespace limber
     // have to join the active ones.
     std::uint8_t               *occupied = nullptr; // per cell
     std::vector<std::uint32_t> *entered  = nullptr;
-    // Set when a point has gone where this rank knows no cell.
-    bool *left = nullptr;
+    // Set when a point has gone where this rank knows no cell, or into a cell
+    // of another rank: those from this number on.
+    bool         *left          = nullptr;
+    bool         *is_in_ghosts  = nullptr;
+    std::uint32_t n_owned_cells = invalid_cell;
   };
 
 

@@ -66,9 +66,12 @@ namespace limber
       return of_vertices ? *of_vertices : *this;
     }
 
-    /** Whether points have entered ghost cells. */
+    /** Whether points have entered ghost cells since clear(). */
     bool
-    has_entered_ghosts() const;
+    has_entered_ghosts() const
+    {
+      return in_ghosts;
+    }
 
     /** Whether points have entered cells that such an agreement lacks. */
     bool
@@ -199,7 +202,7 @@ namespace limber
     std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
     std::vector<std::uint32_t> entered, active, active_boundary;
     LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
-    bool                       left = false;
+    bool                       left = false, in_ghosts = false;
 
     std::unique_ptr<NodalFields> of_vertices; // where these are others
   };

@@ -3,6 +3,7 @@
 #define limber_interpolation_batch_lanes_h
 
 #include <limber/base/expected.h>
+#include <limber/grid/record_window.h>
 #include <limber/interpolation/linear.h>
 #include <limber/points/cell_batch.h>
 #include <limber/points/locate.h>
@@ -175,16 +176,11 @@ namespace limber
   template <class Basis, unsigned int first, unsigned int n_components>
   class NodalCoefficients
   {
-    static constexpr int          dim = Basis::dim;
-    static constexpr unsigned int width =
-      n_components <= 2 ? 2 : (n_components <= 4 ? 4 : 8);
-    // Lanes beyond the wanted slots must not reach beyond the record.
-    static constexpr unsigned int start =
-      first + width <= NodeLayout<dim>::stride ?
-        first :
-        NodeLayout<dim>::stride - width;
-    static_assert(first + n_components <= start + width);
-    using Lanes = Pack<width>;
+    static constexpr int dim = Basis::dim;
+    using Window             = RecordWindow<dim, first, n_components>;
+    using Lanes              = typename Window::Lanes;
+    static constexpr unsigned int width = Window::width;
+    static constexpr unsigned int start = Window::start;
 
   public:
     __attribute__((always_inline))

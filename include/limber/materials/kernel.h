@@ -9,7 +9,8 @@ namespace limber
   {
     automatic, // linear or quadratic, by bodies and frames
     linear,    // Q1 shape functions
-    quadratic  // quadratic B-splines
+    quadratic, // quadratic B-splines
+    cpdi       // linear, averaged over convected domains of points
   };
 } // namespace limber
 

@@ -41,8 +41,13 @@ namespace limber
         if (points.crossings != nullptr && next != cell)
           ++points.crossings[p];
         if (next == invalid_cell)
-          *grid.left = true;
-        else if (!grid.occupied[next])
+          {
+            *grid.left = true;
+            continue;
+          }
+        if (next >= grid.n_owned_cells)
+          *grid.is_in_ghosts = true;
+        if (!grid.occupied[next])
           {
             grid.occupied[next] = 1;
             grid.entered->push_back(next);

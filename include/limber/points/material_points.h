@@ -21,6 +21,7 @@ namespace limber
     int          volumetric = -1; // history variable; -1: the pressure
     bool         affine     = false;
     bool         crossings  = false; // how many cells it has entered
+    bool         domains    = false; // convected domains (CPDI)
     bool         reference  = false; // reference position, for displacements
     // Functions of the initial places: also the reference position and F.
     bool initial_frame = false;
@@ -64,9 +65,15 @@ namespace limber
     void
     reserve(std::size_t n);
 
-    /** A new point in an owned cell, by local number; mass in kg. */
+    /**
+     * A new point in an owned cell, by local number; mass in kg, half edges of
+     * its domain as columns in m.
+     */
     void
-    add(std::uint32_t cell, const dealii::Point<dim> &place, double mass);
+    add(std::uint32_t                 cell,
+        const dealii::Point<dim>     &place,
+        double                        mass,
+        const dealii::Tensor<2, dim> &half_edges = {});
 
     /** After all add(): number the points over all ranks. Collective. */
     void
@@ -206,8 +213,8 @@ namespace limber
     const PointLayout          layout;
 
     // Position, velocity, mass, pressure, deviator, history, affine part,
-    // crossings, deformation gradient; the reference position, if there is one,
-    // comes last.
+    // crossings, domain, deformation gradient; the reference position, if there
+    // is one, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;

@@ -40,6 +40,9 @@ namespace limber
     std::array<double *, n_deviator<dim>> deviator{};         // of J sigma, Pa
     std::array<double *, max_history>     history{}; // meaning: the law's
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
+    // Half edges of the domain (CPDI, convected.h), m: component d of edge k at
+    // d * dim + k; null for points without
+    std::array<double *, dim * dim> domain{};
     // F, row-major, in the frame of the initial configuration; else null
     std::array<double *, dim * dim> deformation{};
     // The variable that carries the volumetric history (of the law's choice):
@@ -53,6 +56,13 @@ namespace limber
     in_initial_frame() const
     {
       return deformation[0] != nullptr;
+    }
+
+    /** Whether the points have domains that are convected. */
+    bool
+    has_domains() const
+    {
+      return domain[0] != nullptr;
     }
   };
 } // namespace limber

@@ -42,13 +42,14 @@ namespace limber
     replace   // it is replaced by the mean of the cell in every step
   };
 
+  /** When in a step the stress follows the motion. */
   enum class StressUpdateOrder
   {
-    automatic,     // by the materials
-    first,         // USF
-    last,          // USL
-    last_remapped, // MUSL
-    both_ends      // USAVG
+    automatic, // by the materials
+    usf,       // update stress first
+    usl,       // update stress last
+    musl,      // the same, with the velocity that points give back
+    usavg      // half of it first, half last
   };
 
   enum class Transfer

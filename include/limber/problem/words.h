@@ -8,6 +8,7 @@
 #include <limber/base/text.h>
 #include <limber/problem/problem.h>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,7 +25,8 @@ namespace limber
   {
     std::string         word;
     std::optional<Enum> value;
-    std::string         text; // one line for --list and the manual
+    std::string         text;        // one line for --list and the manual
+    std::string         former = {}; // what it was called in former versions
   };
 
   template <typename Enum>
@@ -122,6 +124,20 @@ namespace limber
 
 
 
+  /** What words of former versions are called now. */
+  template <typename Enum>
+  std::map<std::string, std::string>
+  former_words(const Words<Enum> &words)
+  {
+    std::map<std::string, std::string> result;
+    for (const Word<Enum> &word : words)
+      if (!word.former.empty())
+        result[word.former] = word.word;
+    return result;
+  }
+
+
+
   template <typename Enum>
   void
   declare_word(Parameters        &parameters,
@@ -130,10 +146,11 @@ namespace limber
                const Words<Enum> &words,
                const std::string &text)
   {
-    parameters.declare(entry,
-                       default_word,
-                       admissible::one_of(plain(words)),
-                       text + " " + explained(words));
+    parameters.declare(
+      entry,
+      default_word,
+      admissible::one_of(plain(words)).with_former_words(former_words(words)),
+      text + " " + explained(words));
   }
 
 

@@ -2,6 +2,7 @@
 #ifndef limber_stress_law_on_points_h
 #define limber_stress_law_on_points_h
 
+#include <limber/interpolation/batch_lanes.h>
 #include <limber/materials/law.h>
 #include <limber/stress/stress_update.h>
 
@@ -127,6 +128,63 @@ namespace limber
     state_of(const PointView<dim> &points, const std::size_t p)
     {
       return load_state<double>(points, [&](const double *a) { return a[p]; });
+    }
+
+    /** What a sweep finds while it strains points, by lanes. */
+    struct Findings
+    {
+      PointPack<dim> waves{}, viscous{}, removed{};
+    };
+
+    /**
+     * Strain the points of a pack, and return their new state. Before that
+     * change(state, mass) acts on the old one.
+     */
+    template <class Lanes, class Change>
+    __attribute__((always_inline)) State<PointPack<dim>>
+    strain(const PointView<dim>                       &points,
+           const Lanes                                &lanes,
+           const MotionIncrement<dim, PointPack<dim>> &motion,
+           const Change                               &change,
+           const bool                                  measure_waves,
+           Findings                                   &found) const
+    {
+      using Number = PointPack<dim>;
+      auto state   = load_state<Number>(points, [&](const double *a) {
+        return lanes.load(a);
+      });
+      // zero in lanes beyond the batch
+      [[maybe_unused]] const Number mass =
+        lanes.only_active(lanes.load(points.mass));
+      change(state, mass);
+
+      const auto dissipation = law.template update<dim>(motion, state);
+      if constexpr (Law::dissipates)
+        {
+          found.viscous += mass * inverse_density * dissipation.viscous;
+          found.removed += mass * inverse_density * dissipation.cutoff;
+        }
+      store_state(points, state, [&](const Number &value, double *a) {
+        lanes.store(value, a);
+      });
+      if (measure_waves)
+        found.waves = larger(found.waves,
+                             lanes.only_active(
+                               law.template wave_speed_squared<dim>(state)));
+      return state;
+    }
+
+    /** The part of a summary that follows from them. */
+    StressSummary
+    summary(const Findings &found, const bool measure_waves) const
+    {
+      StressSummary result;
+      result.wave_speed_squared =
+        measure_waves ? maximum(found.waves) :
+                        law.template wave_speed_squared<dim>(State<double>{});
+      result.viscous = sum(found.viscous);
+      result.history = sum(found.removed);
+      return result;
     }
 
     template <class Number, class Store>

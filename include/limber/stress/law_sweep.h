@@ -163,46 +163,24 @@ namespace limber
       __attribute__((always_inline)) void
       update(const Batch &batch, const Lanes &lanes)
       {
-        const Law &law = owner.law;
-        const auto xi  = lanes.natural(points, batch.cell);
+        const auto xi = lanes.natural(points, batch.cell);
 
         MotionIncrement<dim, Number> motion;
         motion.step = what.step;
         batch.strain.template evaluate<Number, Law::uses_spin>(xi, motion);
 
-        auto state =
-          Base::template load_state<Number>(points, [&](const double *a) {
-            return lanes.load(a);
-          });
-        // zero in lanes beyond the batch
-        [[maybe_unused]] const Number mass =
-          lanes.only_active(lanes.load(points.mass));
-
-        if constexpr (projected)
-          if (changes_history)
-            {
-              Number      &variable = volumetric_variable(state);
-              const Number before   = law.volumetric_energy(variable);
-              variable +=
-                what.relaxation * (batch.means.volumetric() - variable) +
-                batch.shift;
-              removed += mass * owner.inverse_density *
-                         (before - law.volumetric_energy(variable));
-            }
-
-        const auto dissipation = law.template update<dim>(motion, state);
-        if constexpr (Law::dissipates)
-          {
-            viscous += mass * owner.inverse_density * dissipation.viscous;
-            removed += mass * owner.inverse_density * dissipation.cutoff;
-          }
-        store_state(points, state, [&](const Number &value, double *a) {
-          lanes.store(value, a);
-        });
-        if (measure_waves)
-          waves = larger(waves,
-                         lanes.only_active(
-                           law.template wave_speed_squared<dim>(state)));
+        auto state = owner.strain(
+          points,
+          lanes,
+          motion,
+          [&](State<Number> & former, const Number &mass)
+            __attribute__((always_inline)) {
+              if constexpr (projected)
+                if (changes_history)
+                  change_history(batch, mass, volumetric_variable(former));
+            },
+          measure_waves,
+          found);
 
         if constexpr (moves)
           {
@@ -221,7 +199,7 @@ namespace limber
                 if (moved.inside)
                   gatherer.add(batch.cell_number,
                                moved.xi,
-                               mass,
+                               lanes.only_active(lanes.load(points.mass)),
                                volumetric_variable(state));
                 else
                   gatherer.add_one_by_one(points,
@@ -232,13 +210,25 @@ namespace limber
           }
       }
 
+      /** Towards the mean of the cell, or by what the cell gets. */
+      __attribute__((always_inline)) void
+      change_history(const Batch &batch, const Number &mass, Number &variable)
+      {
+        const Number before = owner.law.volumetric_energy(variable);
+        variable +=
+          what.relaxation * (batch.means.volumetric() - variable) + batch.shift;
+        found.removed += mass * owner.inverse_density *
+                         (before - owner.law.volumetric_energy(variable));
+      }
+
       const LawSweep            &owner;
       const PointView<dim>      &points;
       const GridView<dim>       &grid;
       const CellSums<dim> *const sums;
       const StressSweep         &what;
       const bool                 measure_waves, changes_history;
-      Number                     waves{}, viscous{}, removed{}, displacement{};
+      typename Base::Findings    found{};
+      Number                     displacement{};
     };
 
 
@@ -267,14 +257,8 @@ namespace limber
             });
         });
 
-      StressSummary result;
-      result.wave_speed_squared =
-        sweep.measure_waves ?
-          maximum(sweep.waves) :
-          law.template wave_speed_squared<dim>(State<double>{});
-      result.viscous      = sum(sweep.viscous);
-      result.history      = sum(sweep.removed);
-      result.displacement = maximum(sweep.displacement);
+      StressSummary result = this->summary(sweep.found, sweep.measure_waves);
+      result.displacement  = maximum(sweep.displacement);
       return result;
     }
 

@@ -59,6 +59,11 @@ namespace limber
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_spline_sweep(const AnyLaw &law, const StrainProjection &projection);
+
+  /** The same for points with convected domains. */
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_convected_sweep(const AnyLaw &law, const StrainProjection &projection);
 } // namespace limber
 
 #endif

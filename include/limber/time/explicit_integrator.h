@@ -7,7 +7,9 @@
 #include <limber/state/material_body.h>
 #include <limber/time/full_mass_filter.h>
 #include <limber/time/loads.h>
+#include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/hourglass.h>
+#include <limber/transfer/points_to_grid.h>
 
 #include <array>
 #include <string>
@@ -52,7 +54,8 @@ namespace limber
 
   /**
    * Explicit steps of the material point method, with the stress updated
-   * first (USF), last (USL) or last with re-mapped velocity (MUSL).
+   * first (USF), last (USL), last with re-mapped velocity (MUSL), or half of
+   * it at either end (USAVG).
    */
   template <int dim>
   class ExplicitIntegrator
@@ -72,8 +75,9 @@ namespace limber
     reorganise();
 
     /**
-     * With splines, give points in ghost cells to the ranks that own these, who
-     * alone know all nodes of their cells; records of nodes are given up. To
+     * Where points see nodes beyond those of their cells, give those in ghost
+     * cells to the ranks that own these, who alone know all; records of nodes
+     * are given up. To
      * be called before anything but a step evaluates functions at points;
      * returns whether there were any. Collective.
      */
@@ -126,19 +130,45 @@ namespace limber
     std::array<double, std::size_t(Verb::n_verbs)> verb_seconds{};
 
   private:
+    // The schemes: in which order of its verbs a step is done
     void
-    points_to_nodes();
+    usf();
     void
-    strain_as_points_bring_it(double length);
+    usl();
     void
-    strain_as_points_leave_it(double length);
+    musl();
+    void
+    usavg();
+
+    void
+    strain_before_forces(double length);
+    void
+    strain_after_motion(double length);
     void
     accelerate_nodes();
+
+    // Verbs: sums over points are complete on all ranks when they are done
+    void
+    p2g();
+    void
+    p2g_momentum();
+    void
+    p2g_force();
+    void
+    g2p();
+    void
+    g2p_and_remap();
+    void
+    g2p_and_move();
+    void
+    update_stress(double length);
+    void
+    update_stress_and_move(double length, unsigned int velocity);
 
     void
     clear();
     void
-    points_to_grid(bool momentum, bool force);
+    points_to_grid(GiveToGrid what);
     void
     control_chequerboards();
     void
@@ -167,7 +197,7 @@ namespace limber
     void
     interpolate_hanging();
     void
-    grid_to_points(bool remap, bool move);
+    grid_to_points(TakeFromGrid what);
     void
     filter_velocity();
     double
@@ -177,7 +207,7 @@ namespace limber
     void
     relax_deviators(double length);
     void
-    update_stress(double length, bool remapped, bool move);
+    update_stress(StressSweep what);
     void
     relocate();
     void

@@ -71,18 +71,6 @@ namespace limber
 
 
 
-  /** In place of `= {}`, for which GCC calls upon a slow instruction. */
-  template <class Number, std::size_t n>
-  __attribute__((always_inline)) inline void
-  set_zero(std::array<Number, n> &values)
-  {
-#pragma GCC unroll 27
-    for (Number &value : values)
-      value = Number{};
-  }
-
-
-
   /**
    * Sums for the records of the nodes of a cell: @p n_slots of them from
    * @p first on are lanes of one pack for each node. What a point gives is then
@@ -96,15 +84,10 @@ namespace limber
   {
   public:
     using Basis                         = Quadratic<dim>;
-    static constexpr unsigned int width = n_slots <= 2 ? 2 :
-                                          n_slots <= 4 ? 4 :
-                                                         8;
-    // It has to stay within the record.
-    static constexpr unsigned int start =
-      first + width <= NodeLayout<dim>::stride ?
-        first :
-        NodeLayout<dim>::stride - width;
-    using Record = Pack<int(width)>;
+    using Window                        = RecordWindow<dim, first, n_slots>;
+    using Record                        = typename Window::Lanes;
+    static constexpr unsigned int width = Window::width;
+    static constexpr unsigned int start = Window::start;
 
     __attribute__((always_inline)) void
     clear()
@@ -112,11 +95,10 @@ namespace limber
       set_zero(sums);
     }
 
-    /** Lane of a slot. */
     static constexpr unsigned int
     lane_of(const unsigned int slot)
     {
-      return slot - start;
+      return Window::lane_of(slot);
     }
 
     /** N_i times a record, for all nodes; weights are those of one point. */

@@ -137,9 +137,9 @@ namespace limber::test
     Problem<2> problem     = run.problem;
     seen.courant_number    = 0.4;
     seen.bodies[0].filling = 0.01;
-    problem.method.order   = StressUpdateOrder::last;
+    problem.method.order   = StressUpdateOrder::usl;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "small cut cell");
-    problem.method.order = StressUpdateOrder::last_remapped;
+    problem.method.order = StressUpdateOrder::musl;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "");
     seen.courant_number = 2.5;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "Courant number");

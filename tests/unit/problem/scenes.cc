@@ -59,7 +59,7 @@ TEST(Scenes, DamBreakReadsAsWritten)
   EXPECT_EQ(problem.sides[3].condition, SideCondition::slip);
   EXPECT_DOUBLE_EQ(problem.loads.gravity[1], -9.81);
   EXPECT_FALSE(problem.loads.body_force);
-  EXPECT_EQ(problem.method.order, StressUpdateOrder::last_remapped);
+  EXPECT_EQ(problem.method.order, StressUpdateOrder::musl);
   EXPECT_EQ(problem.method.transfer, Transfer::flip);
   EXPECT_DOUBLE_EQ(problem.output.time_interval, 0.02);
   EXPECT_EQ(problem.output.fields,
@@ -253,11 +253,11 @@ TEST(Scenes, AutomaticChoicesFollowTheMaterial)
   const auto liquid =
     read("dam_break.prm", {automatic, "Body water/Locking treatment=auto"});
 
-  EXPECT_EQ(solid.method.order, StressUpdateOrder::both_ends);
+  EXPECT_EQ(solid.method.order, StressUpdateOrder::usavg);
   EXPECT_EQ(solid.bodies[0].treatment, Projection::assumed_strain);
   EXPECT_EQ(solid.bodies[0].hourglass_control, 0);
   EXPECT_EQ(solid.bodies[0].chequerboard_control, 0);
-  EXPECT_EQ(liquid.method.order, StressUpdateOrder::last_remapped);
+  EXPECT_EQ(liquid.method.order, StressUpdateOrder::musl);
   EXPECT_EQ(liquid.bodies[0].treatment, Projection::cell);
   EXPECT_EQ(liquid.bodies[0].hourglass_control, 0.1);
   EXPECT_EQ(liquid.bodies[0].chequerboard_control, 0.5);
@@ -269,6 +269,55 @@ TEST(Scenes, AutomaticChoicesFollowTheMaterial)
                                      std::string::npos;
                             }),
               2);
+}
+
+
+
+TEST(Scenes, AutomaticFrameAndKernelKeepSolidsFromCreeping)
+{
+  const auto read = [](const std::string       &name,
+                       std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(), "Method/Kernel=auto");
+    return read_problem<2>(SceneFile(prm_folder() + name, overrides));
+  };
+  const auto beam = [&](std::vector<std::string> overrides) {
+    overrides.insert(overrides.begin(),
+                     {"Body beam/Frame=auto",
+                      "Body beam/Points per cell edge=auto",
+                      "Body beam/Locking treatment=auto"});
+    return read("cantilever.prm", overrides);
+  };
+  const auto expect_splines = [](const Problem<2> &problem) {
+    EXPECT_EQ(problem.bodies[0].frame, Frame::current);
+    EXPECT_EQ(problem.grid.kernel, KernelKind::quadratic);
+    EXPECT_EQ(problem.bodies[0].points_per_cell_edge[0], 3u);
+  };
+
+  const auto held = beam({});
+  EXPECT_EQ(held.bodies[0].frame, Frame::initial);
+  EXPECT_EQ(held.grid.kernel, KernelKind::linear);
+  EXPECT_EQ(held.bodies[0].points_per_cell_edge[0], 2u);
+  EXPECT_EQ(held.bodies[0].treatment, Projection::assumed_strain);
+
+  // Held or not, it meets nothing.
+  EXPECT_EQ(beam({"Boundaries/left=free"}).bodies[0].frame, Frame::initial);
+  // It may lift, or fly against a side.
+  expect_splines(beam({"Boundaries/left=slip"}));
+  expect_splines(beam({"Boundaries/left=friction",
+                       "Boundaries/Side left/Friction coefficient=0.3"}));
+  expect_splines(beam({"Body beam/Box/Lower corner=0.5, 2"}));
+  expect_splines(beam({"Method/Stress update=usf"}));
+  EXPECT_EQ(beam({"Body beam/Locking treatment=node"}).bodies[0].frame,
+            Frame::current);
+  // Splines have no hourglass modes.
+  EXPECT_EQ(beam({"Boundaries/left=slip",
+                  "Body beam/Locking treatment=assumed strain"})
+              .grid.kernel,
+            KernelKind::linear);
+
+  const auto liquid = read("dam_break.prm", {});
+  EXPECT_EQ(liquid.bodies[0].frame, Frame::current);
+  EXPECT_EQ(liquid.grid.kernel, KernelKind::linear);
 }
 
 

@@ -140,4 +140,7 @@ TEST(Creep, OfABarUnderTensionThatMovesThroughTheGrid)
   // smooth functions
   EXPECT_LT(std::abs(creep_per_cell("quadratic", 2)), 0.01);
   EXPECT_LT(std::abs(creep_per_cell("quadratic", 3)), 0.001);
+  // domains that follow the motion
+  EXPECT_LT(std::abs(creep_per_cell("cpdi", 2)), 0.001);
+  EXPECT_LT(std::abs(creep_per_cell("cpdi", 3)), 0.001);
 }

@@ -65,7 +65,7 @@ namespace
       else
         {
           result.push_back("Method/Transfer=" + transfer);
-          result.push_back("Method/Stress update=last, remapped");
+          result.push_back("Method/Stress update=musl");
         }
       return result;
     }

@@ -103,7 +103,7 @@ namespace
     const auto start = run.positions();
     // dt ~ h^2, for the first order in time not to show, or dt ~ h
     const unsigned int n_steps =
-      std::lround((order == "both ends" ? 5 : 0.45 * n) * n * std::sqrt(M));
+      std::lround((order == "usavg" ? 5 : 0.45 * n) * n * std::sqrt(M));
     run.advance(end_time / n_steps, n_steps);
     const auto end = run.positions();
     double     sum = 0;
@@ -122,7 +122,7 @@ namespace
                       const std::string &treatment,
                       const double       nu)
   {
-    for (const std::string order : {"last, remapped", "both ends"})
+    for (const std::string order : {"musl", "usavg"})
       {
         SCOPED_TRACE(law + ", " + treatment + ", " + order +
                      ", nu = " + digits(nu));

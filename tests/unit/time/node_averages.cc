@@ -167,9 +167,9 @@ namespace
     run.integrator.advance(run.time, step);
     // that of the nodes which strains the points
     const auto velocity = [&](const double *const record, const int d) {
-      return order == "last, remapped" ?
+      return order == "musl" ?
                record[Layout::remapped + d] :
-             order == "last" ?
+             order == "usl" ?
                record[Layout::velocity + d] :
                record[Layout::velocity + d] - record[Layout::increment + d];
     };
@@ -194,7 +194,7 @@ namespace
 
 TEST(NodeAverages, AreThoseOfTheBodyAlone)
 {
-  for (const std::string order : {"first", "last", "last, remapped"})
+  for (const std::string order : {"usf", "usl", "musl"})
     {
       SCOPED_TRACE(order);
       expect_own_averages<2>(order);

@@ -107,7 +107,7 @@ namespace
     const Moments m(xi);
     const double  spread   = m.mean * (1 - m.mean);
     const double  variance = m.square - m.mean * m.mean;
-    if (order == "last")
+    if (order == "usl")
       return clamped ? std::sqrt(4 * m.mean / (2 - m.square / m.mean)) :
                        std::sqrt(4 * spread / (2 - variance / spread));
     if (clamped)

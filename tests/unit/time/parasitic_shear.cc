@@ -34,7 +34,7 @@ namespace
     SceneRun<2> run(cantilever_scene,
                     {"Body beam/Locking treatment=" + treatment,
                      "Body beam/Constants=v0 = 1e-4",
-                     "Method/Stress update=last, remapped"});
+                     "Method/Stress update=musl"});
     run.advance_to(quarter_period);
     const PointView<2> points = run.points();
 

@@ -165,7 +165,7 @@ TEST(RigidMotion, FreeFall)
                   1e-12 * n * step * g.norm());
       const auto x = run.positions();
       const auto fall =
-        0.5 * n * (variant.order == "both ends" ? n : n + 1) * step * step * g;
+        0.5 * n * (variant.order == "usavg" ? n : n + 1) * step * step * g;
       for (std::size_t p = 0; p < x.size(); ++p)
         EXPECT_NEAR((x[p] - x0[p] - fall).norm(), 0, 1e-11);
       EXPECT_LT(run.totals().momentum_error, 1e-12);
@@ -176,7 +176,7 @@ TEST(RigidMotion, FreeFall)
 
 // Theory, section 7, row 2: the average of equal values changes nothing. A
 // huge density holds the velocity gradient against the stress; APIC brings a
-// linear field to the nodes without error. With 'both ends' a step strains in
+// linear field to the nodes without error. With 'usavg' a step strains in
 // two halves.
 TEST(RigidMotion, HomogeneousDeformationIsExactAndUntouchedByTheTreatment)
 {
@@ -184,7 +184,7 @@ TEST(RigidMotion, HomogeneousDeformationIsExactAndUntouchedByTheTreatment)
   for (const Variant &variant : all_variants({"apic"}))
     {
       SCOPED_TRACE(name_of(variant));
-      const unsigned int parts = variant.order == "both ends" ? 2 : 1;
+      const unsigned int parts = variant.order == "usavg" ? 2 : 1;
       const double       step  = 0.01 / parts;
       const unsigned int n     = 50 * parts;
       auto               set   = overrides(variant);
@@ -270,7 +270,7 @@ TEST(RigidMotion, RotationOfFiniteStrainLawsIsThirdOrder)
           if (variant.law == "neo hookean")
             {
               const double strained =
-                variant.order == "both ends" ? 0.5 * theta : theta;
+                variant.order == "usavg" ? 0.5 * theta : theta;
               const double expected =
                 modulus / 1.2 * angle * std::pow(strained, 3) / 4;
               EXPECT_NEAR(errors.back(), expected, 0.01 * expected);

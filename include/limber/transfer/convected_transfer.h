@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_transfer_convected_transfer_h
+#define limber_transfer_convected_transfer_h
+
+#include <limber/transfer/grid_to_points.h>
+#include <limber/transfer/points_to_grid.h>
+
+#include <vector>
+
+/**
+ * @file The sweeps of points with convected domains
+ * (interpolation/convected.h), point by point: each has a stencil of its own.
+ */
+namespace limber
+{
+  /** What points_to_grid() does for them; returns the number of batches. */
+  template <int dim>
+  std::size_t
+  domains_to_grid(const PointView<dim> &points,
+                  const GridView<dim>  &grid,
+                  const GiveToGrid     &what);
+
+
+
+  /**
+   * What grid_to_points() does for them; where points move their domains
+   * follow. @p sums may be null.
+   */
+  template <int dim>
+  VelocitySummary
+  grid_to_domains(const PointView<dim> &points,
+                  const GridView<dim>  &grid,
+                  const TakeFromGrid   &what,
+                  const CellSums<dim>  *sums);
+
+
+
+  /** What sum_divergence() does for them. */
+  template <int dim>
+  void
+  sum_divergence_of_domains(const PointView<dim> &points,
+                            const GridView<dim>  &grid,
+                            bool                  remapped,
+                            double               *records);
+
+
+
+  /**
+   * The cells of the corners of all domains, besides those of the points,
+   * ascending: their nodes get mass as well.
+   */
+  template <int dim>
+  std::vector<std::uint32_t>
+  cells_of_corners(const PointView<dim> &points, const GridView<dim> &grid);
+} // namespace limber
+
+#endif

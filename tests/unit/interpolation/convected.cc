@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/convected_fields.h>
+#include <limber/transfer/convected_transfer.h>
+
+#include <gtest/gtest.h>
+#include <support/small_grid.h>
+
+#include <cmath>
+
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  /** Random points with random domains on a small grid. */
+  template <class Dimension>
+  class ConvectedDomains : public testing::Test
+  {
+  public:
+    static constexpr int dim = Dimension::value;
+    using Layout             = NodeLayout<dim>;
+    using Domain             = ConvectedDomain<dim>;
+    using Window             = RecordWindow<dim, Layout::velocity, dim>;
+    using Fields             = FieldsOnDomain<dim, Window>;
+
+    /** Half edges up to @p size of those of a cell, not flat. */
+    SmallPoints<dim>
+    points_with_domains(const double size)
+    {
+      auto       own    = random_points<dim>(grid, random, true, 0, -1, false);
+      const auto points = own.view();
+      for (auto &edges : domains)
+        edges.assign(points.size + 8, 0.);
+      for (std::size_t p = 0; p < points.size; ++p)
+        for (int d = 0; d < dim; ++d)
+          for (int k = 0; k < dim; ++k)
+            domains[d * dim + k][p] =
+              size * grid.edge[d] * (d == k ? 0.5 : 0.2 * random());
+      return own;
+    }
+
+    PointView<dim>
+    view(SmallPoints<dim> &own)
+    {
+      PointView<dim> points = own.view();
+      for (int k = 0; k < dim * dim; ++k)
+        points.domain[k] = domains[k].data();
+      return points;
+    }
+
+    void
+    set_velocity(const Vector<dim> &a, const Matrix<dim> &A)
+    {
+      for (std::size_t n = 0; n < grid.n_nodes; ++n)
+        for (int d = 0; d < dim; ++d)
+          {
+            double &v = velocity(n, d);
+            v         = a[d];
+            for (int e = 0; e < dim; ++e)
+              v += A[d][e] * grid.place(n)[e];
+          }
+    }
+
+    double &
+    velocity(const std::size_t node, const int d)
+    {
+      return grid.nodes[node * Layout::stride + Layout::velocity + d];
+    }
+
+    /** Away from the sides by more than a cell. */
+    bool
+    is_inside(const SmallPoints<dim> &own, const std::size_t p) const
+    {
+      for (int d = 0; d < dim; ++d)
+        {
+          const double at = (own.position(p)[d] - grid.lower[d]) / grid.edge[d];
+          if (at < 1 || at > grid.bins.n[d] - 1)
+            return false;
+        }
+      return true;
+    }
+
+    Random                                     random;
+    SmallGrid<dim>                             grid;
+    std::array<std::vector<double>, dim * dim> domains;
+  };
+
+  using BothDimensions = testing::Types<std::integral_constant<int, 2>,
+                                        std::integral_constant<int, 3>>;
+  TYPED_TEST_SUITE(ConvectedDomains, BothDimensions);
+} // namespace
+
+
+
+TYPED_TEST(ConvectedDomains, ReproduceLinearFields)
+{
+  constexpr int dim  = TestFixture::dim;
+  using Layout       = typename TestFixture::Layout;
+  const auto  a      = this->random.template vector<dim>();
+  const auto  A      = this->random.template matrix<dim>();
+  std::size_t inside = 0;
+  this->set_velocity(a, A);
+  // Within a cell, over several, and longer than what counts.
+  for (const double size : {0.2, 0.9, 1.9, 4.})
+    {
+      auto       own    = this->points_with_domains(size);
+      const auto points = this->view(own);
+      for (std::size_t p = 0; p < points.size; ++p)
+        if (this->is_inside(own, p))
+          {
+            ++inside;
+            const typename TestFixture::Domain domain(points,
+                                                      this->grid.view(),
+                                                      points.cell[p],
+                                                      p);
+            const typename TestFixture::Fields fields(domain,
+                                                      this->grid.view());
+            for (int d = 0; d < dim; ++d)
+              {
+                double v = a[d];
+                for (int e = 0; e < dim; ++e)
+                  v += A[d][e] * own.position(p)[e];
+                ASSERT_NEAR(fields.value(Layout::velocity + d), v, 1e-13);
+                for (int e = 0; e < dim; ++e)
+                  ASSERT_NEAR(fields.slope(domain, Layout::velocity + d, e),
+                              A[d][e],
+                              1e-12);
+              }
+          }
+    }
+  EXPECT_GT(inside, 20u);
+}
+
+
+
+// Whatever the shape of the domain and wherever its corners are.
+TYPED_TEST(ConvectedDomains, AreMeansOfTheFieldAtTheirCorners)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  for (double &value : this->grid.nodes)
+    value = this->random();
+  auto       own    = this->points_with_domains(1.5);
+  const auto points = this->view(own);
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      const typename TestFixture::Domain domain(points,
+                                                this->grid.view(),
+                                                points.cell[p],
+                                                p);
+      const typename TestFixture::Fields fields(domain, this->grid.view());
+      double                             mean     = 0;
+      bool                               at_sides = false;
+      for (int c = 0; c < 1 << dim; ++c)
+        {
+          Vector<dim> x = own.position(p);
+          for (int d = 0; d < dim; ++d)
+            {
+              double extent = 0;
+              for (int k = 0; k < dim; ++k)
+                extent += std::abs(points.domain[d * dim + k][p]);
+              const double counts = std::min(1., this->grid.edge[d] / extent);
+              for (int k = 0; k < dim; ++k)
+                x[d] += (c >> k & 1 ? 1 : -1) * counts *
+                        points.domain[d * dim + k][p];
+              const double upper = this->grid.bins.upper(d);
+              at_sides = at_sides || x[d] < this->grid.lower[d] || x[d] > upper;
+              x[d]     = std::clamp(x[d], this->grid.lower[d], upper);
+            }
+          const std::uint32_t cell = this->grid.bins.nearest_cell(x);
+          for (int i = 0; i < 1 << dim; ++i)
+            mean += this->grid.shape(cell, i, x) *
+                    this->velocity(this->grid.node_number(cell, i), 0) /
+                    (1 << dim);
+        }
+      ASSERT_NEAR(fields.value(Layout::velocity), mean, 1e-13) << at_sides;
+    }
+}
+
+
+
+TYPED_TEST(ConvectedDomains, CountAsTheBoxAroundThemIfFlat)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  auto       own    = this->points_with_domains(0.3);
+  const auto points = this->view(own);
+  for (double &value : this->grid.nodes)
+    value = this->random();
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      // the second edge along the first, or the domain inside out
+      const double sign = p % 2 ? 1 : -1;
+      for (int d = 0; d < dim; ++d)
+        points.domain[d * dim + 1][p] =
+          p % 2 ? points.domain[d * dim][p] : -points.domain[d * dim + 1][p];
+      const auto at = [&]() {
+        return typename TestFixture::Domain(points,
+                                            this->grid.view(),
+                                            points.cell[p],
+                                            p);
+      };
+      const auto                         flat = at();
+      const typename TestFixture::Fields of_flat(flat, this->grid.view());
+      for (int d = 0; d < dim; ++d)
+        {
+          double extent = 0;
+          for (int k = 0; k < dim; ++k)
+            extent += std::abs(points.domain[d * dim + k][p]);
+          for (int k = 0; k < dim; ++k)
+            points.domain[d * dim + k][p] = d == k ? extent : 0;
+        }
+      const auto                         box = at();
+      const typename TestFixture::Fields of_box(box, this->grid.view());
+      for (int e = 0; e < dim; ++e)
+        ASSERT_NEAR(of_flat.slope(flat, Layout::velocity, e),
+                    of_box.slope(box, Layout::velocity, e),
+                    1e-12)
+          << sign;
+    }
+}
+
+
+
+// Sum f_i v_i = - sum V (J sigma : grad v), for all velocities and stresses.
+TYPED_TEST(ConvectedDomains, GiveForcesThatAreTheTransposeOfTheStrain)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  auto       own    = this->points_with_domains(1.2);
+  const auto points = this->view(own);
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      points.pressure[p] = this->random();
+      for (auto *const component : points.deviator)
+        component[p] = this->random();
+    }
+  GiveToGrid what;
+  what.inverse_density = 0.7;
+  const auto former    = own.fields;
+  domains_to_grid<dim>(points, this->grid.view(), what);
+  EXPECT_EQ(own.fields, former);
+
+  std::vector<double> given = this->grid.nodes;
+  const auto          slot = [&](const std::size_t node, const unsigned int s) {
+    return given[node * Layout::stride + s];
+  };
+  double      mass = 0, work = 0, scale = 0;
+  Vector<dim> momentum{};
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      mass -= points.mass[p];
+      for (int d = 0; d < dim; ++d)
+        momentum[d] -= points.mass[p] * points.velocity[d][p];
+    }
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    {
+      mass += slot(n, Layout::mass);
+      for (int d = 0; d < dim; ++d)
+        {
+          momentum[d] += slot(n, Layout::momentum + d);
+          this->velocity(n, d) = this->random();
+          work += slot(n, Layout::force + d) * this->velocity(n, d);
+        }
+    }
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      const typename TestFixture::Domain domain(points,
+                                                this->grid.view(),
+                                                points.cell[p],
+                                                p);
+      const typename TestFixture::Fields fields(domain, this->grid.view());
+      const auto                         t = kirchhoff_stress<dim>(points, p);
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            const double power = 0.7 * points.mass[p] * t[d][e] *
+                                 fields.slope(domain, Layout::velocity + d, e);
+            work += power;
+            scale += std::abs(power);
+          }
+    }
+  EXPECT_NEAR(mass, 0, 1e-12);
+  EXPECT_NEAR(work, 0, 1e-13 * scale);
+  for (int d = 0; d < dim; ++d)
+    EXPECT_NEAR(momentum[d], 0, 1e-12);
+}
+
+
+
+// What FLIP takes is what the nodes give: no momentum is lost, and domains
+// follow a homogeneous motion.
+TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  auto       own    = this->points_with_domains(0.8);
+  const auto points = this->view(own);
+  GiveToGrid what;
+  what.force = false;
+  domains_to_grid<dim>(points, this->grid.view(), what);
+  double added = 0;
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    {
+      double *const record      = &this->grid.nodes[n * Layout::stride];
+      const double  dv          = this->random();
+      record[Layout::increment] = dv;
+      record[Layout::velocity]  = 0;
+      added += record[Layout::mass] * dv;
+    }
+  double before = 0, after = 0;
+  for (std::size_t p = 0; p < points.size; ++p)
+    before += points.mass[p] * points.velocity[0][p];
+  TakeFromGrid take;
+  take.remap = true;
+  grid_to_domains<dim>(points, this->grid.view(), take, nullptr);
+  for (std::size_t p = 0; p < points.size; ++p)
+    after += points.mass[p] * points.velocity[0][p];
+  EXPECT_NEAR(after - before, added, 1e-12);
+  double remapped = 0;
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    remapped += this->grid.nodes[n * Layout::stride + Layout::remapped];
+  EXPECT_NEAR(remapped, after, 1e-12);
+
+  const auto A = this->random.template matrix<dim>();
+  this->set_velocity({}, A);
+  const auto former     = this->domains;
+  take                  = {};
+  take.move             = 1e-3;
+  const auto was_inside = own;
+  grid_to_domains<dim>(points, this->grid.view(), take, nullptr);
+  for (std::size_t p = 0; p < points.size; ++p)
+    if (this->is_inside(was_inside, p))
+      for (int d = 0; d < dim; ++d)
+        for (int k = 0; k < dim; ++k)
+          {
+            double wanted = former[d * dim + k][p];
+            for (int e = 0; e < dim; ++e)
+              wanted += 1e-3 * A[d][e] * former[e * dim + k][p];
+            ASSERT_NEAR(points.domain[d * dim + k][p], wanted, 1e-14);
+          }
+}
