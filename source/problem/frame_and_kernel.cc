@@ -106,8 +106,7 @@ namespace limber
       if (treatment != Projection::automatic && treatment != Projection::none &&
           treatment != Projection::node)
         return Misfit{"Locking treatment",
-                      "domains reach over several cells, so that means over "
-                      "one are not theirs",
+                      "domains reach over several cells",
                       "'Locking treatment = node' or 'none'"};
       if (is_set(section, "Hourglass control"))
         return Misfit{"Hourglass control",

@@ -29,6 +29,14 @@ namespace limber
             "transfer filters.");
           return;
         }
+      if (problem.grid.kernel == KernelKind::cpdi)
+        {
+          problem.method.order = StressUpdateOrder::usl;
+          problem.notes.push_back(
+            "Stress update 'auto' is 'usl', as domains do not creep where the "
+            "velocity that moves them also strains them.");
+          return;
+        }
       const auto solid =
         std::find_if(problem.bodies.begin(),
                      problem.bodies.end(),

@@ -5,6 +5,7 @@
 #include <limber/problem/read_problem.h>
 #include <limber/problem/size_estimate.h>
 #include <limber/simulation/command_line.h>
+#include <limber/simulation/signals.h>
 #include <limber/study/advice.h>
 #include <limber/study/advice_runs.h>
 #include <limber/study/child_process.h>
@@ -35,6 +36,9 @@ saves, what it changes, and whether that is advisable.
   --seconds number           wall time that a run may take, default 60; of
                              longer scenes the beginning is compared
   --set "Section/Name=value" change an entry first; may be repeated
+
+Exit codes: 0 done, 1 wrong input, 2 the scene itself does not run, 128 + n
+stopped by signal n.
 )";
 
 
@@ -43,6 +47,18 @@ saves, what it changes, and whether that is advisable.
     {
       double error = 0.01, seconds = 60;
     };
+
+
+
+    /** After a run: who has sent a signal wants no more of them. */
+    void
+    stop_if_asked()
+    {
+      if (const int signal = caught_signal())
+        throw Failure(ExitCode(int(ExitCode::stopped_by_signal) + signal),
+                      "Stopped by signal " + std::to_string(signal) +
+                        " before all was tried; what is advised above holds.");
+    }
 
 
 
@@ -64,6 +80,7 @@ saves, what it changes, and whether that is advisable.
       std::ostringstream text;
       text << std::ifstream(log).rdbuf();
       fs::remove(log);
+      stop_if_asked();
 
       // "... 512 points of 1 body in 720 cells of 0.25 m; first step 0.0027 s"
       const auto step = text.str().find("first step ");
@@ -180,6 +197,7 @@ saves, what it changes, and whether that is advisable.
           if (!base)
             {
               base = try_scene(path, overrides, options.seconds);
+              stop_if_asked();
               refuse_failed(*base, path);
               double edge = problem.grid.edge(0);
               for (unsigned int d = 1; d < dim; ++d)
@@ -188,8 +206,9 @@ saves, what it changes, and whether that is advisable.
             }
           auto all = overrides;
           all.insert(all.end(), advice.settings.begin(), advice.settings.end());
-          const Trial  changed = try_scene(path, all, options.seconds);
-          const Effect effect  = compare_trials(problem, *base, changed);
+          const Trial changed = try_scene(path, all, options.seconds);
+          stop_if_asked();
+          const Effect effect = compare_trials(problem, *base, changed);
           tell(advice,
                judge_advice(advice, changed, effect, options.error, way),
                effect.factor,
@@ -240,6 +259,7 @@ saves, what it changes, and whether that is advisable.
         return int(line.help ? ExitCode::success : ExitCode::wrong_input);
       }
     const SceneFile scene(line.scene, line.overrides);
+    catch_signals();
     if (scene.dimension() == 2)
       tell_advice<2>(scene, line.scene, line.overrides, options);
     else

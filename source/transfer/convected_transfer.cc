@@ -88,16 +88,16 @@ namespace limber
         for (std::size_t p = batch.begin; p < batch.end; ++p)
           {
             const Domain           domain(points, grid, batch.cell, p);
-            Lanes                  alike{}; // to all corners
-            std::array<Lanes, dim> along;   // by the sign of edge k
+            const double           mass = points.mass[p];
+            Lanes                  alike{};
+            std::array<Lanes, dim> along;
             set_zero(along);
             if constexpr (momentum)
               {
-                const double mass                    = points.mass[p];
-                alike[Window::lane_of(Layout::mass)] = Domain::share * mass;
+                alike[Window::lane_of(Layout::mass)] = mass;
                 for (int d = 0; d < dim; ++d)
                   alike[Window::lane_of(Layout::momentum + d)] =
-                    Domain::share * mass * points.velocity[d][p];
+                    mass * points.velocity[d][p];
               }
             if constexpr (Force::any)
               {
@@ -110,27 +110,24 @@ namespace limber
                   pressure = points.pressure[p];
                 const auto t =
                   kirchhoff_stress<dim, Force::deviator>(points, p, pressure);
-                const double V =
-                  Domain::share * what.inverse_density * points.mass[p];
+                const auto   inverse = domain.inverse();
+                const double V       = what.inverse_density * mass;
+#pragma GCC unroll 8
                 for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 8
                   for (int d = 0; d < dim; ++d)
                     {
                       double force = 0;
+#pragma GCC unroll 8
                       for (int e = 0; e < dim; ++e)
-                        force -= t[d][e] * domain.inverse[k][e];
+                        force -= t[d][e] * inverse[k][e];
                       along[k][Window::lane_of(Layout::force + d)] = V * force;
                     }
               }
-#pragma GCC unroll 8
-            for (int c = 0; c < Domain::n_corners; ++c)
-              {
-                Lanes given = alike;
-                if constexpr (Force::any)
-#pragma GCC unroll 8
-                  for (int k = 0; k < dim; ++k)
-                    given += Domain::sign(c, k) * along[k];
-                give_to_corner<Window>(grid, domain.corners[c], given);
-              }
+            give_to_nodes<Window>(grid,
+                                  domain,
+                                  alike,
+                                  Force::any ? along.data() : nullptr);
           }
       });
     }
@@ -214,14 +211,12 @@ namespace limber
               points.velocity[d][p] = velocity;
               kept_squared += flip * flip;
               squared += velocity * velocity;
-              momentum[Remap::lane_of(Layout::remapped + d)] =
-                Domain::share * mass * velocity;
+              momentum[Remap::lane_of(Layout::remapped + d)] = mass * velocity;
             }
           result.speed_squared = std::max(result.speed_squared, squared);
           result.removed += 0.5 * mass * (kept_squared - squared);
           if (what.remap)
-            for (const auto &corner : domain.corners)
-              give_to_corner<Remap>(grid, corner, momentum);
+            give_to_nodes<Remap>(grid, domain, momentum, nullptr);
           if (what.move != 0)
             {
               const CellGeometry<dim> &cell = grid.cells[batch.cell];
@@ -234,7 +229,8 @@ namespace limber
                     std::max(result.displacement,
                              std::abs(shift) * cell.inverse_edge[d]);
                 }
-              carry_domain(points, p, fields, what.move);
+              carry_domain<Fields, dim>(
+                points, p, fields, domain.inverse(), what.move);
             }
         }
       if (what.move != 0)
@@ -271,9 +267,10 @@ namespace limber
           {
             const ConvectedDomain<dim> domain(points, grid, batch.cell, p);
             const Fields               fields(domain, grid);
+            const auto                 inverse    = domain.inverse();
             double                     divergence = 0;
             for (int d = 0; d < dim; ++d)
-              divergence += fields.slope(domain, first() + d, d);
+              divergence += fields.slope(inverse, first() + d, d);
             sums.add(natural_place(points, cell, p),
                      points.mass[p],
                      divergence);
@@ -297,10 +294,12 @@ namespace limber
     std::vector<std::uint32_t> result;
     for_each_batch(points, [&](const CellBatch &batch) {
       for (std::size_t p = batch.begin; p < batch.end; ++p)
-        for (const auto &corner :
-             ConvectedDomain<dim>(points, grid, batch.cell, p).corners)
-          if (corner.cell != batch.cell)
-            result.push_back(corner.cell);
+        {
+          const ConvectedDomain<dim> domain(points, grid, batch.cell, p);
+          for (int n = 0; n < domain.n_pieces; ++n)
+            if (domain.pieces[n].cell != batch.cell)
+              result.push_back(domain.pieces[n].cell);
+        }
     });
     std::sort(result.begin(), result.end());
     result.erase(std::unique(result.begin(), result.end()), result.end());

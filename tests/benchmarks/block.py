@@ -5,7 +5,7 @@
 
 Prints best and median over the runs (default 5) of CPU time in ns per point
 and step for both treatments in 2D and 3D, with splines, with splines and FMPM,
-in a box with 16 times the cells, the speed-up of two ranks in wall time, and
+with CPDI, in a box with 16 times the cells, the speed-up of two ranks in wall time, and
 bytes per point (peak resident set, program included) for a finer block. Variants
 take turns, so that a drift of the machine's speed meets all alike.
 """
@@ -28,6 +28,7 @@ BIG_BOX = {"2d": ["Grid/Upper corner=4.96, 4.96", "Grid/Cells=496, 496"],
                   "Grid/Cells=160, 80, 80"]}
 NONE = "Body block/Locking treatment=none"
 SPLINES = "Method/Kernel=quadratic"
+CPDI = "Method/Kernel=cpdi"
 FMPM = ["Method/Transfer=fmpm", "Method/Stress update=usl", NONE]
 FINE = {"2d": ["Grid/Cells=1984, 1984", "End time=0.00025"],
         "3d": ["Grid/Cells=160, 160, 160", "End time=0.001"]}
@@ -55,6 +56,7 @@ def main():
                     "splines, cell": ([SPLINES], 1),
                     "splines, none": ([SPLINES, NONE], 1),
                     "splines, none, FMPM(4)": ([SPLINES, *FMPM], 1),
+                    "CPDI, none": ([CPDI, NONE], 1),
                     "cell, 16 times the box": (BIG_BOX[scene], 1),
                     "cell, two ranks": ([], 2)}
         found = {name: [] for name in variants}

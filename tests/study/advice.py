@@ -9,8 +9,12 @@ all scenes.
 """
 
 import argparse
+import os
+import signal
 import subprocess
 import sys
+import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -134,6 +138,32 @@ class Advice(unittest.TestCase):
                               stderr=subprocess.STDOUT)
         self.assertNotIn("Advised: Points", done.stdout)
         self.assertNotIn("Advised: Bulk", done.stdout)
+
+    def test_a_signal_stops_the_run_and_leaves_nothing(self):
+        with tempfile.TemporaryDirectory() as folder:
+            child = subprocess.Popen(
+                [ARGUMENTS.limber, "advise",
+                 str(Path(ARGUMENTS.prm) / "dam_break.prm")],
+                env={**os.environ, "TMPDIR": folder}, text=True,
+                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            log = f"{folder}/limber-advise-{child.pid}/run/log.txt"
+            while not os.path.exists(log) and child.poll() is None:
+                time.sleep(0.05)
+            child.send_signal(signal.SIGTERM)
+            said = child.communicate(timeout=60)[1]
+            self.assertEqual(child.returncode, 128 + signal.SIGTERM, said)
+            self.assertIn("Stopped by signal 15", said)
+            self.assertEqual([name for name in os.listdir(folder)
+                              if name.startswith("limber")], [])
+            # nor the run of the scene, known by its folder
+            commands = []
+            for path in Path("/proc").glob("[0-9]*/cmdline"):
+                try:
+                    commands.append(path.read_bytes())
+                except OSError:
+                    pass
+            self.assertFalse(any(folder.encode() in command
+                                 for command in commands))
 
     def test_wrong_input(self):
         for words in (("missing.prm",),

@@ -40,14 +40,18 @@ namespace limber
   class ConvectedDomain
   {
   public:
-    static constexpr int    n_corners = 1 << dim;
-    static constexpr double share     = 1. / n_corners; // of a corner
-    using Matrix                      = SmallMatrix<dim, double>;
+    static constexpr int n_corners = 1 << dim;
+    using Nodes                    = typename Linear<dim>::Nodes;
 
-    struct Corner
+    /**
+     * The corners that are in one cell, with sums over them for its nodes:
+     * 2^-d sum_c N_i(x_c) and 2^-d sum_c s_ck N_i(x_c).
+     */
+    struct Piece
     {
-      std::uint32_t               cell;
-      typename Linear<dim>::Nodes weights; // N_i(x_c) of its nodes
+      std::uint32_t          cell;
+      Nodes                  weight;
+      std::array<Nodes, dim> along;
     };
 
     /** Of point p, which is in @p cell. */
@@ -57,9 +61,7 @@ namespace limber
                                                    const std::size_t     p)
     {
       const CellGeometry<dim> &home = grid.cells[cell];
-      Matrix                   R;
       std::array<double, dim>  place, extent; // of the box around the domain
-      bool                     at_home = true;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
@@ -68,30 +70,55 @@ namespace limber
 #pragma GCC unroll 8
           for (int k = 0; k < dim; ++k)
             {
-              R[d][k] = points.domain[d * dim + k][p];
-              extent[d] += std::abs(R[d][k]);
+              edges[d][k] = points.domain[d * dim + k][p];
+              extent[d] += std::abs(edges[d][k]);
             }
-          const double xi = (place[d] - home.origin[d]) * home.inverse_edge[d];
-          const double half = extent[d] * home.inverse_edge[d];
-          at_home           = at_home && xi >= half && xi + half <= 1;
         }
-      restrict_and_invert(home, extent, R);
-#pragma GCC unroll 8
-      for (int c = 0; c < n_corners; ++c)
-        {
-          std::array<double, dim> x = place;
-#pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-            for (int k = 0; k < dim; ++k)
-              x[d] += sign(c, k) * R[d][k];
-          std::uint32_t there = at_home ? cell : grid.bins.nearest_cell(x);
-          // by round-off where the ghost cells end
-          if (rarely(there == invalid_cell))
-            there = cell;
-          set_corner(grid, there, x, c);
-        }
+      restrict_edges(home, extent);
+      if (is_within(home, place, extent))
+        set_only_piece(cell, home, place);
+      else
+        set_pieces(grid, cell, place);
     }
+
+    /** Whether a box around a place, of these half edges, is in a cell. */
+    __attribute__((always_inline)) static bool
+    is_within(const CellGeometry<dim>       &cell,
+              const std::array<double, dim> &place,
+              const std::array<double, dim> &half)
+    {
+      bool result = true;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          const double xi = (place[d] - cell.origin[d]) * cell.inverse_edge[d];
+          const double h  = half[d] * cell.inverse_edge[d];
+          result &= (xi >= h) & (xi + h <= 1);
+        }
+      return result;
+    }
+
+    /** R^-1, 1/m, whose row k is R^-1_k. */
+    __attribute__((always_inline)) SmallMatrix<dim, double>
+    inverse() const
+    {
+      SmallMatrix<dim, double> result;
+      const auto               cof = cofactor<dim>(edges);
+      const double             det = determinant<dim>(edges);
+#pragma GCC unroll 8
+      for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          result[k][d] = cof[d][k] / det;
+      return result;
+    }
+
+    int                          n_pieces = 0;
+    std::array<Piece, n_corners> pieces;
+    SmallMatrix<dim, double>     edges; // R as it counts, m
+
+  private:
+    static constexpr double share = 1. / n_corners; // of a corner
 
     /** +1 or -1: at which end of edge k the corner is. */
     static constexpr double
@@ -100,66 +127,103 @@ namespace limber
       return corner >> k & 1 ? 1. : -1.;
     }
 
-    std::array<Corner, n_corners> corners;
-    Matrix                        inverse; // of R, 1/m: R^-1_k is row k
-
-  private:
-    /** Let R count as the rules say. */
+    /** Let R, and with it the box around it, count as the rules say. */
     __attribute__((always_inline)) void
-    restrict_and_invert(const CellGeometry<dim>       &home,
-                        const std::array<double, dim> &extent,
-                        Matrix                        &R)
+    restrict_edges(const CellGeometry<dim> &home,
+                   std::array<double, dim> &extent)
     {
       constexpr double flattest = 1e-3;
       double           box      = 1;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          double length = extent[d];
-          if (const double cells = length * home.inverse_edge[d];
+          if (const double cells = extent[d] * home.inverse_edge[d];
               rarely(cells > 1))
             {
-              length /= cells;
+              extent[d] /= cells;
               for (int k = 0; k < dim; ++k)
-                R[d][k] /= cells;
+                edges[d][k] /= cells;
             }
-          box *= length;
+          box *= extent[d];
         }
-      double det = determinant<dim>(R);
-      if (rarely(!(det > flattest * box)))
-        {
-          for (int d = 0; d < dim; ++d)
-            for (int k = 0; k < dim; ++k)
-              R[d][k] =
-                d == k ? std::min(extent[d], 1 / home.inverse_edge[d]) : 0;
-          det = box;
-        }
-      const Matrix cof = cofactor<dim>(R);
+      if (rarely(!(determinant<dim>(edges) > flattest * box)))
+        for (int d = 0; d < dim; ++d)
+          for (int k = 0; k < dim; ++k)
+            edges[d][k] = d == k ? extent[d] : 0;
+    }
+
+    __attribute__((always_inline)) std::array<double, dim>
+    corner(const std::array<double, dim> &place, const int c) const
+    {
+      std::array<double, dim> x = place;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+        for (int k = 0; k < dim; ++k)
+          x[d] += sign(c, k) * edges[d][k];
+      return x;
+    }
+
+    /** N_i(x), over the number of corners. */
+    __attribute__((always_inline)) static Nodes
+    weights(const CellGeometry<dim> &cell, const std::array<double, dim> &x)
+    {
+      const auto xi = [&](const int d) {
+        return (x[d] - cell.origin[d]) * cell.inverse_edge[d];
+      };
+      Nodes result = share * Linear<dim>::weights(0, xi(0));
+#pragma GCC unroll 8
+      for (int d = 1; d < dim; ++d)
+        result *= Linear<dim>::weights(d, xi(d));
+      return result;
+    }
+
+    __attribute__((always_inline)) static void
+    add(Piece &piece, const int c, const Nodes &weight)
+    {
+      piece.weight += weight;
 #pragma GCC unroll 8
       for (int k = 0; k < dim; ++k)
+        piece.along[k] += sign(c, k) * weight;
+    }
+
+    /** All corners in the cell of the point. */
+    __attribute__((always_inline)) void
+    set_only_piece(const std::uint32_t            cell,
+                   const CellGeometry<dim>       &home,
+                   const std::array<double, dim> &place)
+    {
+      Piece piece{cell, Nodes{}, {}};
 #pragma GCC unroll 8
-        for (int d = 0; d < dim; ++d)
-          inverse[k][d] = cof[d][k] / det;
+      for (int c = 0; c < n_corners; ++c)
+        add(piece, c, weights(home, corner(place, c)));
+      pieces[0] = piece;
+      n_pieces  = 1;
     }
 
     __attribute__((always_inline)) void
-    set_corner(const GridView<dim>           &grid,
+    set_pieces(const GridView<dim>           &grid,
                const std::uint32_t            cell,
-               const std::array<double, dim> &x,
-               const int                      c)
+               const std::array<double, dim> &place)
     {
-      Corner                  &corner   = corners[c];
-      const CellGeometry<dim> &geometry = grid.cells[cell];
-      const auto               xi       = [&](const int d) {
-        const double inside =
-          std::clamp(x[d], grid.bins.lower[d], grid.bins.upper(d));
-        return (inside - geometry.origin[d]) * geometry.inverse_edge[d];
-      };
-      corner.cell    = cell;
-      corner.weights = Linear<dim>::weights(0, xi(0));
 #pragma GCC unroll 8
-      for (int d = 1; d < dim; ++d)
-        corner.weights *= Linear<dim>::weights(d, xi(d));
+      for (int c = 0; c < n_corners; ++c)
+        {
+          std::array<double, dim> x     = corner(place, c);
+          std::uint32_t           there = grid.bins.nearest_cell(x);
+          // by round-off where the ghost cells end
+          if (rarely(there == invalid_cell))
+            there = cell;
+#pragma GCC unroll 8
+          for (int d = 0; d < dim; ++d)
+            x[d] = std::clamp(x[d], grid.bins.lower[d], grid.bins.upper(d));
+          int k = 0;
+          while (k < n_pieces && pieces[k].cell != there)
+            ++k;
+          if (k == n_pieces)
+            pieces[n_pieces++] = {there, Nodes{}, {}};
+          add(pieces[k], c, weights(grid.cells[there], x));
+        }
     }
   };
 } // namespace limber

@@ -21,21 +21,20 @@ namespace limber
     FieldsOnDomain(const Domain &domain, const GridView<dim> &grid)
     {
       set_zero(along);
-#pragma GCC unroll 8
-      for (int c = 0; c < Domain::n_corners; ++c)
+      for (int n = 0; n < domain.n_pieces; ++n)
         {
-          const auto              &corner = domain.corners[c];
-          const CellGeometry<dim> &cell   = grid.cells[corner.cell];
-          Lanes                    value{};
+          const auto              &piece = domain.pieces[n];
+          const CellGeometry<dim> &cell  = grid.cells[piece.cell];
 #pragma GCC unroll 8
           for (int i = 0; i < Linear<dim>::n_nodes; ++i)
-            value += corner.weights[i] *
-                     load<Lanes>(grid.nodes + cell.node[i] + Window::start);
-          value *= Domain::share;
-          mean += value;
+            {
+              const Lanes value =
+                load<Lanes>(grid.nodes + cell.node[i] + Window::start);
+              mean += piece.weight[i] * value;
 #pragma GCC unroll 8
-          for (int k = 0; k < dim; ++k)
-            along[k] += Domain::sign(c, k) * value;
+              for (int k = 0; k < dim; ++k)
+                along[k] += piece.along[k][i] * value;
+            }
         }
     }
 
@@ -53,14 +52,16 @@ namespace limber
       return along[k][Window::lane_of(slot)];
     }
 
-    /** Derivative of the field in that slot along axis e. */
+    /** Derivative along axis e of the field in that slot, with R^-1. */
     double
-    slope(const Domain &domain, const unsigned int slot, const int e) const
+    slope(const SmallMatrix<dim, double> &inverse,
+          const unsigned int              slot,
+          const int                       e) const
     {
       double result = 0;
 #pragma GCC unroll 8
       for (int k = 0; k < dim; ++k)
-        result += change(slot, k) * domain.inverse[k][e];
+        result += change(slot, k) * inverse[k][e];
       return result;
     }
 
@@ -71,20 +72,33 @@ namespace limber
 
 
 
-  /** What a point gives to a corner, to the nodes around that. */
+  /**
+   * What a point gives to the nodes: @p alike with N_i, along[k] with the
+   * change of N_i along edge k (null: nothing).
+   */
   template <class Window, int dim>
   __attribute__((always_inline)) inline void
-  give_to_corner(const GridView<dim>                         &grid,
-                 const typename ConvectedDomain<dim>::Corner &corner,
-                 const typename Window::Lanes                &what)
+  give_to_nodes(const GridView<dim>          &grid,
+                const ConvectedDomain<dim>   &domain,
+                const typename Window::Lanes &alike,
+                const typename Window::Lanes *along)
   {
-    using Lanes                   = typename Window::Lanes;
-    const CellGeometry<dim> &cell = grid.cells[corner.cell];
-#pragma GCC unroll 8
-    for (int i = 0; i < Linear<dim>::n_nodes; ++i)
+    using Lanes = typename Window::Lanes;
+    for (int n = 0; n < domain.n_pieces; ++n)
       {
-        double *const record = grid.nodes + cell.node[i] + Window::start;
-        store(load<Lanes>(record) + corner.weights[i] * what, record);
+        const auto              &piece = domain.pieces[n];
+        const CellGeometry<dim> &cell  = grid.cells[piece.cell];
+#pragma GCC unroll 8
+        for (int i = 0; i < Linear<dim>::n_nodes; ++i)
+          {
+            double *const record = grid.nodes + cell.node[i] + Window::start;
+            Lanes         sum = load<Lanes>(record) + piece.weight[i] * alike;
+            if (along != nullptr)
+#pragma GCC unroll 8
+              for (int k = 0; k < dim; ++k)
+                sum += piece.along[k][i] * along[k];
+            store(sum, record);
+          }
       }
   }
 
@@ -93,17 +107,28 @@ namespace limber
   /** Carry the domain of point p along: R += @p step grad v R, step in s. */
   template <class Fields, int dim>
   __attribute__((always_inline)) inline void
-  carry_domain(const PointView<dim> &points,
-               const std::size_t     p,
-               const Fields         &fields,
-               const double          step)
+  carry_domain(const PointView<dim>           &points,
+               const std::size_t               p,
+               const Fields                   &fields,
+               const SmallMatrix<dim, double> &inverse,
+               const double                    step)
   {
+    // As it is, which may be more than what counts.
+    SmallMatrix<dim, double> R;
+    for (int d = 0; d < dim; ++d)
+      for (int k = 0; k < dim; ++k)
+        R[d][k] = points.domain[d * dim + k][p];
 #pragma GCC unroll 8
     for (int d = 0; d < dim; ++d)
 #pragma GCC unroll 8
-      for (int k = 0; k < dim; ++k)
-        points.domain[d * dim + k][p] +=
-          step * fields.change(NodeLayout<dim>::velocity + d, k);
+      for (int e = 0; e < dim; ++e)
+        {
+          const double slope =
+            step * fields.slope(inverse, NodeLayout<dim>::velocity + d, e);
+#pragma GCC unroll 8
+          for (int k = 0; k < dim; ++k)
+            points.domain[d * dim + k][p] += slope * R[e][k];
+        }
   }
 
 
@@ -118,14 +143,27 @@ namespace limber
   {
     for (std::size_t p = begin; p < end; ++p)
       {
-        if (points.cell[p] == invalid_cell)
+        const std::uint32_t cell = points.cell[p];
+        if (cell == invalid_cell)
           continue;
-        const ConvectedDomain<dim> domain(points, grid, points.cell[p], p);
-        for (const auto &corner : domain.corners)
-          if (!grid.occupied[corner.cell])
+        std::array<double, dim> place, extent;
+        for (int d = 0; d < dim; ++d)
+          {
+            place[d]  = points.position[d][p];
+            extent[d] = 0;
+            for (int k = 0; k < dim; ++k)
+              extent[d] += std::abs(points.domain[d * dim + k][p]);
+          }
+        using Domain = ConvectedDomain<dim>;
+        if (Domain::is_within(grid.cells[cell], place, extent))
+          continue;
+        const Domain domain(points, grid, cell, p);
+        for (int n = 0; n < domain.n_pieces; ++n)
+          if (const std::uint32_t there = domain.pieces[n].cell;
+              !grid.occupied[there])
             {
-              grid.occupied[corner.cell] = 1;
-              grid.entered->push_back(corner.cell);
+              grid.occupied[there] = 1;
+              grid.entered->push_back(there);
             }
       }
   }

@@ -118,15 +118,16 @@ namespace limber
           const std::size_t p = lanes.first + i;
           const Domain      domain(points, grid, cell, p);
           const Fields      fields(domain, grid);
+          const auto        inverse = domain.inverse();
           for (int d = 0; d < dim; ++d)
             {
               for (int e = 0; e < dim; ++e)
                 gradient[d * dim + e][i] =
-                  what.step * fields.slope(domain, strained + d, e);
+                  what.step * fields.slope(inverse, strained + d, e);
               moved[d][i] = what.move * fields.value(Layout::velocity + d);
             }
           if (what.move > 0)
-            carry_domain(points, p, fields, what.move);
+            carry_domain<Fields, dim>(points, p, fields, inverse, what.move);
         }
       for (int d = 0; d < dim; ++d)
         {
