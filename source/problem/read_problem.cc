@@ -29,7 +29,12 @@ namespace limber
             "transfer filters.");
           return;
         }
-      if (problem.grid.kernel == KernelKind::cpdi)
+      // A liquid, which has linear functions then, would fail with it.
+      const bool any_liquid =
+        std::any_of(problem.bodies.begin(),
+                    problem.bodies.end(),
+                    [](const auto &body) { return body.is_liquid; });
+      if (problem.grid.kernel == KernelKind::cpdi && !any_liquid)
         {
           problem.method.order = StressUpdateOrder::usl;
           problem.notes.push_back(

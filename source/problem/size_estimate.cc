@@ -154,8 +154,12 @@ namespace limber
       for (const Body<dim> &body : problem.bodies)
         {
           size.points.push_back(count_points(body, problem.grid));
+          const bool domains =
+            problem.grid.kernel == KernelKind::cpdi && !body.is_liquid;
+          const double own =
+            per_point + (domains ? dim * dim * sizeof(double) : 0);
           // The places in one cell are kept while points are placed.
-          size.bytes_of_points.push_back(size.points.back() * per_point +
+          size.bytes_of_points.push_back(size.points.back() * own +
                                          product(body.points_per_cell_edge) *
                                            sizeof(double) * (dim + 1));
         }

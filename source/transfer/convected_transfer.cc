@@ -295,10 +295,10 @@ namespace limber
     for_each_batch(points, [&](const CellBatch &batch) {
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
-          const ConvectedDomain<dim> domain(points, grid, batch.cell, p);
-          for (int n = 0; n < domain.n_pieces; ++n)
-            if (domain.pieces[n].cell != batch.cell)
-              result.push_back(domain.pieces[n].cell);
+          const DomainShape<dim> domain(points, grid, batch.cell, p);
+          if (!domain.is_at_home)
+            for (int c = 0; c < domain.n_corners; ++c)
+              result.push_back(domain.cell_at(grid, domain.corner(c)));
         }
     });
     std::sort(result.begin(), result.end());

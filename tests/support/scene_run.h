@@ -9,6 +9,8 @@
 
 #include <cmath>
 #include <functional>
+#include <regex>
+#include <string>
 
 namespace limber
 {
@@ -24,6 +26,25 @@ namespace limber
 
 
   /**
+   * A scene with linear functions and its bodies in the current frame, unless
+   * it says otherwise: what is tested then is the same for all that can be
+   * chosen automatically.
+   */
+  inline std::string
+  in_the_current_frame(const std::string &text)
+  {
+    std::string      result = "subsection Method\n set Kernel = linear\nend\n";
+    const std::regex body("subsection Body [^\n]+\n");
+    for (std::sregex_iterator found(text.begin(), text.end(), body), end;
+         found != end;
+         ++found)
+      result += found->str() + " set Frame = current\nend\n";
+    return result + text; // the last word counts
+  }
+
+
+
+  /**
    * A scene from a text, set up and stepped by hand: what the program does
    * between reading and writing, with access to points between the steps.
    * Several ranks may run it, but what changes points here is for one.
@@ -34,8 +55,9 @@ namespace limber
   public:
     explicit SceneRun(const std::string              &text,
                       const std::vector<std::string> &overrides = {})
-      : problem(read_problem<dim>(
-          SceneFile(ParameterText{text, FileFormat::prm, "scene"}, overrides)))
+      : problem(read_problem<dim>(SceneFile(
+          ParameterText{in_the_current_frame(text), FileFormat::prm, "scene"},
+          overrides)))
       , grid(problem.grid, MPI_COMM_WORLD)
       , bodies(set_up_bodies(problem, grid))
       , nodes(grid)

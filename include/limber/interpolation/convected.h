@@ -37,11 +37,130 @@ namespace limber
    * corner outside the grid counts in its side.
    */
   template <int dim>
-  class ConvectedDomain
+  class DomainShape
   {
   public:
     static constexpr int n_corners = 1 << dim;
-    using Nodes                    = typename Linear<dim>::Nodes;
+
+    /** Of point p, which is in @p cell. */
+    __attribute__((always_inline)) DomainShape(const PointView<dim> &points,
+                                               const GridView<dim>  &grid,
+                                               const std::uint32_t   cell,
+                                               const std::size_t     p)
+      : home(cell)
+    {
+      const CellGeometry<dim> &geometry = grid.cells[cell];
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          place[d]  = points.position[d][p];
+          extent[d] = 0;
+#pragma GCC unroll 8
+          for (int k = 0; k < dim; ++k)
+            {
+              edges[d][k] = points.domain[d * dim + k][p];
+              extent[d] += std::abs(edges[d][k]);
+            }
+        }
+      restrict_edges(geometry);
+      is_at_home = true;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          const double xi =
+            (place[d] - geometry.origin[d]) * geometry.inverse_edge[d];
+          const double half = extent[d] * geometry.inverse_edge[d];
+          is_at_home &= (xi >= half) & (xi + half <= 1);
+        }
+    }
+
+    /** +1 or -1: at which end of edge k the corner is. */
+    static constexpr double
+    sign(const int corner, const int k)
+    {
+      return corner >> k & 1 ? 1. : -1.;
+    }
+
+    /** A corner, m. */
+    __attribute__((always_inline)) std::array<double, dim>
+    corner(const int c) const
+    {
+      std::array<double, dim> x = place;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+        for (int k = 0; k < dim; ++k)
+          x[d] += sign(c, k) * edges[d][k];
+      return x;
+    }
+
+    /** The cell in which a place counts. */
+    __attribute__((always_inline)) std::uint32_t
+    cell_at(const GridView<dim> &grid, const std::array<double, dim> &x) const
+    {
+      const std::uint32_t cell = grid.bins.nearest_cell(x);
+      // by round-off where the ghost cells end
+      return rarely(cell == invalid_cell) ? home : cell;
+    }
+
+    /** R^-1, 1/m, whose row k is R^-1_k. */
+    __attribute__((always_inline)) SmallMatrix<dim, double>
+    inverse() const
+    {
+      SmallMatrix<dim, double> result;
+      const auto               cof = cofactor<dim>(edges);
+      const double             one = 1 / determinant<dim>(edges);
+#pragma GCC unroll 8
+      for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          result[k][d] = cof[d][k] * one;
+      return result;
+    }
+
+    const std::uint32_t home;       // the cell of the point
+    bool                is_at_home; // all corners are in it
+
+  private:
+    /** Let R, and with it the box around it, count as the rules say. */
+    __attribute__((always_inline)) void
+    restrict_edges(const CellGeometry<dim> &geometry)
+    {
+      constexpr double flattest = 1e-3;
+      double           box      = 1;
+#pragma GCC unroll 8
+      for (int d = 0; d < dim; ++d)
+        {
+          if (const double cells = extent[d] * geometry.inverse_edge[d];
+              rarely(cells > 1))
+            {
+              extent[d] /= cells;
+              for (int k = 0; k < dim; ++k)
+                edges[d][k] /= cells;
+            }
+          box *= extent[d];
+        }
+      if (rarely(!(determinant<dim>(edges) > flattest * box)))
+        for (int d = 0; d < dim; ++d)
+          for (int k = 0; k < dim; ++k)
+            edges[d][k] = d == k ? extent[d] : 0;
+    }
+
+    std::array<double, dim>  place, extent; // m; of the box around the domain
+    SmallMatrix<dim, double> edges;         // R as it counts, m
+  };
+
+
+
+  /** A domain and the functions of the nodes on it. */
+  template <int dim>
+  class ConvectedDomain : public DomainShape<dim>
+  {
+    using Shape = DomainShape<dim>;
+
+  public:
+    using Shape::n_corners;
+    using Nodes = typename Linear<dim>::Nodes;
 
     /**
      * The corners that are in one cell, with sums over them for its nodes:
@@ -59,116 +178,24 @@ namespace limber
                                                    const GridView<dim>  &grid,
                                                    const std::uint32_t   cell,
                                                    const std::size_t     p)
+      : Shape(points, grid, cell, p)
     {
-      const CellGeometry<dim> &home = grid.cells[cell];
-      std::array<double, dim>  place, extent; // of the box around the domain
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        {
-          place[d]  = points.position[d][p];
-          extent[d] = 0;
-#pragma GCC unroll 8
-          for (int k = 0; k < dim; ++k)
-            {
-              edges[d][k] = points.domain[d * dim + k][p];
-              extent[d] += std::abs(edges[d][k]);
-            }
-        }
-      restrict_edges(home, extent);
-      if (is_within(home, place, extent))
-        set_only_piece(cell, home, place);
+      if (this->is_at_home)
+        set_only_piece(grid.cells[cell]);
       else
-        set_pieces(grid, cell, place);
-    }
-
-    /** Whether a box around a place, of these half edges, is in a cell. */
-    __attribute__((always_inline)) static bool
-    is_within(const CellGeometry<dim>       &cell,
-              const std::array<double, dim> &place,
-              const std::array<double, dim> &half)
-    {
-      bool result = true;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        {
-          const double xi = (place[d] - cell.origin[d]) * cell.inverse_edge[d];
-          const double h  = half[d] * cell.inverse_edge[d];
-          result &= (xi >= h) & (xi + h <= 1);
-        }
-      return result;
-    }
-
-    /** R^-1, 1/m, whose row k is R^-1_k. */
-    __attribute__((always_inline)) SmallMatrix<dim, double>
-    inverse() const
-    {
-      SmallMatrix<dim, double> result;
-      const auto               cof = cofactor<dim>(edges);
-      const double             det = determinant<dim>(edges);
-#pragma GCC unroll 8
-      for (int k = 0; k < dim; ++k)
-#pragma GCC unroll 8
-        for (int d = 0; d < dim; ++d)
-          result[k][d] = cof[d][k] / det;
-      return result;
+        set_pieces(grid);
     }
 
     int                          n_pieces = 0;
     std::array<Piece, n_corners> pieces;
-    SmallMatrix<dim, double>     edges; // R as it counts, m
 
   private:
-    static constexpr double share = 1. / n_corners; // of a corner
-
-    /** +1 or -1: at which end of edge k the corner is. */
-    static constexpr double
-    sign(const int corner, const int k)
-    {
-      return corner >> k & 1 ? 1. : -1.;
-    }
-
-    /** Let R, and with it the box around it, count as the rules say. */
-    __attribute__((always_inline)) void
-    restrict_edges(const CellGeometry<dim> &home,
-                   std::array<double, dim> &extent)
-    {
-      constexpr double flattest = 1e-3;
-      double           box      = 1;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        {
-          if (const double cells = extent[d] * home.inverse_edge[d];
-              rarely(cells > 1))
-            {
-              extent[d] /= cells;
-              for (int k = 0; k < dim; ++k)
-                edges[d][k] /= cells;
-            }
-          box *= extent[d];
-        }
-      if (rarely(!(determinant<dim>(edges) > flattest * box)))
-        for (int d = 0; d < dim; ++d)
-          for (int k = 0; k < dim; ++k)
-            edges[d][k] = d == k ? extent[d] : 0;
-    }
-
-    __attribute__((always_inline)) std::array<double, dim>
-    corner(const std::array<double, dim> &place, const int c) const
-    {
-      std::array<double, dim> x = place;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-        for (int k = 0; k < dim; ++k)
-          x[d] += sign(c, k) * edges[d][k];
-      return x;
-    }
-
     /** N_i(x), over the number of corners. */
     __attribute__((always_inline)) static Nodes
     weights(const CellGeometry<dim> &cell, const std::array<double, dim> &x)
     {
-      const auto xi = [&](const int d) {
+      constexpr double share = 1. / n_corners;
+      const auto       xi    = [&](const int d) {
         return (x[d] - cell.origin[d]) * cell.inverse_edge[d];
       };
       Nodes result = share * Linear<dim>::weights(0, xi(0));
@@ -184,36 +211,28 @@ namespace limber
       piece.weight += weight;
 #pragma GCC unroll 8
       for (int k = 0; k < dim; ++k)
-        piece.along[k] += sign(c, k) * weight;
+        piece.along[k] += Shape::sign(c, k) * weight;
     }
 
-    /** All corners in the cell of the point. */
     __attribute__((always_inline)) void
-    set_only_piece(const std::uint32_t            cell,
-                   const CellGeometry<dim>       &home,
-                   const std::array<double, dim> &place)
+    set_only_piece(const CellGeometry<dim> &geometry)
     {
-      Piece piece{cell, Nodes{}, {}};
+      Piece piece{this->home, Nodes{}, {}};
 #pragma GCC unroll 8
       for (int c = 0; c < n_corners; ++c)
-        add(piece, c, weights(home, corner(place, c)));
+        add(piece, c, weights(geometry, this->corner(c)));
       pieces[0] = piece;
       n_pieces  = 1;
     }
 
     __attribute__((always_inline)) void
-    set_pieces(const GridView<dim>           &grid,
-               const std::uint32_t            cell,
-               const std::array<double, dim> &place)
+    set_pieces(const GridView<dim> &grid)
     {
 #pragma GCC unroll 8
       for (int c = 0; c < n_corners; ++c)
         {
-          std::array<double, dim> x     = corner(place, c);
-          std::uint32_t           there = grid.bins.nearest_cell(x);
-          // by round-off where the ghost cells end
-          if (rarely(there == invalid_cell))
-            there = cell;
+          std::array<double, dim> x     = this->corner(c);
+          const std::uint32_t     there = this->cell_at(grid, x);
 #pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
             x[d] = std::clamp(x[d], grid.bins.lower[d], grid.bins.upper(d));

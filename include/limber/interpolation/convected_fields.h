@@ -146,20 +146,12 @@ namespace limber
         const std::uint32_t cell = points.cell[p];
         if (cell == invalid_cell)
           continue;
-        std::array<double, dim> place, extent;
-        for (int d = 0; d < dim; ++d)
-          {
-            place[d]  = points.position[d][p];
-            extent[d] = 0;
-            for (int k = 0; k < dim; ++k)
-              extent[d] += std::abs(points.domain[d * dim + k][p]);
-          }
-        using Domain = ConvectedDomain<dim>;
-        if (Domain::is_within(grid.cells[cell], place, extent))
+        const DomainShape<dim> domain(points, grid, cell, p);
+        if (domain.is_at_home)
           continue;
-        const Domain domain(points, grid, cell, p);
-        for (int n = 0; n < domain.n_pieces; ++n)
-          if (const std::uint32_t there = domain.pieces[n].cell;
+        for (int c = 0; c < domain.n_corners; ++c)
+          if (const std::uint32_t there =
+                domain.cell_at(grid, domain.corner(c));
               !grid.occupied[there])
             {
               grid.occupied[there] = 1;

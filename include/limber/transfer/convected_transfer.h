@@ -46,8 +46,8 @@ namespace limber
 
 
   /**
-   * The cells of the corners of all domains, besides those of the points,
-   * ascending: their nodes get mass as well.
+   * The cells of the corners of domains that are in several, ascending: their
+   * nodes get mass as well.
    */
   template <int dim>
   std::vector<std::uint32_t>

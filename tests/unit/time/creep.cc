@@ -101,7 +101,6 @@ namespace
   {
     SceneRun<2>      run(pulled_bar(),
                     {"Method/Kernel=" + kernel,
-                          "Body bar/Frame=current",
                           "Body bar/Points per cell edge=" +
                             std::to_string(points)});
     const auto       start = run.positions();
