@@ -78,9 +78,8 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           if (held[d] != 0)
             {
-              const std::uint32_t neighbour = table.inward.empty() ?
-                                                node :
-                                                table.inward.at(node)[held[d]];
+              const std::uint32_t neighbour =
+                table.inward.empty() ? node : table.inward.at(node)[held[d]];
               work(node, neighbour, d, held[d]);
             }
       }
@@ -137,29 +136,29 @@ namespace limber
 
   // With r = p - M_full v(j) the momentum P = sum m v, which is that of M_full
   // v as well, goes on by sum m / D r over nodes that are free, while r of all
-  // nodes has the sum P(0) - P(j). So P(j + 1) - P(0) is what sides keep back of
-  // r: that of the nodes that they hold and the share of their mass in D. This
-  // includes all passes before.
+  // nodes has the sum P(0) - P(j). So P(j + 1) - P(0) is what sides keep back
+  // of r: that of the nodes that they hold and the share of their mass in D.
+  // This includes all passes before.
   template <int dim>
   typename FullMassFilter<dim>::SideAction
   FullMassFilter<dim>::action_until(const NodalFields<dim> &nodes)
   {
     SideAction result;
-    for_each_held(
-      nodes,
-      [&](const std::uint32_t node,
-          const std::uint32_t neighbour,
-          const int           d,
-          const unsigned int  directions) {
-        const double  mass = nodes.record(node)[Layout::mass];
-        const double *v    = record(node);
-        double impulse = v[Layout::remapped + d] - mass * v[Layout::velocity + d];
-        if (this->held(nodes, neighbour)[d] == 0)
-          impulse -= mass / lumped_mass(neighbour)[d] *
-                     (momentum(nodes.record(neighbour), d) -
-                      record(neighbour)[Layout::remapped + d]);
-        add_impulse(result, node, d, directions, impulse);
-      });
+    for_each_held(nodes,
+                  [&](const std::uint32_t node,
+                      const std::uint32_t neighbour,
+                      const int           d,
+                      const unsigned int  directions) {
+                    const double  mass = nodes.record(node)[Layout::mass];
+                    const double *v    = record(node);
+                    double        impulse =
+                      v[Layout::remapped + d] - mass * v[Layout::velocity + d];
+                    if (this->held(nodes, neighbour)[d] == 0)
+                      impulse -= mass / lumped_mass(neighbour)[d] *
+                                 (momentum(nodes.record(neighbour), d) -
+                                  record(neighbour)[Layout::remapped + d]);
+                    add_impulse(result, node, d, directions, impulse);
+                  });
     return result;
   }
 

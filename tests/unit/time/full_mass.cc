@@ -178,7 +178,7 @@ TEST(FullMass, LossesAreThoseOfSidesAtRest)
             run.advance(0.1, 50);
             return run.totals();
           };
-          const auto rests = totals_seen_from(0), moves = totals_seen_from(W);
+          const auto   rests = totals_seen_from(0), moves = totals_seen_from(W);
           const double impulse = rests.side_impulse[2][0];
           EXPECT_GT(std::abs(impulse), 1e-10);
           EXPECT_NEAR(moves.side_impulse[2][0],

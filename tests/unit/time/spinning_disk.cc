@@ -116,8 +116,7 @@ namespace
           run.advance(step);
           const double before = now;
           now                 = angular_momentum(run);
-          largest_step =
-            std::max(largest_step, std::abs(now - before) / start);
+          largest_step = std::max(largest_step, std::abs(now - before) / start);
         }
       lost = 1 - now / start;
       std::printf("%s, %s, %u cells over the radius, %u steps: lost %.5f\n",
