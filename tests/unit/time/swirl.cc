@@ -3,6 +3,7 @@
 #include <support/scene_run.h>
 
 #include <cmath>
+#include <limits>
 
 /**
  * @file Strong shear and back, at all angles to the grid, along a motion that
@@ -39,7 +40,7 @@ namespace
   std::string
   disk_to_swirl(const unsigned int cells_over_radius)
   {
-    const std::string cells = std::to_string(5 * cells_over_radius / 2);
+    const std::string cells = std::to_string(3 * cells_over_radius);
     return R"(
     set Bodies = disk
     subsection Body disk
@@ -57,8 +58,8 @@ namespace
       set Locking treatment = none
     end
     subsection Grid
-      set Lower corner = -1.25, -1.25
-      set Upper corner = 1.25, 1.25
+      set Lower corner = -1.5, -1.5
+      set Upper corner = 1.5, 1.5
       set Cells = )" +
            cells + ", " + cells + R"(
     end
@@ -141,6 +142,8 @@ namespace
             }
           run.advance(step);
         }
+      if (run.points().size != start.size()) // some have left the grid
+        return std::numeric_limits<double>::infinity();
       const auto end = run.positions();
       double     sum = 0;
       for (std::size_t p = 0; p < end.size(); ++p)
