@@ -23,7 +23,7 @@ using namespace limber;
 
 namespace
 {
-  constexpr double moved = 0.05; // A, m
+  constexpr double crossing_amplitude = 0.05; // A, m
 
   std::string
   crossing_square(const unsigned int n)
@@ -86,7 +86,7 @@ namespace
                        (transfer == "fmpm" ? "last" : "last, remapped")});
     const auto  start = run.positions();
     const auto  a     = [&]() {
-      return moved * std::sin(dealii::numbers::PI * run.time);
+      return crossing_amplitude * std::sin(dealii::numbers::PI * run.time);
     };
     // dt ~ h^2, for the first order in time not to show
     const unsigned int n_steps = 5 * n * n / 8;
@@ -107,7 +107,8 @@ namespace
     const auto end    = run.positions();
     double     result = 0;
     for (std::size_t p = 0; p < end.size(); ++p)
-      result = std::max(result, (end[p] - start[p]).norm() / moved);
+      result =
+        std::max(result, (end[p] - start[p]).norm() / crossing_amplitude);
     std::printf(
       "%s, %s, h = 1/%u: %.4f\n", kernel.c_str(), transfer.c_str(), n, result);
     return result;
