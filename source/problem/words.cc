@@ -86,11 +86,11 @@ namespace limber
       {"musl",
        StressUpdateOrder::musl,
        "velocity gradient from the updated points",
-       "last, remapped"},
+       "musl"},
       {"usavg",
        StressUpdateOrder::usavg,
        "half of it first, half last; second order, keeps energy",
-       "both ends"}};
+       "usavg"}};
     return words;
   }
 

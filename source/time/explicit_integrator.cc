@@ -436,13 +436,15 @@ namespace limber
     steps_since_filter   = (steps_since_filter + 1) % method.transfer_period;
     if (steps_since_filter == 0)
       {
-        const auto impulses =
-          full_mass->apply(nodes,
-                           bodies,
-                           method.transfer_order,
-                           method.transfer == Transfer::xpic);
+        const auto action = full_mass->apply(nodes,
+                                             bodies,
+                                             method.transfer_order,
+                                             method.transfer == Transfer::xpic);
         for (unsigned int side = 0; side < 2 * dim; ++side)
-          ledger.side_impulse[side] += impulses[side];
+          ledger.side_impulse[side] += action.impulse[side];
+        // What points lose to the filter contains it.
+        ledger.boundary_work += action.work;
+        ledger.transfer += action.work;
       }
     lap(Verb::grid_to_points);
   }

@@ -9,8 +9,7 @@ namespace limber
   template <int dim>
   FullMassFilter<dim>::FullMassFilter(const BackgroundGrid<dim>     &grid,
                                       const BoundaryConditions<dim> &boundaries)
-    : communicator(grid.communicator)
-    , table(grid.nodes())
+    : table(grid.nodes())
     , boundaries(boundaries)
     , on_points(dim)
   {
@@ -30,7 +29,7 @@ namespace limber
 
 
   template <int dim>
-  typename FullMassFilter<dim>::Impulses
+  typename FullMassFilter<dim>::SideAction
   FullMassFilter<dim>::apply(NodalFields<dim>  &nodes,
                              Bodies            &bodies,
                              const unsigned int order,
@@ -38,12 +37,13 @@ namespace limber
   {
     former = former_only;
     start(nodes);
+    SideAction result = action_of_start(nodes);
     for (unsigned int j = 1; j < order; ++j)
       {
         multiply_by_full_mass(nodes, bodies);
+        result = action_until(nodes);
         correct(nodes);
       }
-    const Impulses result = impulses(nodes);
     for (const std::uint32_t node : nodes.active_nodes())
       {
         double *const       own = nodes.record(node);
@@ -62,46 +62,103 @@ namespace limber
 
 
 
-  // Where no side holds anything, the sum of m v stays what it is. What it
-  // changes by is shared among the sides in proportion to the mass that they
-  // hold. By difference: a fault of the filter would be booked along with it.
+  // work(node, neighbour, d, directions) on each component d that sides hold of
+  // a node of this rank; what the neighbour inward shares with it, if it does.
   template <int dim>
-  typename FullMassFilter<dim>::Impulses
-  FullMassFilter<dim>::impulses(const NodalFields<dim> &nodes)
+  template <class Work>
+  void
+  FullMassFilter<dim>::for_each_held(const NodalFields<dim> &nodes,
+                                     const Work             &work) const
   {
-    dealii::Tensor<1, dim> change;
-    Impulses               held_mass; // by side and component
-    dealii::Tensor<1, dim> all_held;
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : nodes.active_boundary_nodes())
       {
-        const double *const own = nodes.record(node);
-        if (!nodes.owns(node) || !(own[Layout::mass] > 0))
+        if (!nodes.owns(node) || !(nodes.record(node)[Layout::mass] > 0))
           continue;
         const auto held = this->held(nodes, node);
         for (int d = 0; d < dim; ++d)
-          if (held[d] == 0)
-            change[d] +=
-              own[Layout::mass] * record(node)[Layout::velocity + d] -
-              momentum(own, d);
-          else
-            for (unsigned int side = 0; side < 2 * dim; ++side)
-              if ((table.sides[node] >> side & 1) && (held[d] >> side / 2 & 1))
-                {
-                  held_mass[side][d] += own[Layout::mass];
-                  all_held[d] += own[Layout::mass];
-                }
+          if (held[d] != 0)
+            {
+              const std::uint32_t neighbour =
+                table.inward.empty() ? node : table.inward.at(node)[held[d]];
+              work(node, neighbour, d, held[d]);
+            }
       }
-    Impulses result;
-    for (int d = 0; d < dim; ++d)
-      {
-        const double total =
-          dealii::Utilities::MPI::sum(all_held[d], communicator);
-        const double moved =
-          dealii::Utilities::MPI::sum(change[d], communicator);
-        for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (total > 0)
-            result[side][d] = moved * held_mass[side][d] / total;
-      }
+  }
+
+
+
+  // In equal parts from the sides that hold the component.
+  template <int dim>
+  void
+  FullMassFilter<dim>::add_impulse(SideAction         &action,
+                                   const std::uint32_t node,
+                                   const int           d,
+                                   const unsigned int  directions,
+                                   const double        impulse)
+  {
+    unsigned int n_sides = 0;
+    for (int e = 0; e < dim; ++e)
+      n_sides += directions >> e & 1;
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      if ((table.sides[node] >> side & 1) && (directions >> side / 2 & 1))
+        action.impulse[side][d] += impulse / n_sides;
+    action.work += impulse * record(node)[Layout::velocity + d];
+  }
+
+
+
+  // D v(1) - p is what held nodes bring along, less what their neighbours give.
+  template <int dim>
+  typename FullMassFilter<dim>::SideAction
+  FullMassFilter<dim>::action_of_start(const NodalFields<dim> &nodes)
+  {
+    SideAction result;
+    for_each_held(nodes,
+                  [&](const std::uint32_t node,
+                      const std::uint32_t neighbour,
+                      const int           d,
+                      const unsigned int  directions) {
+                    if (this->held(nodes, neighbour)[d] != 0)
+                      return;
+                    const double *const own  = nodes.record(neighbour);
+                    const double        mass = nodes.record(node)[Layout::mass];
+                    const double        impulse =
+                      mass *
+                      (own[Layout::mass] * record(node)[Layout::velocity + d] -
+                       momentum(own, d)) /
+                      lumped_mass(neighbour)[d];
+                    add_impulse(result, node, d, directions, impulse);
+                  });
+    return result;
+  }
+
+
+
+  // With r = p - M_full v(j) the momentum P = sum m v, which is that of M_full
+  // v as well, goes on by sum m / D r over nodes that are free, while r of all
+  // nodes has the sum P(0) - P(j). So P(j + 1) - P(0) is what sides keep back
+  // of r: that of the nodes that they hold and the share of their mass in D.
+  // This includes all passes before.
+  template <int dim>
+  typename FullMassFilter<dim>::SideAction
+  FullMassFilter<dim>::action_until(const NodalFields<dim> &nodes)
+  {
+    SideAction result;
+    for_each_held(nodes,
+                  [&](const std::uint32_t node,
+                      const std::uint32_t neighbour,
+                      const int           d,
+                      const unsigned int  directions) {
+                    const double  mass = nodes.record(node)[Layout::mass];
+                    const double *v    = record(node);
+                    double        impulse =
+                      v[Layout::remapped + d] - mass * v[Layout::velocity + d];
+                    if (this->held(nodes, neighbour)[d] == 0)
+                      impulse -= mass / lumped_mass(neighbour)[d] *
+                                 (momentum(nodes.record(neighbour), d) -
+                                  record(neighbour)[Layout::remapped + d]);
+                    add_impulse(result, node, d, directions, impulse);
+                  });
     return result;
   }
 

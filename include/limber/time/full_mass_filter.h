@@ -41,14 +41,19 @@ namespace limber
     void
     reinit();
 
+    /** What sides do to owned nodes by holding them against the filter. */
+    struct SideAction
+    {
+      std::array<dealii::Tensor<1, dim>, 2 * dim> impulse;  // kg m/s
+      double                                      work = 0; // J
+    };
+
     /**
      * Put v(@p order) in the place of the new velocity of active nodes or,
      * with @p former_only, that of the velocity before the step plus the
-     * increment of the step. Collective. Returns the impulses of sides that
-     * this takes, kg m/s, on owned nodes.
+     * increment of the step. Collective.
      */
-    using Impulses = std::array<dealii::Tensor<1, dim>, 2 * dim>;
-    Impulses
+    SideAction
     apply(NodalFields<dim>                                &nodes,
           std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
           unsigned int                                     order,
@@ -62,8 +67,19 @@ namespace limber
     start(const NodalFields<dim> &nodes);
     void
     correct(const NodalFields<dim> &nodes);
-    Impulses
-    impulses(const NodalFields<dim> &nodes);
+    SideAction
+    action_of_start(const NodalFields<dim> &nodes);
+    SideAction
+    action_until(const NodalFields<dim> &nodes);
+    template <class Work>
+    void
+    for_each_held(const NodalFields<dim> &nodes, const Work &work) const;
+    void
+    add_impulse(SideAction   &action,
+                std::uint32_t node,
+                int           d,
+                unsigned int  directions,
+                double        impulse);
     void
     multiply_by_full_mass(NodalFields<dim> &nodes, Bodies &bodies);
 
@@ -96,7 +112,6 @@ namespace limber
       return own[Layout::mass] * velocity;
     }
 
-    const MPI_Comm                 communicator;
     const NodeTable<dim>          &table;
     const BoundaryConditions<dim> &boundaries;
     bool                           former = false;
