@@ -86,11 +86,11 @@ namespace limber
       {"musl",
        StressUpdateOrder::musl,
        "velocity gradient from the updated points",
-       "musl"},
+       "last, remapped"},
       {"usavg",
        StressUpdateOrder::usavg,
        "half of it first, half last; second order, keeps energy",
-       "usavg"}};
+       "both ends"}};
     return words;
   }
 

@@ -83,7 +83,8 @@ namespace
                     {"Method/Kernel=" + kernel,
                      "Method/Transfer=" + transfer,
                      std::string("Method/Stress update=") +
-                       (transfer == "fmpm" ? "last" : "musl")});
+                       (transfer == "fmpm" || kernel == "cpdi" ? "usl" :
+                                                                 "musl")});
     const auto  start = run.positions();
     const auto  a     = [&]() {
       return crossing_amplitude * std::sin(dealii::numbers::PI * run.time);
@@ -147,4 +148,11 @@ TEST(CrossingSolution, SplinesAreOfSecondOrder)
   expect_order("quadratic", "flip", {8, 16, 32}, 1.8);
   expect_order("quadratic", "fmpm", {4, 8, 16}, 1.8);
   EXPECT_LT(crossing_error("quadratic", "fmpm", 32), 0.01);
+}
+
+
+
+TEST(CrossingSolution, ConvectedDomainsAreOfSecondOrder)
+{
+  expect_order("cpdi", "flip", {8, 16, 32}, 1.8);
 }
