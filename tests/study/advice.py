@@ -71,7 +71,7 @@ class Advice(unittest.TestCase):
         self.hold(scene, piece, *settings)
 
     def test_stiff_water(self):
-        piece = self.advise("dam_break.prm", FLUID + "2e7", *QUICK_DAM,
+        piece = self.advise("dam_break.prm", FLUID + "2e8", *QUICK_DAM,
                             error=1e-6)["Bulk modulus"]
         self.assertGreater(piece.factor, 1.3, piece.line)
         self.assertEqual(piece.judgement, "A trade", piece.line)

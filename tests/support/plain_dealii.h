@@ -73,6 +73,7 @@ namespace limber
            << "end\n"
            << "subsection Method\n"
            << "  set Stress update = usl\n"
+           << "  set Kernel = linear\n"
            << "  set Transfer = flip\n"
            << "  set Time step = 5e-4\n"
            << "end\n";

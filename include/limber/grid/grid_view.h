@@ -90,17 +90,20 @@ namespace limber
       return table[index];
     }
 
-    /** The same; a place beyond the box counts in the side next to it. */
+    /**
+     * The same; a place beyond the box counts in the side next to it, and one
+     * that is no number in the lower one.
+     */
     std::uint32_t
     nearest_cell(const std::array<double, dim> &x) const
     {
       std::int64_t index = 0;
       for (int d = dim - 1; d >= 0; --d)
         {
-          const double bin = (x[d] - lower[d]) * inverse_edge[d];
-          index            = index * n[d] +
-                  static_cast<std::int64_t>(
-                    std::clamp(bin, 0., static_cast<double>(n[d] - 1)));
+          const double bin  = (x[d] - lower[d]) * inverse_edge[d];
+          const double last = static_cast<double>(n[d] - 1);
+          index             = index * n[d] +
+                  static_cast<std::int64_t>(std::min(std::max(0., bin), last));
         }
       return table[index];
     }
