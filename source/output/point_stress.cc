@@ -123,12 +123,8 @@ namespace limber
       return in_cell(cell).mean_pressure();
 
     const CellGeometry<dim> &geometry = nodes.grid.geometry[cell];
-    std::array<double, dim>  xi;
-    for (int d = 0; d < dim; ++d)
-      xi[d] =
-        (points.place[d][p] - geometry.origin[d]) * geometry.inverse_edge[d];
     return NodalMean<dim, Projection::node>(nodal.data(), geometry)
-      .template value<double>(xi);
+      .template value<double>(natural_place(points, geometry, p));
   }
 
 

@@ -11,21 +11,6 @@ namespace limber
 {
   namespace
   {
-    /** Natural coordinates of a point in its cell. */
-    template <int dim>
-    std::array<double, dim>
-    natural_place(const PointView<dim>    &points,
-                  const CellGeometry<dim> &cell,
-                  const std::size_t        p)
-    {
-      std::array<double, dim> xi;
-      for (int d = 0; d < dim; ++d)
-        xi[d] = (points.position[d][p] - cell.origin[d]) * cell.inverse_edge[d];
-      return xi;
-    }
-
-
-
     /** J sigma of a point, Pa, with that pressure in it. */
     template <int dim, bool deviator>
     SmallMatrix<dim, double>

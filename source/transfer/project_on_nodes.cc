@@ -9,20 +9,6 @@ namespace limber
 {
   namespace
   {
-    template <int dim>
-    std::array<double, dim>
-    natural(const PointView<dim>    &points,
-            const CellGeometry<dim> &cell,
-            const std::size_t        p)
-    {
-      std::array<double, dim> xi;
-      for (int d = 0; d < dim; ++d)
-        xi[d] = (points.place[d][p] - cell.origin[d]) * cell.inverse_edge[d];
-      return xi;
-    }
-
-
-
     /** Of a quantity that each point knows. */
     template <int dim, class Quantity, class Weight>
     void
@@ -38,7 +24,7 @@ namespace limber
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
         NodalSums<dim>           sums;
         for (std::size_t p = batch.begin; p < batch.end; ++p)
-          sums.add(natural(points, cell, p), weight(p), quantity(p));
+          sums.add(natural_place(points, cell, p), weight(p), quantity(p));
         sums.add_to_nodes(cell, records);
       });
     }
@@ -67,7 +53,7 @@ namespace limber
                 cell.inverse_edge[d] *
                 Basis::template gradient<Number>(velocity.component(d), xi)[d];
             for (int k = 0; k < lanes.n; ++k)
-              sums.add(natural(points, cell, lanes.first + k),
+              sums.add(natural_place(points, cell, lanes.first + k),
                        points.mass[lanes.first + k],
                        divergence[k]);
           });

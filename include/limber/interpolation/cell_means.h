@@ -149,12 +149,7 @@ namespace limber
         {
           if (points.cell[p] == invalid_cell)
             continue;
-          const CellGeometry<dim> &geometry = grid.cells[points.cell[p]];
-          std::array<double, dim>  xi;
-#pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-            xi[d] = (points.place[d][p] - geometry.origin[d]) *
-                    geometry.inverse_edge[d];
+          const auto xi = natural_place(points, grid.cells[points.cell[p]], p);
           double *const record = sums.open(points.cell[p]);
           const auto added = products(xi, points.mass[p], points.volumetric[p]);
           for (unsigned int k = 0; k < added.size(); ++k)

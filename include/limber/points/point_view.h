@@ -65,6 +65,20 @@ namespace limber
       return domain[0] != nullptr;
     }
   };
+
+
+  /** Natural coordinates of the place of a point in a cell. */
+  template <int dim>
+  inline std::array<double, dim>
+  natural_place(const PointView<dim>    &points,
+                const CellGeometry<dim> &cell,
+                const std::size_t        p)
+  {
+    std::array<double, dim> xi;
+    for (int d = 0; d < dim; ++d)
+      xi[d] = (points.place[d][p] - cell.origin[d]) * cell.inverse_edge[d];
+    return xi;
+  }
 } // namespace limber
 
 #endif
