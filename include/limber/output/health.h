@@ -41,9 +41,10 @@ namespace limber
   struct BodyFigures
   {
     std::string  name;
-    bool         is_liquid       = false;
-    unsigned int points_per_edge = 2; // the smallest of all directions
-    KernelKind   kernel          = KernelKind::linear;
+    bool         is_liquid         = false;
+    unsigned int points_per_edge   = 2; // the smallest of all directions
+    KernelKind   kernel            = KernelKind::linear;
+    bool         strained_as_moved = false; // by the same velocity (USL)
 
     // At the start
     unsigned long points       = 0;
@@ -93,11 +94,12 @@ namespace limber
   health_text(const std::vector<HealthLine> &lines);
 
   /**
-   * The share of elastic strain that linear functions turn into permanent one
-   * for each cell that a point enters, by the points along the edge of a cell.
+   * The share of elastic strain that becomes permanent for each cell that a
+   * point enters, by kernel, points along the edge of a cell and, with CPDI,
+   * whether the velocity that moves points also strains them.
    */
   double
-  creep_per_crossing(unsigned int points_per_edge, KernelKind kernel);
+  creep_per_crossing(const BodyFigures &body);
 } // namespace limber
 
 #endif
