@@ -207,7 +207,8 @@ namespace limber
     for (int d = 0; d < dim; ++d)
       size *= bins.n[d];
     bin_table.assign(size, invalid_cell);
-    bins.table = bin_table.data();
+    bins.table        = bin_table.data();
+    bins.one_per_cell = true;
 
     for (std::uint32_t c = 0; c < geometry.size(); ++c)
       {
@@ -218,6 +219,7 @@ namespace limber
                                    bins.inverse_edge[d]);
             count[d] =
               std::lround(bins.inverse_edge[d] / geometry[c].inverse_edge[d]);
+            bins.one_per_cell = bins.one_per_cell && count[d] == 1;
           }
         for (std::int64_t k = 0; k < count[2]; ++k)
           for (std::int64_t j = 0; j < count[1]; ++j)

@@ -176,8 +176,7 @@ namespace limber
     accelerate_nodes();
     account_loads(NodeLayout<dim>::velocity);
     filter_velocity();
-    g2p();
-    update_stress_and_move(step, NodeLayout<dim>::velocity);
+    g2p_update_stress_and_move();
   }
 
 
@@ -240,7 +239,7 @@ namespace limber
     if (problem.method.order == StressUpdateOrder::usavg)
       centre_velocity();
     interpolate_hanging();
-    update_stress_and_move(length, Layout::remapped);
+    update_stress_and_move(length);
   }
 
 
@@ -366,15 +365,6 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::g2p()
-  {
-    grid_to_points({});
-  }
-
-
-
-  template <int dim>
-  void
   ExplicitIntegrator<dim>::g2p_and_move()
   {
     TakeFromGrid what;
@@ -399,28 +389,46 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::grid_to_points(TakeFromGrid what)
+  ExplicitIntegrator<dim>::grid_to_points(const TakeFromGrid &what)
+  {
+    for (auto &body : bodies)
+      grid_to_points(*body, what);
+    lap(Verb::grid_to_points);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::grid_to_points(MaterialBody<dim> &body,
+                                          TakeFromGrid       what)
+  {
+    what.affine      = problem.method.transfer == Transfer::apic;
+    what.flip_share  = flip_share();
+    const auto sums  = sums_of(body);
+    const auto found = limber::grid_to_points<dim>(body.points.view(),
+                                                   nodes.view(),
+                                                   what,
+                                                   sums ? &*sums : nullptr);
+    speed_squared    = std::max(speed_squared, found.speed_squared);
+    displacement     = std::max(displacement, found.displacement);
+    ledger.transfer += found.removed;
+  }
+
+
+
+  // The share of velocity increments in what points take; the rest is PIC.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::flip_share() const
   {
     const Method &method = problem.method;
-    what.affine          = method.transfer == Transfer::apic;
-    what.flip_share      = method.transfer == Transfer::pic ||
-                          (full_mass && steps_since_filter == 0) ?
-                             0 :
-                           method.damping_time > 0 ?
-                             std::max(0., 1 - step / method.damping_time) :
-                             1;
-    for (auto &body : bodies)
-      {
-        const auto sums  = sums_of(*body);
-        const auto found = limber::grid_to_points<dim>(body->points.view(),
-                                                       nodes.view(),
-                                                       what,
-                                                       sums ? &*sums : nullptr);
-        speed_squared    = std::max(speed_squared, found.speed_squared);
-        displacement     = std::max(displacement, found.displacement);
-        ledger.transfer += found.removed;
-      }
-    lap(Verb::grid_to_points);
+    if (method.transfer == Transfer::pic ||
+        (full_mass && steps_since_filter == 0))
+      return 0;
+    return method.damping_time > 0 ?
+             std::max(0., 1 - step / method.damping_time) :
+             1;
   }
 
 
@@ -511,13 +519,31 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::update_stress_and_move(const double       length,
-                                                  const unsigned int velocity)
+  ExplicitIntegrator<dim>::update_stress_and_move(const double length)
   {
     StressSweep what;
     what.step     = length;
-    what.remapped = velocity == NodeLayout<dim>::remapped;
+    what.remapped = true;
     what.move     = step;
+    update_stress(what);
+  }
+
+
+
+  // With the new velocity of the nodes. Points with a stencil of their own
+  // take their velocities in the same sweep, which spares looking it up again.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::g2p_update_stress_and_move()
+  {
+    for (auto &body : bodies)
+      if (!body->stress->takes_velocity())
+        grid_to_points(*body, {});
+    lap(Verb::grid_to_points);
+    StressSweep what;
+    what.step       = step;
+    what.move       = step;
+    what.flip_share = flip_share();
     update_stress(what);
   }
 
@@ -557,8 +583,10 @@ namespace limber
                                                 what);
         wave_squared     = std::max(wave_squared, found.wave_speed_squared);
         displacement     = std::max(displacement, found.displacement);
+        speed_squared    = std::max(speed_squared, found.speed_squared);
         ledger.viscous += found.viscous;
         ledger.history += found.history;
+        ledger.transfer += found.removed;
       }
     lap(Verb::update_stress);
   }

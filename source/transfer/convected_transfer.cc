@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/interpolation/cell_means.h>
-#include <limber/interpolation/convected_fields.h>
+#include <limber/interpolation/convected_motion.h>
 #include <limber/interpolation/nodal_means.h>
 #include <limber/transfer/convected_transfer.h>
 
@@ -11,46 +10,40 @@ namespace limber
 {
   namespace
   {
-    /** J sigma of a point, Pa, with that pressure in it. */
-    template <int dim, bool deviator>
-    SmallMatrix<dim, double>
-    kirchhoff_stress(const PointView<dim> &points,
-                     const std::size_t     p,
-                     const double          pressure)
-    {
-      SmallMatrix<dim, double> t{};
-      if constexpr (deviator)
-        {
-          const auto s = [&](const int k) { return points.deviator[k][p]; };
-          t[0][0]      = s(0);
-          t[1][1]      = s(1);
-          t[0][1] = t[1][0] = s(2);
-          if constexpr (dim == 3)
-            {
-              t[2][2] = -(s(0) + s(1));
-              t[2][1] = t[1][2] = s(3);
-              t[2][0] = t[0][2] = s(4);
-            }
-        }
-      for (int d = 0; d < dim; ++d)
-        t[d][d] -= pressure;
-      return t;
-    }
-
-
-
     struct NoForceOfDomains
     {
       static constexpr bool any = false;
     };
 
-    template <Projection projection, bool has_deviator>
+    template <Projection projection>
     struct ForceOfDomains
     {
-      static constexpr bool       any      = true;
-      static constexpr bool       deviator = has_deviator;
-      static constexpr Projection kind     = projection;
+      static constexpr bool       any  = true;
+      static constexpr Projection kind = projection;
     };
+
+
+
+    /** J sigma of a pack of points, Pa, with the pressure that does the work.
+     */
+    template <int dim, Projection kind, class Lanes>
+    __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
+    kirchhoff_stress(const PointView<dim>       &points,
+                     const CellGeometry<dim>    &cell,
+                     const NodalMean<dim, kind> &nodal_pressure,
+                     const Lanes                &lanes)
+    {
+      auto           t = stress_deviator<dim>(points, lanes);
+      PointPack<dim> pressure;
+      if constexpr (averages_around_nodes(kind))
+        pressure = nodal_pressure.template value<PointPack<dim>>(
+          lanes.natural(points, cell));
+      else
+        pressure = lanes.load(points.pressure);
+      for (int d = 0; d < dim; ++d)
+        t[d][d] -= pressure;
+      return t;
+    }
 
 
 
@@ -61,85 +54,73 @@ namespace limber
          const GiveToGrid     &what)
     {
       using Layout = NodeLayout<dim>;
-      using Domain = ConvectedDomain<dim>;
+      using Number = PointPack<dim>;
       // mass, force and momentum lie next to each other
       using Window = RecordWindow<dim,
                                   momentum ? Layout::mass : Layout::force,
                                   momentum ? 1 + 2 * dim : dim>;
-      using Lanes  = typename Window::Lanes;
+      using Record = typename Window::Lanes;
+      using Slots  = std::array<Number, Window::width>;
 
       return for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
-        for (std::size_t p = batch.begin; p < batch.end; ++p)
-          {
-            const Domain           domain(points, grid, batch.cell, p);
-            const double           mass = points.mass[p];
-            Lanes                  alike{};
-            std::array<Lanes, dim> along;
-            set_zero(along);
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
+            const Number             mass = lanes.load(points.mass);
+            std::array<Record, ConvectedPack<dim>::n_points> alike;
+            std::array<decltype(alike), dim>                 along;
             if constexpr (momentum)
               {
-                alike[Window::lane_of(Layout::mass)] = mass;
+                Slots slots;
+                set_zero(slots);
+                slots[Window::lane_of(Layout::mass)] = mass;
                 for (int d = 0; d < dim; ++d)
-                  alike[Window::lane_of(Layout::momentum + d)] =
-                    mass * points.velocity[d][p];
+                  slots[Window::lane_of(Layout::momentum + d)] =
+                    mass * lanes.load(points.velocity[d]);
+                alike = records_of<Record>(slots);
               }
+            else
+              set_zero(alike);
             if constexpr (Force::any)
               {
-                double pressure;
-                if constexpr (averages_around_nodes(Force::kind))
-                  pressure =
-                    NodalMean<dim, Force::kind>(what.nodal_pressure, cell)
-                      .template value<double>(natural_place(points, cell, p));
-                else
-                  pressure = points.pressure[p];
-                const auto t =
-                  kirchhoff_stress<dim, Force::deviator>(points, p, pressure);
-                const auto   inverse = domain.inverse();
-                const double V       = what.inverse_density * mass;
-#pragma GCC unroll 8
+                const NodalMean<dim, Force::kind> nodal_pressure(
+                  what.nodal_pressure, cell);
+                const auto t = kirchhoff_stress<dim, Force::kind>(
+                  points, cell, nodal_pressure, lanes);
+                const Number V = what.inverse_density * mass;
+#pragma GCC unroll 3
                 for (int k = 0; k < dim; ++k)
-#pragma GCC unroll 8
-                  for (int d = 0; d < dim; ++d)
-                    {
-                      double force = 0;
-#pragma GCC unroll 8
-                      for (int e = 0; e < dim; ++e)
-                        force -= t[d][e] * inverse[k][e];
-                      along[k][Window::lane_of(Layout::force + d)] = V * force;
-                    }
+                  {
+                    Slots slots;
+                    set_zero(slots);
+#pragma GCC unroll 3
+                    for (int d = 0; d < dim; ++d)
+                      {
+                        Number force{};
+#pragma GCC unroll 3
+                        for (int e = 0; e < dim; ++e)
+                          force -= t[d][e] * domains.inverse[k][e];
+                        slots[Window::lane_of(Layout::force + d)] = V * force;
+                      }
+                    along[k] = records_of<Record>(slots);
+                  }
               }
-            give_to_nodes<Window>(grid,
-                                  domain,
-                                  alike,
-                                  Force::any ? along.data() : nullptr);
-          }
+            domains.template give<Window, momentum, Force::any>(alike, along);
+          });
       });
     }
 
 
 
-    template <int dim, bool deviator>
+    template <int dim, class Force>
     std::size_t
-    choose_force(const PointView<dim> &points,
-                 const GridView<dim>  &grid,
-                 const GiveToGrid     &what)
+    choose_momentum(const PointView<dim> &points,
+                    const GridView<dim>  &grid,
+                    const GiveToGrid     &what)
     {
-      const auto with = [&](const auto kind) {
-        using Force = ForceOfDomains<decltype(kind)::value, deviator>;
-        return what.momentum ? give<dim, true, Force>(points, grid, what) :
-                               give<dim, false, Force>(points, grid, what);
-      };
-      using P = Projection;
-      switch (what.projection.kind)
-        {
-          case P::none:
-            return with(std::integral_constant<P, P::none>());
-          case P::node:
-            return with(std::integral_constant<P, P::node>());
-          default:
-            throw std::logic_error("no such projection with domains");
-        }
+      return what.momentum ? give<dim, true, Force>(points, grid, what) :
+                             give<dim, false, Force>(points, grid, what);
     }
   } // namespace
 
@@ -151,13 +132,24 @@ namespace limber
                   const GridView<dim>  &grid,
                   const GiveToGrid     &what)
   {
+    using P = Projection;
     if (!what.force)
       return what.momentum ?
                give<dim, true, NoForceOfDomains>(points, grid, what) :
                0;
-    return points.deviator[0] != nullptr ?
-             choose_force<dim, true>(points, grid, what) :
-             choose_force<dim, false>(points, grid, what);
+    switch (what.projection.kind)
+      {
+        case P::none:
+          return choose_momentum<dim, ForceOfDomains<P::none>>(points,
+                                                               grid,
+                                                               what);
+        case P::node:
+          return choose_momentum<dim, ForceOfDomains<P::node>>(points,
+                                                               grid,
+                                                               what);
+        default:
+          throw std::logic_error("no such projection with domains");
+      }
   }
 
 
@@ -166,69 +158,48 @@ namespace limber
   VelocitySummary
   grid_to_domains(const PointView<dim> &points,
                   const GridView<dim>  &grid,
-                  const TakeFromGrid   &what,
-                  const CellSums<dim>  *sums)
+                  const TakeFromGrid   &what)
   {
     using Layout = NodeLayout<dim>;
-    using Domain = ConvectedDomain<dim>;
+    using Number = PointPack<dim>;
+    using Pack   = ConvectedPack<dim>;
     // velocity increment and, right behind it, the new velocity
-    using Window  = RecordWindow<dim, Layout::increment, 2 * dim>;
-    using Remap   = RecordWindow<dim, Layout::remapped, dim>;
-    using Fields  = FieldsOnDomain<dim, Window>;
-    using Squares = VelocitySummary;
-    Squares result;
+    using Window = RecordWindow<dim, Layout::increment, 2 * dim>;
+    using Remap  = RecordWindow<dim, Layout::remapped, dim>;
+    using Fields = FieldsOnPack<dim, Window>;
+    VelocityFindings<dim> found;
+    Number                displacement{};
     for_each_batch(points, [&](const CellBatch &batch) {
-      for (std::size_t p = batch.begin; p < batch.end; ++p)
-        {
-          const Domain            domain(points, grid, batch.cell, p);
-          const Fields            fields(domain, grid);
-          const double            mass = points.mass[p];
-          typename Remap::Lanes   momentum{};
-          double                  squared = 0, kept_squared = 0;
-          [[maybe_unused]] double displacement = 0;
-          for (int d = 0; d < dim; ++d)
-            {
-              const double flip =
-                points.velocity[d][p] + fields.value(Layout::increment + d);
-              const double velocity =
-                flip + (1 - what.flip_share) *
-                         (fields.value(Layout::velocity + d) - flip);
-              points.velocity[d][p] = velocity;
-              kept_squared += flip * flip;
-              squared += velocity * velocity;
-              momentum[Remap::lane_of(Layout::remapped + d)] = mass * velocity;
-            }
-          result.speed_squared = std::max(result.speed_squared, squared);
-          result.removed += 0.5 * mass * (kept_squared - squared);
+      for_each_pack<dim>(
+        batch, [&](const auto &lanes) __attribute__((always_inline)) {
+          const Pack   domains(points, grid, batch.cell, lanes);
+          const Fields fields(domains);
+          take_velocity<dim>(points, lanes, fields, what.flip_share, found);
           if (what.remap)
-            give_to_nodes<Remap>(grid, domain, momentum, nullptr);
-          if (what.move != 0)
             {
-              const CellGeometry<dim> &cell = grid.cells[batch.cell];
+              std::array<Number, Remap::width> momentum;
+              set_zero(momentum);
               for (int d = 0; d < dim; ++d)
-                {
-                  const double shift =
-                    what.move * fields.value(Layout::velocity + d);
-                  points.position[d][p] += shift;
-                  result.displacement =
-                    std::max(result.displacement,
-                             std::abs(shift) * cell.inverse_edge[d]);
-                }
-              carry_domain<Fields, dim>(
-                points, p, fields, domain.inverse(), what.move);
+                momentum[Remap::lane_of(Layout::remapped + d)] =
+                  lanes.load(points.mass) * lanes.load(points.velocity[d]);
+              const auto given = records_of<typename Remap::Lanes>(momentum);
+              domains.template give<Remap, true, false>(given, {});
             }
-        }
-      if (what.move != 0)
-        {
-          locate(points, grid, batch.cell, batch.begin, batch.end);
-          enter_corners(points, grid, batch.begin, batch.end);
-          if (sums)
-            CellGatherer<Linear<dim>>(*sums).add_one_by_one(points,
-                                                            grid,
-                                                            batch.begin,
-                                                            batch.end);
-        }
+          if (what.move != 0)
+            displacement = larger(displacement,
+                                  move_domains<dim>(points,
+                                                    grid,
+                                                    batch.cell,
+                                                    lanes,
+                                                    fields,
+                                                    domains.inverse,
+                                                    what.move));
+        });
     });
+    VelocitySummary result;
+    result.speed_squared = maximum(found.speed_squared);
+    result.displacement  = maximum(displacement);
+    result.removed       = sum(found.removed);
     return result;
   }
 
@@ -242,24 +213,24 @@ namespace limber
                             double *const         records)
   {
     using Layout     = NodeLayout<dim>;
+    using Number     = PointPack<dim>;
     const auto sweep = [&](const auto first) {
       using Fields =
-        FieldsOnDomain<dim, RecordWindow<dim, decltype(first)::value, dim>>;
+        FieldsOnPack<dim, RecordWindow<dim, decltype(first)::value, dim>>;
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
         NodalSums<dim>           sums;
-        for (std::size_t p = batch.begin; p < batch.end; ++p)
-          {
-            const ConvectedDomain<dim> domain(points, grid, batch.cell, p);
-            const Fields               fields(domain, grid);
-            const auto                 inverse    = domain.inverse();
-            double                     divergence = 0;
-            for (int d = 0; d < dim; ++d)
-              divergence += fields.slope(inverse, first() + d, d);
-            sums.add(natural_place(points, cell, p),
-                     points.mass[p],
-                     divergence);
-          }
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
+          const Fields             fields(domains);
+          Number                   divergence{};
+          for (int d = 0; d < dim; ++d)
+            divergence += fields.slope(domains.inverse, first() + d, d);
+          for (int i = 0; i < lanes.n; ++i)
+            sums.add(natural_place(points, cell, lanes.first + i),
+                     points.mass[lanes.first + i],
+                     divergence[i]);
+        });
         sums.add_to_nodes(cell, records);
       });
     };
@@ -304,13 +275,11 @@ namespace limber
   template VelocitySummary
   grid_to_domains(const PointView<2> &,
                   const GridView<2> &,
-                  const TakeFromGrid &,
-                  const CellSums<2> *);
+                  const TakeFromGrid &);
   template VelocitySummary
   grid_to_domains(const PointView<3> &,
                   const GridView<3> &,
-                  const TakeFromGrid &,
-                  const CellSums<3> *);
+                  const TakeFromGrid &);
   template void
   sum_divergence_of_domains(const PointView<2> &,
                             const GridView<2> &,

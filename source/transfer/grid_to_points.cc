@@ -223,7 +223,7 @@ namespace limber
                  const CellSums<dim>  *sums)
   {
     if (points.has_domains())
-      return grid_to_domains(points, grid, what, sums);
+      return grid_to_domains(points, grid, what);
     const auto choose = [&](const auto basis, const auto affine) {
       using Basis = std::decay_t<decltype(basis)>;
       return what.remap ?

@@ -150,7 +150,8 @@ namespace limber
                 splines.push_back(spline);
               }
           }
-        bins.table = bin_table.data();
+        bins.table        = bin_table.data();
+        bins.one_per_cell = true;
         nodes.resize(n_nodes * NodeLayout<dim>::stride);
         occupied.resize(n_cells);
         means.resize(n_vertices * NodalMeanLayout::stride);

@@ -112,6 +112,21 @@ namespace limber
 
 
 
+  /** A pack twice as wide, with the same lanes in both of its halves. */
+  inline Pack<8>
+  doubled(const Pack<4> &half)
+  {
+    return joined(half, half);
+  }
+
+  inline Pack<4>
+  doubled(const Pack<2> &half)
+  {
+    return __builtin_shufflevector(half, half, 0, 1, 0, 1);
+  }
+
+
+
   /** The lanes of a wide pack from @p first on that fill a narrow one. */
   template <class Narrow, class Wide>
   inline Narrow
@@ -239,6 +254,30 @@ namespace limber
   square_root(const Number &a)
   {
     return each_lane(a, [](const double x) { return std::sqrt(x); });
+  }
+
+
+
+  /** Values that are not negative, without what is behind the point. */
+  template <class Number>
+  inline auto
+  to_integers(const Number &a)
+  {
+    if constexpr (pack_width<Number> == 1)
+      return static_cast<std::int64_t>(a);
+    else
+      return __builtin_convertvector(
+        a, typename internal::PackType<pack_width<Number>>::mask);
+  }
+
+  template <class Number>
+  inline Number
+  rounded_down(const Number &a)
+  {
+    if constexpr (pack_width<Number> == 1)
+      return static_cast<double>(to_integers(a));
+    else
+      return __builtin_convertvector(to_integers(a), Number);
   }
 
 

@@ -75,6 +75,7 @@ namespace limber
     std::array<double, dim>       inverse_edge{};
     std::array<std::int64_t, dim> n{};
     const std::uint32_t          *table = nullptr;
+    bool one_per_cell = false; // whether each bin is a cell of its own
 
     std::uint32_t
     cell_at(const std::array<double, dim> &x) const

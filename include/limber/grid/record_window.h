@@ -5,6 +5,8 @@
 #include <limber/base/pack.h>
 #include <limber/grid/grid_view.h>
 
+#include <array>
+
 namespace limber
 {
   /**
@@ -31,6 +33,76 @@ namespace limber
       return slot - start;
     }
   };
+
+
+
+  /**
+   * From values of the points of a pack, by slot of a record, to one record
+   * for each point.
+   */
+  template <class Record, class Number>
+  __attribute__((always_inline)) inline std::array<Record, pack_width<Number>>
+  records_of(const std::array<Number, pack_width<Record>> &slots)
+  {
+    constexpr int n_points = pack_width<Number>, n = pack_width<Record>;
+    std::array<Record, n_points> result;
+    if constexpr (n == n_points)
+      {
+        result = slots;
+        transpose<n>(result);
+      }
+    else if constexpr (n == 2 * n_points)
+      {
+        std::array<Number, n_points> lower, upper;
+        for (int i = 0; i < n_points; ++i)
+          {
+            lower[i] = slots[i];
+            upper[i] = slots[i + n_points];
+          }
+        transpose<n_points>(lower);
+        transpose<n_points>(upper);
+        for (int p = 0; p < n_points; ++p)
+          result[p] = joined(lower[p], upper[p]);
+      }
+    else
+      {
+        static_assert(2 * n == n_points);
+        std::array<Number, n_points> padded{};
+        for (int i = 0; i < n; ++i)
+          padded[i] = slots[i];
+        transpose<n_points>(padded);
+        for (int p = 0; p < n_points; ++p)
+          result[p] = some_lanes<Record>(padded[p], 0);
+      }
+    return result;
+  }
+
+
+
+  /** And back: the values of some slots of one record for each point. */
+  template <class Number, class Record>
+  __attribute__((always_inline)) inline std::array<Number, pack_width<Record>>
+  slots_of(const std::array<Record, pack_width<Number>> &records)
+  {
+    constexpr int         n_points = pack_width<Number>, n = pack_width<Record>;
+    std::array<Number, n> result;
+    if constexpr (n == n_points)
+      {
+        result = records;
+        transpose<n>(result);
+      }
+    else
+      {
+        static_assert(2 * n == n_points);
+        std::array<Number, n_points> padded;
+        for (int p = 0; p < n_points; ++p)
+          padded[p] = doubled(records[p]);
+        transpose<n_points>(padded);
+        for (int i = 0; i < n; ++i)
+          result[i] = padded[i];
+      }
+    return result;
+  }
 } // namespace limber
 
 #endif

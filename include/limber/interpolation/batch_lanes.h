@@ -3,6 +3,7 @@
 #define limber_interpolation_batch_lanes_h
 
 #include <limber/base/expected.h>
+#include <limber/base/small_matrix.h>
 #include <limber/grid/record_window.h>
 #include <limber/interpolation/linear.h>
 #include <limber/points/cell_batch.h>
@@ -119,6 +120,26 @@ namespace limber
     if (rarely(p < batch.end))
       internal::do_apart(
         work, BatchLanes<dim, false>(p, static_cast<int>(batch.end - p)));
+  }
+
+
+
+  /** The deviator of J sigma of a pack of points of a solid, Pa. */
+  template <int dim, class Lanes>
+  __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
+  stress_deviator(const PointView<dim> &points, const Lanes &lanes)
+  {
+    SmallMatrix<dim, PointPack<dim>> s;
+    s[0][0] = lanes.load(points.deviator[0]);
+    s[1][1] = lanes.load(points.deviator[1]);
+    s[1][0] = s[0][1] = lanes.load(points.deviator[2]);
+    if constexpr (dim == 3)
+      {
+        s[2][2] = -(s[0][0] + s[1][1]);
+        s[2][1] = s[1][2] = lanes.load(points.deviator[3]);
+        s[2][0] = s[0][2] = lanes.load(points.deviator[4]);
+      }
+    return s;
   }
 
 

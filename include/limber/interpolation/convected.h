@@ -12,6 +12,11 @@
 
 namespace limber
 {
+  /** Flatter domains than that share of the box around them do not count. */
+  inline constexpr double flattest_domain = 1e-3;
+
+
+
   /**
    * The convected domain of a point (CPDI; Sadeghirad, Brannon and Burghardt,
    * IJNME 86 (2011) 1435-1456): the parallelogram or parallelepiped around it
@@ -126,8 +131,7 @@ namespace limber
     __attribute__((always_inline)) void
     restrict_edges(const CellGeometry<dim> &geometry)
     {
-      constexpr double flattest = 1e-3;
-      double           box      = 1;
+      double box = 1;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
@@ -140,7 +144,7 @@ namespace limber
             }
           box *= extent[d];
         }
-      if (rarely(!(determinant<dim>(edges) > flattest * box)))
+      if (rarely(!(determinant<dim>(edges) > flattest_domain * box)))
         for (int d = 0; d < dim; ++d)
           for (int k = 0; k < dim; ++k)
             edges[d][k] = d == k ? extent[d] : 0;

@@ -65,7 +65,6 @@ namespace limber
       return result;
     }
 
-  private:
     Lanes                  mean{};
     std::array<Lanes, dim> along;
   };
@@ -104,42 +103,13 @@ namespace limber
 
 
 
-  /** Carry the domain of point p along: R += @p step grad v R, step in s. */
-  template <class Fields, int dim>
-  __attribute__((always_inline)) inline void
-  carry_domain(const PointView<dim>           &points,
-               const std::size_t               p,
-               const Fields                   &fields,
-               const SmallMatrix<dim, double> &inverse,
-               const double                    step)
-  {
-    // As it is, which may be more than what counts.
-    SmallMatrix<dim, double> R;
-    for (int d = 0; d < dim; ++d)
-      for (int k = 0; k < dim; ++k)
-        R[d][k] = points.domain[d * dim + k][p];
-#pragma GCC unroll 8
-    for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-      for (int e = 0; e < dim; ++e)
-        {
-          const double slope =
-            step * fields.slope(inverse, NodeLayout<dim>::velocity + d, e);
-#pragma GCC unroll 8
-          for (int k = 0; k < dim; ++k)
-            points.domain[d * dim + k][p] += slope * R[e][k];
-        }
-  }
-
-
-
   /** Have the cells that corners of these points have entered take part. */
   template <int dim>
-  void
-  enter_corners(const PointView<dim> &points,
-                const GridView<dim>  &grid,
-                const std::size_t     begin,
-                const std::size_t     end)
+  __attribute__((noinline)) void
+  enter_corners_one_by_one(const PointView<dim> &points,
+                           const GridView<dim>  &grid,
+                           const std::size_t     begin,
+                           const std::size_t     end)
   {
     for (std::size_t p = begin; p < end; ++p)
       {

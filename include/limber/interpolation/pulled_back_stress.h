@@ -47,18 +47,9 @@ namespace limber
                          const Lanes                            &lanes,
                          const SmallMatrix<dim, PointPack<dim>> &F)
   {
-    using Number = PointPack<dim>;
-    SmallMatrix<dim, Number> t;
-    t[0][0] = lanes.load(points.deviator[0]);
-    t[1][1] = lanes.load(points.deviator[1]);
-    t[1][0] = t[0][1] = lanes.load(points.deviator[2]);
-    if constexpr (dim == 3)
-      {
-        t[2][2] = -(t[0][0] + t[1][1]);
-        t[2][1] = t[1][2] = lanes.load(points.deviator[3]);
-        t[2][0] = t[0][2] = lanes.load(points.deviator[4]);
-      }
-    Number p = lanes.load(points.pressure);
+    using Number               = PointPack<dim>;
+    SmallMatrix<dim, Number> t = stress_deviator<dim>(points, lanes);
+    Number                   p = lanes.load(points.pressure);
     if constexpr (finite_strain)
       {
         // over J_p, as the cofactor is J_p F^-T

@@ -2,7 +2,7 @@
 #ifndef limber_stress_convected_sweep_h
 #define limber_stress_convected_sweep_h
 
-#include <limber/interpolation/convected_fields.h>
+#include <limber/interpolation/convected_motion.h>
 #include <limber/interpolation/nodal_means.h>
 #include <limber/stress/law_on_points.h>
 
@@ -21,10 +21,6 @@ namespace limber
     using Base::law;
     using Number = PointPack<dim>;
     using Layout = NodeLayout<dim>;
-    using Domain = ConvectedDomain<dim>;
-    // new velocity and, right behind it, the re-mapped one
-    using Window = RecordWindow<dim, Layout::velocity, 2 * dim>;
-    using Fields = FieldsOnDomain<dim, Window>;
 
   public:
     ConvectedSweep(const Law &law, const StrainProjection &projection)
@@ -38,42 +34,15 @@ namespace limber
            const CellSums<dim> *,
            const StressSweep &what) const override
     {
-      const bool              measure_waves = !law.has_constant_wave_speed();
-      typename Base::Findings found;
-      Number                  displacement{};
-      for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim>   &cell = grid.cells[batch.cell];
-        const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
-        for_each_pack<dim>(batch, [&](const auto &lanes) {
-          MotionIncrement<dim, Number> motion;
-          std::array<Number, dim>      shift;
-          motion.step = what.step;
-          set_motion(points, grid, batch.cell, lanes, what, motion, shift);
-          if constexpr (averages_around_nodes(kind))
-            motion.volumetric = what.step * divergence.template value<Number>(
-                                              lanes.natural(points, cell));
-          else
-            motion.volumetric = motion.trace();
-          this->strain(
-            points,
-            lanes,
-            motion,
-            [](auto &, const Number &) {},
-            measure_waves,
-            found);
-          if (what.move > 0)
-            {
-              displacement =
-                larger(displacement,
-                       move_points<dim>(points, grid, batch.cell, lanes, shift)
-                         .displacement);
-              enter_corners(points, grid, lanes.first, lanes.first + lanes.n);
-            }
-        });
-      });
-      StressSummary result = this->summary(found, measure_waves);
-      result.displacement  = maximum(displacement);
-      return result;
+      return what.remapped ?
+               sweep<Layout::velocity, Layout::remapped>(points, grid, what) :
+               sweep<Layout::increment, Layout::velocity>(points, grid, what);
+    }
+
+    bool
+    takes_velocity() const override
+    {
+      return true;
     }
 
     void
@@ -97,44 +66,66 @@ namespace limber
     }
 
   private:
-    /** dt grad v and how far points move; carries domains that move along. */
-    template <class Lanes>
-    static void
-    set_motion(const PointView<dim>         &points,
-               const GridView<dim>          &grid,
-               const std::uint32_t           cell,
-               const Lanes                  &lanes,
-               const StressSweep            &what,
-               MotionIncrement<dim, Number> &motion,
-               std::array<Number, dim>      &shift)
+    /**
+     * With the two fields of velocities from slot @p first on, the second of
+     * which strains the points.
+     */
+    template <unsigned int first, unsigned int strained>
+    StressSummary
+    sweep(const PointView<dim> &points,
+          const GridView<dim>  &grid,
+          const StressSweep    &what) const
     {
-      constexpr int      width                      = pack_width<Number>;
-      alignas(64) double gradient[dim * dim][width] = {};
-      alignas(64) double moved[dim][width]          = {};
-      const unsigned int strained =
-        what.remapped ? Layout::remapped : Layout::velocity;
-      for (int i = 0; i < lanes.n; ++i)
-        {
-          const std::size_t p = lanes.first + i;
-          const Domain      domain(points, grid, cell, p);
-          const Fields      fields(domain, grid);
-          const auto        inverse = domain.inverse();
+      using Fields = FieldsOnPack<dim, RecordWindow<dim, first, 2 * dim>>;
+      const bool              measure_waves = !law.has_constant_wave_speed();
+      typename Base::Findings found;
+      VelocityFindings<dim>   taken;
+      Number                  displacement{};
+      for_each_batch(points, [&](const CellBatch &batch) {
+        const CellGeometry<dim>   &cell = grid.cells[batch.cell];
+        const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
+          const Fields             fields(domains);
+          if constexpr (first == Layout::increment)
+            if (what.flip_share)
+              take_velocity<dim>(
+                points, lanes, fields, *what.flip_share, taken);
+
+          MotionIncrement<dim, Number> motion;
+          motion.step = what.step;
           for (int d = 0; d < dim; ++d)
-            {
-              for (int e = 0; e < dim; ++e)
-                gradient[d * dim + e][i] =
-                  what.step * fields.slope(inverse, strained + d, e);
-              moved[d][i] = what.move * fields.value(Layout::velocity + d);
-            }
+            for (int e = 0; e < dim; ++e)
+              motion.gradient[d][e] =
+                what.step * fields.slope(domains.inverse, strained + d, e);
+          if constexpr (averages_around_nodes(kind))
+            motion.volumetric = what.step * divergence.template value<Number>(
+                                              lanes.natural(points, cell));
+          else
+            motion.volumetric = motion.trace();
+          this->strain(
+            points,
+            lanes,
+            motion,
+            [](auto &, const Number &) {},
+            measure_waves,
+            found);
           if (what.move > 0)
-            carry_domain<Fields, dim>(points, p, fields, inverse, what.move);
-        }
-      for (int d = 0; d < dim; ++d)
-        {
-          for (int e = 0; e < dim; ++e)
-            motion.gradient[d][e] = load<Number>(gradient[d * dim + e]);
-          shift[d] = load<Number>(moved[d]);
-        }
+            displacement = larger(displacement,
+                                  move_domains<dim>(points,
+                                                    grid,
+                                                    batch.cell,
+                                                    lanes,
+                                                    fields,
+                                                    domains.inverse,
+                                                    what.move));
+        });
+      });
+      StressSummary result = this->summary(found, measure_waves);
+      result.displacement  = maximum(displacement);
+      result.speed_squared = maximum(taken.speed_squared);
+      result.removed       = sum(taken.removed);
+      return result;
     }
 
     const StrainProjection strain_projection;

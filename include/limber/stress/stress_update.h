@@ -21,6 +21,9 @@ namespace limber
     bool   remapped = false; // grad v of the re-mapped velocity, not the new
     // Over which they then move with the new velocity, s; 0: they stay.
     double move = 0;
+    // With this share of FLIP points take their velocities in the same sweep,
+    // where takes_velocity(); empty: they keep them.
+    std::optional<double> flip_share;
     // Share of the way that the volumetric variable goes to the mean of the
     // cell in this step: 0 keeps the history, 1 replaces it.
     double relaxation = 0;
@@ -39,6 +42,9 @@ namespace limber
     double viscous            = 0; // dissipated by viscosity, J
     double history            = 0; // removed with history or tension, J
     double displacement       = 0; // the largest over the edge of its cell
+    // where points take their velocities
+    double speed_squared = 0; // the largest, m^2/s^2
+    double removed       = 0; // kinetic energy that FLIP would have kept, J
   };
 
 
@@ -90,6 +96,16 @@ namespace limber
     /** How the strain, and with it the stress, is averaged over cells. */
     virtual const StrainProjection &
     projection() const = 0;
+
+    /**
+     * Whether points can take their velocities in the same sweep, which spares
+     * one where each looks its nodes up.
+     */
+    virtual bool
+    takes_velocity() const
+    {
+      return false;
+    }
 
     /** How forces are formed in the initial frame; empty in the current one. */
     virtual std::optional<InitialFrameForce>

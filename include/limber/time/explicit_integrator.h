@@ -155,15 +155,15 @@ namespace limber
     void
     p2g_force();
     void
-    g2p();
-    void
     g2p_and_remap();
     void
     g2p_and_move();
     void
     update_stress(double length);
     void
-    update_stress_and_move(double length, unsigned int velocity);
+    update_stress_and_move(double length);
+    void
+    g2p_update_stress_and_move();
 
     void
     clear();
@@ -197,7 +197,11 @@ namespace limber
     void
     interpolate_hanging();
     void
-    grid_to_points(TakeFromGrid what);
+    grid_to_points(const TakeFromGrid &what);
+    void
+    grid_to_points(MaterialBody<dim> &body, TakeFromGrid what);
+    double
+    flip_share() const;
     void
     filter_velocity();
     double

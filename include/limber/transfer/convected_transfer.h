@@ -24,14 +24,13 @@ namespace limber
 
   /**
    * What grid_to_points() does for them; where points move their domains
-   * follow. @p sums may be null.
+   * follow.
    */
   template <int dim>
   VelocitySummary
   grid_to_domains(const PointView<dim> &points,
                   const GridView<dim>  &grid,
-                  const TakeFromGrid   &what,
-                  const CellSums<dim>  *sums);
+                  const TakeFromGrid   &what);
 
 
 

@@ -316,7 +316,7 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
     before += points.mass[p] * points.velocity[0][p];
   TakeFromGrid take;
   take.remap = true;
-  grid_to_domains<dim>(points, this->grid.view(), take, nullptr);
+  grid_to_domains<dim>(points, this->grid.view(), take);
   for (std::size_t p = 0; p < points.size; ++p)
     after += points.mass[p] * points.velocity[0][p];
   EXPECT_NEAR(after - before, added, 1e-12);
@@ -331,7 +331,7 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
   take                  = {};
   take.move             = 1e-3;
   const auto was_inside = own;
-  grid_to_domains<dim>(points, this->grid.view(), take, nullptr);
+  grid_to_domains<dim>(points, this->grid.view(), take);
   for (std::size_t p = 0; p < points.size; ++p)
     if (this->is_inside(was_inside, p))
       for (int d = 0; d < dim; ++d)
@@ -342,4 +342,63 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
               wanted += 1e-3 * A[d][e] * former[e * dim + k][p];
             ASSERT_NEAR(points.domain[d * dim + k][p], wanted, 1e-14);
           }
+}
+
+
+
+// A pack of domains in blocks of cells and the same one by one: where bins are
+// finer than cells nobody looks for blocks.
+TYPED_TEST(ConvectedDomains, GiveAndTakeTheSameInBlocksAsOneByOne)
+{
+  constexpr int dim   = TestFixture::dim;
+  using Layout        = typename TestFixture::Layout;
+  const auto   own    = this->points_with_domains(0.5);
+  const auto   edges  = this->domains;
+  const auto   wanted = this->grid.nodes;
+  GiveToGrid   what;
+  TakeFromGrid take;
+  what.inverse_density = 0.7;
+  take.remap           = true;
+  take.move            = 1e-3;
+  take.flip_share      = 0.9;
+  std::vector<std::vector<double>> results;
+  std::vector<std::uint32_t>       entered;
+  for (const bool in_blocks : {true, false})
+    {
+      this->grid.bins.one_per_cell = in_blocks;
+      this->grid.nodes             = wanted;
+      std::fill(this->grid.occupied.begin(), this->grid.occupied.end(), 0);
+      this->grid.entered.clear();
+      this->domains     = edges;
+      auto       copy   = own;
+      const auto points = this->view(copy);
+      domains_to_grid<dim>(points, this->grid.view(), what);
+      for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+        this->grid.nodes[n * Layout::stride + Layout::remapped] = 0;
+      grid_to_domains<dim>(points, this->grid.view(), take);
+      std::vector<double> all = this->grid.nodes;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          for (int d = 0; d < dim; ++d)
+            {
+              all.push_back(points.position[d][p]);
+              all.push_back(points.velocity[d][p]);
+            }
+          for (const double *const component : points.domain)
+            all.push_back(component[p]);
+        }
+      results.push_back(all);
+      std::sort(this->grid.entered.begin(), this->grid.entered.end());
+      if (in_blocks)
+        entered = this->grid.entered;
+      else
+        EXPECT_EQ(this->grid.entered, entered);
+    }
+  ASSERT_EQ(results[0].size(), results[1].size());
+  for (std::size_t k = 0; k < results[0].size(); ++k)
+    ASSERT_NEAR(results[0][k],
+                results[1][k],
+                1e-12 + 1e-12 * std::abs(results[0][k]))
+      << k;
+  EXPECT_GT(entered.size(), 5u);
 }

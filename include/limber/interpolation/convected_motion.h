@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_convected_motion_h
+#define limber_interpolation_convected_motion_h
+
+#include <limber/interpolation/convected_pack.h>
+
+/**
+ * @file How points with convected domains take velocities from the grid, move
+ * and have their domains follow, a pack at a time.
+ */
+namespace limber
+{
+  /** What is found while points take their velocities, by lanes. */
+  template <int dim>
+  struct VelocityFindings
+  {
+    PointPack<dim> speed_squared{}; // the largest, m^2/s^2
+    PointPack<dim> removed{}; // kinetic energy that FLIP would have kept, J
+  };
+
+
+
+  /**
+   * New velocities of a pack, v = alpha (v + sum N dv) + (1 - alpha) sum N v
+   * with alpha = @p flip_share.
+   */
+  template <int dim, class Fields, class Lanes>
+  __attribute__((always_inline)) inline void
+  take_velocity(const PointView<dim>  &points,
+                const Lanes           &lanes,
+                const Fields          &fields,
+                const double           flip_share,
+                VelocityFindings<dim> &found)
+  {
+    using Layout = NodeLayout<dim>;
+    using Number = PointPack<dim>;
+    Number squared{}, kept_squared{};
+    for (int d = 0; d < dim; ++d)
+      {
+        const Number flip =
+          lanes.load(points.velocity[d]) + fields.value(Layout::increment + d);
+        const Number velocity =
+          flip + (1 - flip_share) * (fields.value(Layout::velocity + d) - flip);
+        lanes.store(velocity, points.velocity[d]);
+        kept_squared += flip * flip;
+        squared += velocity * velocity;
+      }
+    found.speed_squared =
+      larger(found.speed_squared, lanes.only_active(squared));
+    found.removed += 0.5 * lanes.only_active(lanes.load(points.mass)) *
+                     (kept_squared - squared);
+  }
+
+
+
+  /** Carry the domains of a pack along: R += @p step grad v R, step in s. */
+  template <int dim, class Fields, class Lanes>
+  __attribute__((always_inline)) inline void
+  carry_domains(const PointView<dim>                   &points,
+                const Lanes                            &lanes,
+                const Fields                           &fields,
+                const SmallMatrix<dim, PointPack<dim>> &inverse,
+                const double                            step)
+  {
+    using Number = PointPack<dim>;
+    // As they are, which may be more than what counts.
+    SmallMatrix<dim, Number> R, slope;
+#pragma GCC unroll 3
+    for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 3
+      for (int e = 0; e < dim; ++e)
+        {
+          R[d][e] = lanes.load(points.domain[d * dim + e]);
+          slope[d][e] =
+            step * fields.slope(inverse, NodeLayout<dim>::velocity + d, e);
+        }
+#pragma GCC unroll 3
+    for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 3
+      for (int k = 0; k < dim; ++k)
+        {
+          Number edge = R[d][k];
+#pragma GCC unroll 3
+          for (int e = 0; e < dim; ++e)
+            edge += slope[d][e] * R[e][k];
+          lanes.store(edge, points.domain[d * dim + k]);
+        }
+  }
+
+
+
+  /** Whether all cells around a cell take part. */
+  template <int dim>
+  inline bool
+  is_surrounded(const GridView<dim> &grid, const std::uint32_t cell)
+  {
+    const BinView<dim> &bins = grid.bins;
+    if (!bins.one_per_cell)
+      return false;
+    std::array<std::int64_t, 3> begin{}, end{{1, 1, 1}}; // bins
+    for (int d = 0; d < dim; ++d)
+      {
+        const auto bin = static_cast<std::int64_t>(
+          (grid.cells[cell].origin[d] - bins.lower[d]) * bins.inverse_edge[d] +
+          0.5);
+        begin[d] = std::max<std::int64_t>(bin - 1, 0);
+        end[d]   = std::min(bin + 2, bins.n[d]);
+      }
+    bool result = true;
+    for (std::int64_t k = begin[2]; k < end[2]; ++k)
+      for (std::int64_t j = begin[1]; j < end[1]; ++j)
+        {
+          const std::int64_t row = (k * bins.n[1] + j) * bins.n[0];
+          for (std::int64_t i = begin[0]; i < end[0]; ++i)
+            {
+              const std::uint32_t there = bins.table[row + i];
+              result &= there != invalid_cell && grid.occupied[there];
+            }
+        }
+    return result;
+  }
+
+
+
+  /**
+   * Have the cells take part that corners of the points of a pack are in now.
+   * The points were in @p cell.
+   */
+  template <int dim, class Lanes>
+  __attribute__((always_inline)) inline void
+  enter_corners(const PointView<dim> &points,
+                const GridView<dim>  &grid,
+                const std::uint32_t   cell,
+                const Lanes          &lanes)
+  {
+    using Number                      = PointPack<dim>;
+    const CellGeometry<dim> &geometry = grid.cells[cell];
+    auto                     inside = Number{} == Number{}, near = inside;
+#pragma GCC unroll 3
+    for (int d = 0; d < dim; ++d)
+      {
+        Number half{};
+#pragma GCC unroll 3
+        for (int k = 0; k < dim; ++k)
+          half += magnitude(lanes.load(points.domain[d * dim + k]));
+        half *= geometry.inverse_edge[d];
+        const Number xi =
+          (lanes.load(points.position[d]) - geometry.origin[d]) *
+          geometry.inverse_edge[d];
+        inside &= (xi >= half) & (xi + half <= 1.);
+        near &= (xi + 1. >= half) & (xi + half <= 2.);
+      }
+    if (all(inside) || (usually(all(near)) && is_surrounded(grid, cell)))
+      return;
+    enter_corners_one_by_one(points, grid, lanes.first, lanes.first + lanes.n);
+  }
+
+
+
+  /**
+   * Move the points of a pack with the new velocity of the grid over @p step
+   * (s), and have their domains follow. Returns the displacement over the edge
+   * of their cell.
+   */
+  template <int dim, class Fields, class Lanes>
+  __attribute__((always_inline)) inline PointPack<dim>
+  move_domains(const PointView<dim>                   &points,
+               const GridView<dim>                    &grid,
+               const std::uint32_t                     cell,
+               const Lanes                            &lanes,
+               const Fields                           &fields,
+               const SmallMatrix<dim, PointPack<dim>> &inverse,
+               const double                            step)
+  {
+    std::array<PointPack<dim>, dim> shift;
+    for (int d = 0; d < dim; ++d)
+      shift[d] =
+        lanes.only_active(step * fields.value(NodeLayout<dim>::velocity + d));
+    carry_domains<dim>(points, lanes, fields, inverse, step);
+    const auto moved = move_points<dim>(points, grid, cell, lanes, shift);
+    enter_corners<dim>(points, grid, cell, lanes);
+    return moved.displacement;
+  }
+} // namespace limber
+
+#endif
