@@ -194,18 +194,24 @@ namespace limber
     std::array<Piece, n_corners> pieces;
 
   private:
-    /** N_i(x), over the number of corners. */
+    /**
+     * N_i(x), over the number of corners; a place beyond the cell, in a side
+     * of the grid or by round-off, counts in its face. No weight is negative:
+     * nodes that get next to nothing get a positive mass.
+     */
     __attribute__((always_inline)) static Nodes
     weights(const CellGeometry<dim> &cell, const std::array<double, dim> &x)
     {
-      constexpr double share = 1. / n_corners;
-      const auto       xi    = [&](const int d) {
-        return (x[d] - cell.origin[d]) * cell.inverse_edge[d];
+      const auto along = [&](const int d) {
+        return Linear<dim>::weights(
+          d,
+          std::clamp((x[d] - cell.origin[d]) * cell.inverse_edge[d], 0., 1.));
       };
-      Nodes result = share * Linear<dim>::weights(0, xi(0));
+      constexpr double share  = 1. / n_corners;
+      Nodes            result = share * along(0);
 #pragma GCC unroll 8
       for (int d = 1; d < dim; ++d)
-        result *= Linear<dim>::weights(d, xi(d));
+        result *= along(d);
       return result;
     }
 
@@ -235,12 +241,9 @@ namespace limber
 #pragma GCC unroll 8
       for (int c = 0; c < n_corners; ++c)
         {
-          std::array<double, dim> x     = this->corner(c);
-          const std::uint32_t     there = this->cell_at(grid, x);
-#pragma GCC unroll 8
-          for (int d = 0; d < dim; ++d)
-            x[d] = std::clamp(x[d], grid.bins.lower[d], grid.bins.upper(d));
-          int k = 0;
+          const std::array<double, dim> x     = this->corner(c);
+          const std::uint32_t           there = this->cell_at(grid, x);
+          int                           k     = 0;
           while (k < n_pieces && pieces[k].cell != there)
             ++k;
           if (k == n_pieces)

@@ -402,3 +402,52 @@ TYPED_TEST(ConvectedDomains, GiveAndTakeTheSameInBlocksAsOneByOne)
       << k;
   EXPECT_GT(entered.size(), 5u);
 }
+
+
+
+// Corners in the faces of cells, but for round-off: nodes beyond get next to no
+// mass, and never a negative one, and no force without mass.
+TYPED_TEST(ConvectedDomains, GiveNoNegativeMass)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  auto       own    = this->points_with_domains(0.5);
+  const auto points = this->view(own);
+  GiveToGrid what;
+  what.inverse_density = 1;
+  std::vector<double> smallest(points.size, 1);
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      points.pressure[p] = 1;
+      for (int d = 0; d < dim; ++d)
+        for (int k = 0; k < dim; ++k)
+          {
+            const auto  &cell     = this->grid.cells[points.cell[p]];
+            const double to_lower = points.position[d][p] - cell.origin[d];
+            const double to_upper = 1 / cell.inverse_edge[d] - to_lower;
+            const double half     = p % 2 ? to_lower : to_upper;
+            points.domain[d * dim + k][p] =
+              d != k ? 0 : half * (1 + 1e-16 * (double(p % 9) - 4));
+            smallest[p] = std::min(smallest[p], half);
+          }
+    }
+  for (const bool in_blocks : {true, false})
+    for (std::size_t alone = 0; alone < points.size; ++alone)
+      {
+        this->grid.bins.one_per_cell = in_blocks;
+        std::fill(this->grid.nodes.begin(), this->grid.nodes.end(), 0.);
+        for (std::size_t p = 0; p < points.size; ++p)
+          points.mass[p] = p == alone ? 1 : 0;
+        domains_to_grid<dim>(points, this->grid.view(), what);
+        for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+          {
+            const double *const record = &this->grid.nodes[n * Layout::stride];
+            const double        mass   = record[Layout::mass];
+            ASSERT_GE(mass, 0) << in_blocks;
+            for (int d = 0; d < dim; ++d)
+              ASSERT_LE(std::abs(record[Layout::force + d]),
+                        5 * mass / smallest[alone])
+                << in_blocks;
+          }
+      }
+}
