@@ -61,10 +61,17 @@ namespace limber
           StressUpdateOrder::usf)
         return Obstacle{"does not go with 'Method/Stress update = usf'",
                         ", or 'Stress update = musl'"};
-      if (const auto kernel = read_word(method, "Kernel", kernel_words());
-          kernel == KernelKind::quadratic || kernel == KernelKind::cpdi)
-        return Obstacle{"has linear functions",
-                        ", or 'Method/Kernel = linear' or 'auto'"};
+      const auto kernel = read_word(method, "Kernel", kernel_words());
+      if (kernel == KernelKind::cpdi)
+        return Obstacle{"has no convected domains, as no point moves through "
+                        "its cells",
+                        ", or 'Method/Kernel = linear', 'quadratic' or "
+                        "'auto'"};
+      if (kernel == KernelKind::quadratic &&
+          treatment == Projection::assumed_strain)
+        return Obstacle{"has an assumed strain with linear functions only",
+                        ", or 'Method/Kernel = linear', or 'Locking treatment "
+                        "= cell' or 'none'"};
       if (root.list("Bodies").size() > 1)
         return Obstacle{"is for a scene of one body: it would not notice that "
                         "it meets another one",

@@ -188,8 +188,10 @@ namespace limber
         points = section.numbers(entry);
       else
         // With two splines creep some ten times as much with every crossing.
-        points = {grid.kernel == KernelKind::quadratic && !body.is_liquid ? 3. :
-                                                                            2.};
+        points = {grid.kernel == KernelKind::quadratic && !body.is_liquid &&
+                      body.frame == Frame::current ?
+                    3. :
+                    2.};
       for (unsigned int d = 0; d < dim; ++d)
         body.points_per_cell_edge[d] =
           static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
@@ -352,6 +354,10 @@ namespace limber
                 Choice{Projection::none,
                        "'none', as smooth functions do not lock at this "
                        "Poisson's ratio."} :
+        !linear && body.frame == Frame::initial ?
+                Choice{Projection::cell,
+                       "'cell', which does not lock in volume, and nothing "
+                       "crosses cells."} :
         !linear ? Choice{Projection::node,
                          "'node', which does not lock in volume and does not "
                          "jump where points cross cells."} :

@@ -6,11 +6,15 @@ namespace limber
 {
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_spline_sweep(const AnyLaw &any, const StrainProjection &projection)
+  make_spline_sweep(const AnyLaw           &any,
+                    const StrainProjection &projection,
+                    const Frame             frame)
   {
     return std::visit(
       [&](const auto &law) {
-        return make_sweep<Quadratic<dim>>(law, projection);
+        return frame == Frame::initial ?
+                 make_initial_frame_sweep<Quadratic<dim>>(law, projection) :
+                 make_sweep<Quadratic<dim>>(law, projection);
       },
       any);
   }
@@ -18,7 +22,7 @@ namespace limber
 
 
   template std::unique_ptr<const StressUpdate<2>>
-  make_spline_sweep(const AnyLaw &, const StrainProjection &);
+  make_spline_sweep(const AnyLaw &, const StrainProjection &, Frame);
   template std::unique_ptr<const StressUpdate<3>>
-  make_spline_sweep(const AnyLaw &, const StrainProjection &);
+  make_spline_sweep(const AnyLaw &, const StrainProjection &, Frame);
 } // namespace limber

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/stress/initial_frame_sweep.h>
 #include <limber/stress/make_sweep.h>
 
 #include <stdexcept>
@@ -58,33 +57,6 @@ namespace limber
         return kind;
       return averages_around_nodes(kind) ? Projection::node : Projection::cell;
     }
-
-
-
-    template <int dim, class Law>
-    std::unique_ptr<const StressUpdate<dim>>
-    make_initial_frame_sweep(
-      const Law                               &law,
-      [[maybe_unused]] const StrainProjection &projection)
-    {
-      if constexpr (Law::is_elastic)
-        switch (projection.kind)
-          {
-            case Projection::none:
-              return std::make_unique<
-                InitialFrameSweep<dim, Law, Projection::none>>(law, projection);
-            case Projection::cell:
-              return std::make_unique<
-                InitialFrameSweep<dim, Law, Projection::cell>>(law, projection);
-            case Projection::assumed_strain:
-              return std::make_unique<
-                InitialFrameSweep<dim, Law, Projection::assumed_strain>>(
-                law, projection);
-            default:
-              break;
-          }
-      throw std::logic_error("law or projection without an initial frame");
-    }
   } // namespace
 
 
@@ -112,10 +84,10 @@ namespace limber
       const Law  law(own);
       const auto projection =
         strain_projection(law, projection_for<Law>(kind), response);
-      if (frame == Frame::initial)
-        result = make_initial_frame_sweep<dim>(law, projection);
-      else if (kernel == KernelKind::quadratic)
-        result = make_spline_sweep<dim>(law, projection);
+      if (kernel == KernelKind::quadratic)
+        result = make_spline_sweep<dim>(law, projection, frame);
+      else if (frame == Frame::initial)
+        result = make_initial_frame_sweep<Linear<dim>>(law, projection);
       else if (kernel == KernelKind::cpdi)
         result = make_convected_sweep<dim>(law, projection);
       else

@@ -186,14 +186,9 @@ namespace limber
               domains.template give<Remap, true, false>(given, {});
             }
           if (what.move != 0)
-            displacement = larger(displacement,
-                                  move_domains<dim>(points,
-                                                    grid,
-                                                    batch.cell,
-                                                    lanes,
-                                                    fields,
-                                                    domains.inverse,
-                                                    what.move));
+            displacement =
+              larger(displacement,
+                     move_domains(domains, lanes, fields, what.move));
         });
     });
     VelocitySummary result;

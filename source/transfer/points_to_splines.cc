@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/cell_means.h>
 #include <limber/interpolation/nodal_means.h>
+#include <limber/interpolation/pulled_back_stress.h>
 #include <limber/transfer/give_to_splines.h>
 #include <limber/transfer/points_to_splines.h>
 
@@ -18,81 +19,94 @@ namespace limber
 
 
 
+    template <int dim>
+    using StressSums = SmallMatrix<dim, PointPack<dim>>;
+
+
+
     /**
      * Stress at the points of a body for forces on nodes: B^T of the
      * projection (strain_operator.h). What a projection averages acts on the
      * means of the gradients, and is summed up over a batch first.
      */
-    template <Projection projection, bool has_deviator>
+    template <Projection kind, bool has_deviator>
     struct StressForce
     {
-      static constexpr bool       any      = true;
-      static constexpr Projection kind     = projection;
-      static constexpr bool       deviator = has_deviator;
-
+      static constexpr bool any           = true;
       static constexpr bool mean_pressure = averages_volume_in_cells(kind);
       static constexpr bool mean_shear =
-        deviator && averages_shear_in_cells(kind);
+        has_deviator && averages_shear_in_cells(kind);
       static constexpr bool mean_normals =
-        deviator && kind == Projection::cell_full;
+        has_deviator && kind == Projection::cell_full;
       static constexpr bool has_means = mean_pressure || mean_shear;
+
+      /** V times stress of a pack, J: what acts at points, and on means. */
+      template <int dim, class Lanes>
+      __attribute__((always_inline)) static SmallMatrix<dim, PointPack<dim>>
+      at_points(const PointView<dim>                  &points,
+                const CellGeometry<dim>               &cell,
+                const Lanes                           &lanes,
+                const std::array<PointPack<dim>, dim> &xi,
+                const GiveToGrid                      &what,
+                StressSums<dim>                       &on_means)
+      {
+        using Number = PointPack<dim>;
+        const Number V =
+          lanes.only_active(what.inverse_density * lanes.load(points.mass));
+        SmallMatrix<dim, Number> result;
+        for (auto &row : result)
+          set_zero(row);
+
+        if constexpr (has_deviator)
+          {
+            const auto s = stress_deviator<dim>(points, lanes);
+            for (int d = 0; d < dim; ++d)
+              for (int e = 0; e < dim; ++e)
+                if (d == e ? mean_normals : mean_shear)
+                  on_means[d][e] += V * s[d][e];
+                else
+                  result[d][e] = V * s[d][e];
+          }
+        Number p;
+        if constexpr (averages_around_nodes(kind))
+          p = V * NodalMean<dim, kind>(what.nodal_pressure, cell)
+                    .template value<Number>(xi);
+        else
+          p = V * lanes.load(points.pressure);
+        for (int d = 0; d < dim; ++d)
+          (mean_pressure ? on_means : result)[d][d] -= p;
+        return result;
+      }
     };
 
 
 
-    template <int dim>
-    using StressSums =
-      std::array<std::array<PointPack<dim>, dim>, dim>; // t_de with e <= d
-
-
-
-    /** V times stress of a pack: what acts at points, and that on means. */
-    template <class Force, int dim, class Lanes>
-    __attribute__((always_inline)) inline void
-    split_stress(const PointView<dim>                  &points,
-                 const Lanes                           &lanes,
-                 const std::array<PointPack<dim>, dim> &xi,
-                 const NodalMean<dim, Force::kind>     &nodal,
-                 const double                           inverse_density,
-                 StressSums<dim>                       &at_points,
-                 StressSums<dim>                       &on_means)
+    /** In the frame of the initial configuration: V times P. */
+    template <bool finite_strain>
+    struct PulledBackForce
     {
-      using Number = PointPack<dim>;
-      const Number V =
-        lanes.only_active(inverse_density * lanes.load(points.mass));
-      for (auto &row : at_points)
-        set_zero(row);
+      static constexpr bool any       = true;
+      static constexpr bool has_means = false;
 
-      if constexpr (Force::deviator)
-        {
-          const auto s = [&](const int k) {
-            return V * lanes.load(points.deviator[k]);
-          };
-          StressSums<dim> t;
-          t[0][0] = s(0);
-          t[1][1] = s(1);
-          t[1][0] = s(2);
-          if constexpr (dim == 3)
-            {
-              t[2][2] = -(t[0][0] + t[1][1]);
-              t[2][1] = s(3);
-              t[2][0] = s(4);
-            }
-          for (int d = 0; d < dim; ++d)
-            for (int e = 0; e <= d; ++e)
-              if (d == e ? Force::mean_normals : Force::mean_shear)
-                on_means[d][e] += t[d][e];
-              else
-                at_points[d][e] = t[d][e];
-        }
-      Number p;
-      if constexpr (averages_around_nodes(Force::kind))
-        p = V * nodal.template value<Number>(xi);
-      else
-        p = V * lanes.load(points.pressure);
-      for (int d = 0; d < dim; ++d)
-        (Force::mean_pressure ? on_means : at_points)[d][d] -= p;
-    }
+      template <int dim, class Lanes>
+      __attribute__((always_inline)) static SmallMatrix<dim, PointPack<dim>>
+      at_points(const PointView<dim> &points,
+                const CellGeometry<dim> &,
+                const Lanes &lanes,
+                const std::array<PointPack<dim>, dim> &,
+                const GiveToGrid &what,
+                StressSums<dim> &)
+      {
+        const auto V =
+          lanes.only_active(what.inverse_density * lanes.load(points.mass));
+        auto result = piola_kirchhoff_stress<dim, finite_strain>(
+          points, lanes, deformation_gradient<dim>(points, lanes));
+        for (auto &row : result)
+          for (auto &entry : row)
+            entry *= V;
+        return result;
+      }
+    };
 
 
 
@@ -109,15 +123,9 @@ namespace limber
       using Record = typename Sums::Record;
       std::array<Record, dim> columns{};
       for (int d = 0; d < dim; ++d)
-        for (int e = 0; e <= d; ++e)
-          {
-            const double t = sum(stress[d][e]);
-            columns[e][Sums::lane_of(NodeLayout<dim>::force + d)] -=
-              t * cell.inverse_edge[e];
-            if (d != e)
-              columns[d][Sums::lane_of(NodeLayout<dim>::force + e)] -=
-                t * cell.inverse_edge[d];
-          }
+        for (int e = 0; e < dim; ++e)
+          columns[e][Sums::lane_of(NodeLayout<dim>::force + d)] -=
+            sum(stress[d][e]) * cell.inverse_edge[e];
       std::array<Record, Basis::n_nodes> on_coefficients;
       set_zero(on_coefficients);
 #pragma GCC unroll 27
@@ -176,16 +184,8 @@ namespace limber
                                            to_nodes);
               if constexpr (Force::any)
                 {
-                  const NodalMean<dim, Force::kind> nodal(what.nodal_pressure,
-                                                          cell);
-                  StressSums<dim>                   t;
-                  split_stress<Force, dim>(points,
-                                           lanes,
-                                           xi,
-                                           nodal,
-                                           what.inverse_density,
-                                           t,
-                                           on_means);
+                  const auto t = Force::template at_points<dim>(
+                    points, cell, lanes, xi, what, on_means);
 #pragma GCC unroll 3
                   for (int e = 0; e < dim; ++e)
                     {
@@ -193,8 +193,7 @@ namespace limber
                       set_zero(slots);
 #pragma GCC unroll 3
                       for (int d = 0; d < dim; ++d)
-                        slots[Sums::lane_of(Layout::force + d)] =
-                          d < e ? -t[e][d] : -t[d][e];
+                        slots[Sums::lane_of(Layout::force + d)] = -t[d][e];
                       const auto records = records_of<Record>(slots);
                       for (int p = 0; p < lanes.n; ++p)
                         to_nodes.add(weights.gradient[e], p, records[p]);
@@ -280,6 +279,16 @@ namespace limber
       return what.momentum ?
                choose_sums<dim, NoForce>(points, grid, what, sums) :
                0;
+    if (what.initial_frame)
+      return what.initial_frame->finite_strain ?
+               choose_sums<dim, PulledBackForce<true>>(points,
+                                                       grid,
+                                                       what,
+                                                       sums) :
+               choose_sums<dim, PulledBackForce<false>>(points,
+                                                        grid,
+                                                        what,
+                                                        sums);
     return points.deviator[0] != nullptr ?
              choose_projection<dim, true>(points, grid, what, sums) :
              choose_projection<dim, false>(points, grid, what, sums);

@@ -120,7 +120,7 @@ namespace limber
     {
       std::vector<dealii::Point<dim>> result(bodies[body]->points.size());
       for (std::size_t p = 0; p < result.size(); ++p)
-        result[bodies[body]->points.id(p)] = position(p, body);
+        result.at(bodies[body]->points.id(p)) = position(p, body);
       return result;
     }
 

@@ -56,13 +56,13 @@ namespace limber
   /** Carry the domains of a pack along: R += @p step grad v R, step in s. */
   template <int dim, class Fields, class Lanes>
   __attribute__((always_inline)) inline void
-  carry_domains(const PointView<dim>                   &points,
-                const Lanes                            &lanes,
-                const Fields                           &fields,
-                const SmallMatrix<dim, PointPack<dim>> &inverse,
-                const double                            step)
+  carry_domains(const ConvectedPack<dim> &domains,
+                const Lanes              &lanes,
+                const Fields             &fields,
+                const double              step)
   {
-    using Number = PointPack<dim>;
+    using Number                 = PointPack<dim>;
+    const PointView<dim> &points = domains.points;
     // As they are, which may be more than what counts.
     SmallMatrix<dim, Number> R, slope;
 #pragma GCC unroll 3
@@ -72,7 +72,8 @@ namespace limber
         {
           R[d][e] = lanes.load(points.domain[d * dim + e]);
           slope[d][e] =
-            step * fields.slope(inverse, NodeLayout<dim>::velocity + d, e);
+            step *
+            fields.slope(domains.inverse, NodeLayout<dim>::velocity + d, e);
         }
 #pragma GCC unroll 3
     for (int d = 0; d < dim; ++d)
@@ -164,21 +165,21 @@ namespace limber
    */
   template <int dim, class Fields, class Lanes>
   __attribute__((always_inline)) inline PointPack<dim>
-  move_domains(const PointView<dim>                   &points,
-               const GridView<dim>                    &grid,
-               const std::uint32_t                     cell,
-               const Lanes                            &lanes,
-               const Fields                           &fields,
-               const SmallMatrix<dim, PointPack<dim>> &inverse,
-               const double                            step)
+  move_domains(const ConvectedPack<dim> &domains,
+               const Lanes              &lanes,
+               const Fields             &fields,
+               const double              step)
   {
     std::array<PointPack<dim>, dim> shift;
     for (int d = 0; d < dim; ++d)
       shift[d] =
         lanes.only_active(step * fields.value(NodeLayout<dim>::velocity + d));
-    carry_domains<dim>(points, lanes, fields, inverse, step);
-    const auto moved = move_points<dim>(points, grid, cell, lanes, shift);
-    enter_corners<dim>(points, grid, cell, lanes);
+    carry_domains(domains, lanes, fields, step);
+    const PointView<dim> &points = domains.points;
+    const GridView<dim>  &grid   = domains.grid;
+    const auto            moved =
+      move_points<dim>(points, grid, domains.cell, lanes, shift);
+    enter_corners<dim>(points, grid, domains.cell, lanes);
     return moved.displacement;
   }
 } // namespace limber

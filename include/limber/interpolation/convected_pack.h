@@ -62,6 +62,10 @@ namespace limber
         invert_one_by_one();
     }
 
+    const PointView<dim> &points;
+    const GridView<dim>  &grid;
+    const std::uint32_t   cell;
+
     SmallMatrix<dim, Number> inverse; // R^-1, 1/m, of R as it counts
 
     /** u and u,k (convected.h) of fields in the slots of the window. */
@@ -366,12 +370,9 @@ namespace limber
         }
     }
 
-    const PointView<dim> &points;
-    const GridView<dim>  &grid;
-    const std::uint32_t   cell;
-    const std::size_t     first;
-    const int             n;
-    bool                  fits; // every domain, in a block
+    const std::size_t first;
+    const int         n;
+    bool              fits; // every domain, in a block
 
     // Of each point the records of the nodes of the cells of its block, and
     // where in it the domain ends, in cells

@@ -111,14 +111,9 @@ namespace limber
             measure_waves,
             found);
           if (what.move > 0)
-            displacement = larger(displacement,
-                                  move_domains<dim>(points,
-                                                    grid,
-                                                    batch.cell,
-                                                    lanes,
-                                                    fields,
-                                                    domains.inverse,
-                                                    what.move));
+            displacement =
+              larger(displacement,
+                     move_domains(domains, lanes, fields, what.move));
         });
       });
       StressSummary result = this->summary(found, measure_waves);

@@ -3,6 +3,7 @@
 #define limber_stress_initial_frame_sweep_h
 
 #include <limber/interpolation/assumed_deformation.h>
+#include <limber/interpolation/basis.h>
 #include <limber/stress/law_on_points.h>
 
 namespace limber
@@ -15,13 +16,15 @@ namespace limber
    *
    * With the projection 'cell' the volumetric part of the stress follows from
    * the mean of the volume ratio over the points of the cell, with
-   * 'assumed_strain' all of it from the F_a of assumed_deformation.h. The
-   * points never leave their cell, so they always are one batch, on one rank.
+   * 'assumed_strain', which is that of linear functions, all of it from the F_a
+   * of assumed_deformation.h. The points never leave their cell, so they always
+   * are one batch, on one rank.
    */
-  template <int dim, class Law, Projection kind>
-  class InitialFrameSweep final : public LawOnPoints<dim, Law>
+  template <class Basis, class Law, Projection kind>
+  class InitialFrameSweep final : public LawOnPoints<Basis::dim, Law>
   {
-    using Base = LawOnPoints<dim, Law>;
+    static constexpr int dim = Basis::dim;
+    using Base               = LawOnPoints<dim, Law>;
     using Base::law;
     using Base::store_state;
     using Number = PointPack<dim>;
@@ -44,7 +47,7 @@ namespace limber
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
         // new velocity, then the re-mapped one
-        const NodalCoefficients<Linear<dim>, Layout::velocity, 2 * dim> nodal(
+        const NodalCoefficients<Basis, Layout::velocity, 2 * dim> nodal(
           grid, batch.cell);
         const auto velocity = nodal.field(what.remapped ? dim : 0);
         const auto deformed = [&](const auto &lanes) {
@@ -144,8 +147,7 @@ namespace limber
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          const auto slope =
-            Linear<dim>::template gradient<Number>(velocity(d), xi);
+          const auto slope = Basis::template gradient<Number>(velocity(d), xi);
 #pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
             {
@@ -226,8 +228,7 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         lanes.store(lanes.load(points.position[d]) +
                       step *
-                        Linear<dim>::template value<Number>(nodal.component(d),
-                                                            xi),
+                        Basis::template value<Number>(nodal.component(d), xi),
                     points.position[d]);
     }
 

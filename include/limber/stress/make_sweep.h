@@ -3,6 +3,7 @@
 #define limber_stress_make_sweep_h
 
 #include <limber/materials/law_list.h>
+#include <limber/stress/initial_frame_sweep.h>
 #include <limber/stress/law_sweep.h>
 
 #include <memory>
@@ -55,10 +56,43 @@ namespace limber
 
 
 
-  /** The same for splines and any law, in a translation unit of its own. */
+  /** Those in the frame of the initial configuration, of elastic laws. */
+  template <class Basis, class Law>
+  std::unique_ptr<const StressUpdate<Basis::dim>>
+  make_initial_frame_sweep(const Law                               &law,
+                           [[maybe_unused]] const StrainProjection &projection)
+  {
+    const auto with = [&](const auto kind) {
+      using Sweep = InitialFrameSweep<Basis, Law, decltype(kind)::value>;
+      return std::unique_ptr<const StressUpdate<Basis::dim>>(
+        std::make_unique<Sweep>(law, projection));
+    };
+    using P = Projection;
+    if constexpr (Law::is_elastic)
+      switch (projection.kind)
+        {
+          case P::none:
+            return with(std::integral_constant<P, P::none>());
+          case P::cell:
+            return with(std::integral_constant<P, P::cell>());
+          case P::assumed_strain:
+            if constexpr (Basis::n_nodes == 1 << Basis::dim)
+              return with(std::integral_constant<P, P::assumed_strain>());
+            break;
+          default:
+            break;
+        }
+    throw std::logic_error("law or projection without an initial frame");
+  }
+
+
+
+  /** All with splines, of any law, in a translation unit of their own. */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_spline_sweep(const AnyLaw &law, const StrainProjection &projection);
+  make_spline_sweep(const AnyLaw           &law,
+                    const StrainProjection &projection,
+                    Frame                   frame);
 
   /** The same for points with convected domains. */
   template <int dim>

@@ -299,6 +299,17 @@ TEST(Scenes, AutomaticFrameAndKernelKeepSolidsFromCreeping)
   EXPECT_EQ(held.bodies[0].points_per_cell_edge[0], 2u);
   EXPECT_EQ(held.bodies[0].treatment, Projection::assumed_strain);
 
+  // Splines as well, which need no third point where nothing crosses cells.
+  const auto splines = beam({"Method/Kernel=quadratic"});
+  EXPECT_EQ(splines.bodies[0].frame, Frame::initial);
+  EXPECT_EQ(splines.bodies[0].points_per_cell_edge[0], 2u);
+  EXPECT_EQ(splines.bodies[0].treatment, Projection::cell);
+  EXPECT_EQ(beam({"Method/Kernel=quadratic",
+                  "Body beam/Neo hookean/Poisson's ratio=0.3"})
+              .bodies[0]
+              .treatment,
+            Projection::none);
+
   // Held or not, it meets nothing.
   EXPECT_EQ(beam({"Boundaries/left=free"}).bodies[0].frame, Frame::initial);
   // It may lift, or fly against a side.

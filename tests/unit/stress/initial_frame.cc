@@ -14,12 +14,16 @@ using namespace limber::testing_support;
 
 namespace
 {
-  template <class LawType, int dimension, Projection projection_kind>
+  template <class LawType,
+            int        dimension,
+            Projection projection_kind,
+            KernelKind kernel_kind = KernelKind::linear>
   struct FrameCase
   {
-    using Law                        = LawType;
-    static constexpr int        dim  = dimension;
-    static constexpr Projection kind = projection_kind;
+    using Law                          = LawType;
+    static constexpr int        dim    = dimension;
+    static constexpr Projection kind   = projection_kind;
+    static constexpr KernelKind kernel = kernel_kind;
   };
 
 
@@ -32,7 +36,8 @@ namespace
     static constexpr int dim = Case::dim;
     using Law                = typename Case::Law;
     using Layout             = NodeLayout<dim>;
-    using Sweep              = InitialFrameSweep<dim, Law, Case::kind>;
+    using Grid               = SmallGrid<dim, Case::kernel>;
+    using Sweep = InitialFrameSweep<typename Grid::Basis, Law, Case::kind>;
 
     InitialFrame()
       : cell_of_point(some_cells())
@@ -124,7 +129,7 @@ namespace
     static constexpr double amplitude = Law::finite_strain ? 0.03 : 1;
 
     Random                           random;
-    SmallGrid<dim>                   grid;
+    Grid                             grid;
     std::vector<std::uint32_t>       cell_of_point;
     SmallPoints<dim>                 own;
     std::vector<std::vector<double>> deformation, places;
@@ -157,6 +162,9 @@ namespace
     }
   };
 
+  template <class Law, int dim, Projection kind>
+  using OnSplines = FrameCase<Law, dim, kind, KernelKind::quadratic>;
+
   using Cases =
     testing::Types<FrameCase<LinearElastic, 2, Projection::none>,
                    FrameCase<LinearElastic, 2, Projection::cell>,
@@ -169,7 +177,13 @@ namespace
                    FrameCase<NeoHookean, 2, Projection::assumed_strain>,
                    FrameCase<NeoHookean, 3, Projection::none>,
                    FrameCase<NeoHookean, 3, Projection::cell>,
-                   FrameCase<NeoHookean, 3, Projection::assumed_strain>>;
+                   FrameCase<NeoHookean, 3, Projection::assumed_strain>,
+                   OnSplines<LinearElastic, 2, Projection::none>,
+                   OnSplines<LinearElastic, 3, Projection::cell>,
+                   OnSplines<NeoHookean, 2, Projection::none>,
+                   OnSplines<NeoHookean, 2, Projection::cell>,
+                   OnSplines<NeoHookean, 3, Projection::none>,
+                   OnSplines<NeoHookean, 3, Projection::cell>>;
   TYPED_TEST_SUITE(InitialFrame, Cases);
 } // namespace
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -46,25 +47,16 @@ namespace
       end
       set Placement = fitted
       set Initial velocity = 0.5; 0
-      set Material = neo hookean
-      subsection Neo hookean
-        set Density = 1
-        set Young's modulus = 1000
-        set Poisson's ratio = 0.3
-      end
+)" + rubber("1000", "0.3") +
+           R"(
       set Locking treatment = none
     end
     subsection Grid
       set Upper corner = 2.5, 1
       set Cells = 50, 20
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end
-    subsection Loads
+)" + free_sides +
+           R"(    subsection Loads
       set Face loads = pull, hold
       )" + load("pull", "right", 1) +
            load("hold", "left", -1) + R"(

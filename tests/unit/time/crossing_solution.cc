@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -37,12 +38,8 @@ namespace
       end
       set Points per cell edge = 3
       set Initial velocity = 0.05*pi*sin(2*pi*x); -0.05*pi*sin(2*pi*y)
-      set Material = neo hookean
-      subsection Neo hookean
-        set Density = 1
-        set Young's modulus = 1
-        set Poisson's ratio = 0.3
-      end
+)" + rubber("1", "0.3") +
+           R"(
       set Frame = current
       set Locking treatment = none
     end

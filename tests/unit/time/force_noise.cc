@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -49,13 +50,8 @@ namespace
       set Upper corner = 34, 24
       set Cells = 34, 24
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end
-    subsection Method
+)" + free_sides +
+           R"(    subsection Method
       set Transfer = flip
       set Stress update = musl
     end)";

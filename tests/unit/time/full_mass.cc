@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -31,12 +32,7 @@ namespace
       end
       set Constants = U = 0, V = 0
       set Initial velocity = U + 0.02*sin(0.5*x)*cos(0.3*y); V + 0.02*cos(0.4*x + 0.7*y)
-      set Material = neo hookean
-      subsection Neo hookean
-        set Density = 1
-        set Young's modulus = 0.04
-        set Poisson's ratio = 0.3
-      end
+)" + rubber("0.04", "0.3") + R"(
       set Frame = current
       set Locking treatment = none
     end
@@ -44,12 +40,7 @@ namespace
       set Upper corner = 40, 24
       set Cells = 40, 24
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end)";
+)" + free_sides;
 
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 /**
@@ -79,12 +80,7 @@ namespace
       set Upper corner = 20, 12
       set Cells = 20, 12
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end)";
+)" + free_sides;
 
   constexpr double modulus = 1e3; // Pa, of all three laws
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -28,12 +29,7 @@ namespace
       set Points per cell edge = 3
       set Constants = w = 0.05
       set Initial velocity = w*(10/(2*pi) - y + 1.53); w*(0.3/(2*pi) + x - 1.5)
-      set Material = neo hookean
-      subsection Neo hookean
-        set Density = 1
-        set Young's modulus = 1
-        set Poisson's ratio = 0.45
-      end
+)" + rubber("1", "0.45") + R"(
       set Frame = current
       set Locking treatment = none
     end
@@ -41,13 +37,7 @@ namespace
       set Upper corner = 13, 3.4
       set Cells = 130, 34
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end
-    subsection Method
+)" + free_sides + R"(    subsection Method
       set Kernel = quadratic
       set Transfer = flip
       set Stress update = usavg

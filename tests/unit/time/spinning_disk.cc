@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -40,12 +41,8 @@ namespace
       end
       set Points per cell edge = 2
       set Initial velocity = -0.2*(y - 1.5) + 0.031; 0.2*(x - 1.5) + 0.029
-      set Material = neo hookean
-      subsection Neo hookean
-        set Density = 1
-        set Young's modulus = 1
-        set Poisson's ratio = 0.3
-      end
+)" + rubber("1", "0.3") +
+           R"(
       set Frame = current
       set Locking treatment = none
     end
@@ -54,13 +51,8 @@ namespace
       set Cells = )" +
            cells + ", " + cells + R"(
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end
-    subsection Method
+)" + free_sides +
+           R"(    subsection Method
       set Kernel = quadratic
       set Transfer order = 4
     end)";

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <gtest/gtest.h>
+#include <support/scene_parts.h>
 #include <support/scene_run.h>
 
 #include <cmath>
@@ -49,12 +50,8 @@ namespace
         set Centre = 0, 0
         set Radius = 1
       end
-      set Material = neo hookean
-      subsection Neo hookean
-        set Density = 1
-        set Young's modulus = 1
-        set Poisson's ratio = 0.3
-      end
+)" + rubber("1", "0.3") +
+           R"(
       set Locking treatment = none
     end
     subsection Grid
@@ -63,13 +60,8 @@ namespace
       set Cells = )" +
            cells + ", " + cells + R"(
     end
-    subsection Boundaries
-      set left = free
-      set right = free
-      set bottom = free
-      set top = free
-    end
-    subsection Method
+)" + free_sides +
+           R"(    subsection Method
       set Transfer order = 4
     end)";
   }
