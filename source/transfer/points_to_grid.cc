@@ -110,38 +110,59 @@ namespace limber
          const GiveToGrid        &what,
          const CellSums<dim> *)
       {
+        using Number = PointPack<dim>;
         AssumedDeformation<dim, finite_strain> assumed(
           what.initial_frame->projection);
-        for_each_pack<dim>(batch, [&](const auto &lanes) {
-          assumed.add(deformation_gradient<dim>(points, lanes),
-                      lanes.natural(points, cell),
-                      lanes.only_active(lanes.load(points.mass)));
-        });
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            assumed.add(deformation_gradient<dim>(points, lanes),
+                        lanes.natural(points, cell),
+                        lanes.only_active(lanes.load(points.mass)));
+          });
         assumed.finish();
 
-        AssumedDeformationStress<dim, finite_strain> stress(cell, assumed);
-        const auto for_all = [&](const auto &add) {
-          for_each_pack<dim>(batch, [&](const auto &lanes) {
-            const auto xi = lanes.natural(points, cell);
-            const auto F  = deformation_gradient<dim>(points, lanes);
-            const auto P =
-              assumed.turned_back(piola_kirchhoff_stress<dim, finite_strain>(
-                points, lanes, assumed.evaluate(F, xi)));
-            add(P,
-                F,
-                xi,
-                what.inverse_density *
-                  lanes.only_active(lanes.load(points.mass)));
-          });
+        // Points are met twice. The first packs, mostly all there are, are
+        // kept in between.
+        struct KeptPack
+        {
+          SmallMatrix<dim, Number> F, P;
+          std::array<Number, dim>  xi;
+          Number                   V;
         };
-        for_all(
-          [&](const auto &P, const auto &, const auto &xi, const auto &V) {
-            stress.add_to_means(P, xi, V);
+        constexpr std::size_t        n_kept = 4;
+        std::array<KeptPack, n_kept> kept;
+        KeptPack                     other;
+        const auto stressed = [&](const auto &lanes, KeptPack &pack)
+          __attribute__((always_inline))
+        {
+          pack.xi = lanes.natural(points, cell);
+          pack.F  = deformation_gradient<dim>(points, lanes);
+          pack.P =
+            assumed.turned_back(piola_kirchhoff_stress<dim, finite_strain>(
+              points, lanes, assumed.evaluate(pack.F, pack.xi)));
+          pack.V =
+            what.inverse_density * lanes.only_active(lanes.load(points.mass));
+        };
+
+        AssumedDeformationStress<dim, finite_strain> stress(cell, assumed);
+        std::size_t                                  n = 0;
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            KeptPack &pack = n < n_kept ? kept[n] : other;
+            ++n;
+            stressed(lanes, pack);
+            stress.add_to_means(pack.P, pack.xi, pack.V);
           });
         stress.finish_means();
-        for_all(
-          [&](const auto &P, const auto &F, const auto &xi, const auto &V) {
-            stress.add(P, F, xi, V);
+        n = 0;
+        for_each_pack<dim>(
+          batch, [&](const auto &lanes) __attribute__((always_inline)) {
+            const bool is_kept = n < n_kept;
+            KeptPack  &pack    = is_kept ? kept[n] : other;
+            ++n;
+            if (rarely(!is_kept))
+              stressed(lanes, pack);
+            stress.add(pack.P, pack.F, pack.xi, pack.V);
           });
         return stress.forces();
       }

@@ -206,7 +206,10 @@ namespace limber
   {
 #pragma GCC unroll 27
     for (Number &value : values)
-      value = Number{};
+      if constexpr (std::is_class_v<Number>)
+        set_zero(value);
+      else
+        value = Number{};
   }
 
 
@@ -447,6 +450,29 @@ namespace limber
       return four(0);
     else
       return internal::fold<w, 4>(four(0), four(4));
+  }
+
+
+
+  /** The sums over the lanes of any number of packs. */
+  template <class Number, std::size_t n>
+  __attribute__((always_inline)) inline std::array<double, n>
+  all_sums(const std::array<Number, n> &packs)
+  {
+    constexpr std::size_t width = pack_width<Number>;
+    std::array<double, n> result;
+#pragma GCC unroll 8
+    for (std::size_t first = 0; first < n; first += width)
+      {
+        std::array<Number, width> some;
+        set_zero(some);
+        for (std::size_t i = first; i < n && i < first + width; ++i)
+          some[i - first] = packs[i];
+        const Number sums = sums_over_lanes(some);
+        for (std::size_t i = first; i < n && i < first + width; ++i)
+          result[i] = sums[i - first];
+      }
+    return result;
   }
 
 

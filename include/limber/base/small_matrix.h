@@ -119,16 +119,17 @@ namespace limber
         for (unsigned int step = 0; step < most_steps; ++step)
           {
             const auto   cof    = cofactor<dim>(R);
-            const double det    = determinant<dim>(R);
+            const double half   = 0.5 / determinant<dim>(R);
             double       change = 0;
             for (int i = 0; i < dim; ++i)
               for (int j = 0; j < dim; ++j)
                 {
-                  const double next = 0.5 * (R[i][j] + cof[i][j] / det);
+                  const double next = 0.5 * R[i][j] + half * cof[i][j];
                   change += std::abs(next - R[i][j]);
                   R[i][j] = next;
                 }
-            if (!(change > 1e-14))
+            // what is left is of the order of its square
+            if (!(change > 1e-8))
               break;
           }
         return R;

@@ -45,58 +45,57 @@ namespace limber
     explicit AssumedDeformation(const StrainProjection &projection)
       : own(dim == 2 ? projection.own : projection.trilinear_own)
       , mate(dim == 2 ? projection.mate : projection.trilinear_mate)
-    {}
+    {
+      set_zero(sums);
+    }
 
     /** Points with F at natural places xi; @p mass zero in idle lanes. */
     __attribute__((always_inline)) void
     add(const Matrix &F, const std::array<Number, dim> &xi, const Number &mass)
     {
-      sums.mass += mass;
+      sums[0] += mass;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          sums.place[d] += mass * xi[d];
+          sums[place_sum(d)] += mass * xi[d];
 #pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
-            sums.F[d][e] += mass * F[d][e];
+            sums[F_sum(d, e)] += mass * F[d][e];
           if constexpr (dim == 3)
             {
               const Number moment = mass * xi[d];
-              sums.square[d] += moment * xi[d];
+              sums[square_sum(d)] += moment * xi[d];
 #pragma GCC unroll 8
               for (int c = 0; c < dim; ++c)
 #pragma GCC unroll 8
                 for (int e = 0; e < dim; ++e)
                   if (e != d)
-                    sums.slope[d][c][e] += moment * F[c][e];
+                    sums[slope_sum(d, c, e)] += moment * F[c][e];
             }
         }
     }
 
     /** When all points of the cell have been added. */
-    void
+    __attribute__((always_inline)) void
     finish()
     {
-      const double inverse_mass = 1 / sum(sums.mass);
+      const auto   total        = all_sums(sums);
+      const double inverse_mass = 1 / total[0];
       Mean         mean;
       for (int d = 0; d < dim; ++d)
         {
-          centroid[d] = sum(sums.place[d]) * inverse_mass;
+          centroid[d] = total[place_sum(d)] * inverse_mass;
           for (int e = 0; e < dim; ++e)
-            mean[d][e] = sum(sums.F[d][e]) * inverse_mass;
+            mean[d][e] = total[F_sum(d, e)] * inverse_mass;
         }
       if constexpr (finite_strain)
         rotation = rotation_of<dim>(mean);
-      else
-        for (int d = 0; d < dim; ++d)
-          for (int e = 0; e < dim; ++e)
-            rotation[d][e] = d == e;
-      stretch = transpose_times<dim>(rotation, mean);
+      stretch = turned_back(mean);
       if constexpr (dim == 3)
         for (int f = 0; f < dim; ++f)
           {
             const double variance =
-              sum(sums.square[f]) * inverse_mass - centroid[f] * centroid[f];
+              total[square_sum(f)] * inverse_mass - centroid[f] * centroid[f];
             // points in one plane do not see a torsion of the cell
             inverse_variance[f] = variance > 1e-12 ? 1 / variance : 0;
             for (int e = 0; e < dim; ++e)
@@ -104,29 +103,40 @@ namespace limber
                 {
                   std::array<double, dim> slope;
                   for (int c = 0; c < dim; ++c)
-                    slope[c] = sum(sums.slope[f][c][e]) * inverse_mass -
+                    slope[c] = total[slope_sum(f, c, e)] * inverse_mass -
                                centroid[f] * mean[c][e];
-                  const int d   = 3 - e - f;
-                  torsion[d][e] = 0;
-                  for (int c = 0; c < dim; ++c)
-                    torsion[d][e] +=
-                      inverse_variance[f] * rotation[c][d] * slope[c];
+                  const int d = 3 - e - f;
+                  double    turned;
+                  if constexpr (finite_strain)
+                    turned = rotation[0][d] * slope[0] +
+                             rotation[1][d] * slope[1] +
+                             rotation[2][d] * slope[2];
+                  else
+                    turned = slope[d];
+                  torsion[d][e] = inverse_variance[f] * turned;
                 }
           }
     }
 
-    /** R^T F */
-    __attribute__((always_inline)) Matrix
-    turned_back(const Matrix &F) const
+    /** R^T F, of packs or means */
+    template <class Any>
+    __attribute__((always_inline)) Any
+    turned_back(const Any &F) const
     {
-      return transpose_times<dim>(rotation, F);
+      if constexpr (finite_strain)
+        return transpose_times<dim>(rotation, F);
+      else
+        return F;
     }
 
     /** R G */
     __attribute__((always_inline)) Matrix
     turned(const Matrix &G) const
     {
-      return times<dim>(rotation, G);
+      if constexpr (finite_strain)
+        return times<dim>(rotation, G);
+      else
+        return G;
     }
 
     /** F_a from F at natural places xi. */
@@ -167,22 +177,39 @@ namespace limber
 
     const double            own, mate; // e1, e2
     std::array<double, dim> centroid;  // of the points
-    Mean                    rotation;  // R
+    Mean                    rotation;  // R, at finite strain
     Mean                    stretch;   // U = R^T <F>
     // In 3d, of (R^T F)_de with the third coordinate
-    Mean                    torsion{};
+    Mean                    torsion;
     std::array<double, dim> inverse_variance; // of the coordinates, 3d
 
   private:
-    struct Sums
+    // Where the sums over points are: masses, places, F; in 3d the squares of
+    // places and their products with F.
+    static constexpr int
+    place_sum(const int d)
     {
-      Number                               mass{};
-      std::array<Number, dim>              place{};
-      Matrix                               F{};
-      std::array<Number, dim == 3 ? 3 : 0> square{};
-      std::array<Matrix, dim == 3 ? 3 : 0> slope{};
-    };
-    Sums sums;
+      return 1 + d;
+    }
+    static constexpr int
+    F_sum(const int d, const int e)
+    {
+      return 1 + dim + d * dim + e;
+    }
+    static constexpr int
+    square_sum(const int d)
+    {
+      return 1 + dim + dim * dim + d;
+    }
+    static constexpr int
+    slope_sum(const int d, const int c, const int e)
+    {
+      return square_sum(dim) + (d * dim + c) * (dim - 1) + (e < d ? e : e - 1);
+    }
+
+    static constexpr std::size_t n_sums =
+      dim == 2 ? F_sum(dim, 0) : slope_sum(dim, 0, 0);
+    std::array<Number, n_sums> sums;
   };
 
 
@@ -201,7 +228,10 @@ namespace limber
                              const Assumption        &assumed)
       : assumed(assumed)
       , stress(cell)
-    {}
+    {
+      set_zero(sums);
+      set_zero(torque);
+    }
 
     /** First, of all points: P^ and their volume (zero in idle lanes). */
     __attribute__((always_inline)) void
@@ -209,33 +239,35 @@ namespace limber
                  const std::array<Number, dim> &xi,
                  const Number                  &V)
     {
-      volume += V;
+      sums[0] += V;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
 #pragma GCC unroll 8
         for (int e = 0; e < dim; ++e)
           {
-            total[d][e] += V * P[d][e];
+            const Number VP = V * P[d][e];
+            sums[1 + d * dim + e] += VP;
             if constexpr (dim == 3)
-              if (d != e)
-                {
-                  const int f = 3 - d - e;
-                  moment[d][e] += V * P[d][e] * (xi[f] - assumed.centroid[f]);
-                }
+              {
+                const int f = 3 - d - e;
+                if (d != e)
+                  sums[moment_sum(d, e)] += VP * (xi[f] - assumed.centroid[f]);
+              }
           }
     }
 
-    void
+    __attribute__((always_inline)) void
     finish_means()
     {
-      const double inverse_volume = 1 / sum(volume);
+      const auto total = all_sums(sums);
+      volume           = total[0];
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           {
-            mean[d][e] = sum(total[d][e]) * inverse_volume;
+            mean[d][e] = total[1 + d * dim + e] / volume;
             if constexpr (dim == 3)
               if (d != e)
-                torsion[d][e] = sum(moment[d][e]) * inverse_volume *
+                torsion[d][e] = total[moment_sum(d, e)] / volume *
                                 assumed.inverse_variance[3 - d - e];
           }
     }
@@ -276,7 +308,7 @@ namespace limber
     forces()
     {
       if constexpr (finite_strain)
-        stress.add_uniform(turn_of_frame(), monomials);
+        stress.add_uniform(turn_of_frame(), monomials.total());
       return stress.forces();
     }
 
@@ -289,11 +321,12 @@ namespace limber
     Mean
     turn_of_frame() const
     {
-      const Mean &U = assumed.stretch;
-      Mean        S{};
+      const Mean &U     = assumed.stretch;
+      const auto  total = all_sums(torque);
+      Mean        S;
       if constexpr (dim == 2)
         {
-          const double w = sum(torque[0]) / (U[0][0] + U[1][1]);
+          const double w = total[0] / (U[0][0] + U[1][1]);
           S              = {{{{0, -w}}, {{w, 0}}}};
         }
       else
@@ -303,29 +336,35 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               H[d][e] = (d == e ? U[0][0] + U[1][1] + U[2][2] : 0.) - U[d][e];
           const auto            cof = cofactor<dim>(H);
-          const double          det = determinant<dim>(H);
+          const double          one = 1 / determinant<dim>(H);
           std::array<double, 3> w{};
           for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
-              w[d] += cof[e][d] / det * sum(torque[e]);
+              w[d] += cof[e][d] * one * total[e];
           S = {{{{0, -w[2], w[1]}}, {{w[2], 0, -w[0]}}, {{-w[1], w[0], 0}}}};
         }
       auto result = times<dim>(assumed.rotation, S);
       for (auto &row : result)
         for (double &entry : row)
-          entry *= -1 / sum(volume);
+          entry *= -1 / volume;
       return result;
     }
 
     const Assumption &assumed;
 
-    Number                               volume{};
-    Matrix                               total{};
-    Matrix                               moment{};
-    Mean                                 mean{}, torsion{};
-    std::array<Number, dim == 2 ? 1 : 3> torque{};
-    StressOnNodes<dim>                   stress;
-    MonomialSums<dim>                    monomials;
+    static constexpr int
+    moment_sum(const int d, const int e)
+    {
+      return 1 + dim * dim + d * (dim - 1) + (e < d ? e : e - 1);
+    }
+
+    // of V, V P^ and, in 3d, the moments of V P^_de along the third axis
+    std::array<Number, dim == 2 ? 5 : 16> sums;
+    double                                volume = 0;
+    Mean                                  mean, torsion;
+    std::array<Number, dim == 2 ? 1 : 3>  torque;
+    StressOnNodes<dim>                    stress;
+    MonomialSums<dim>                     monomials;
   };
 } // namespace limber
 

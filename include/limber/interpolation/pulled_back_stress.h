@@ -77,13 +77,19 @@ namespace limber
   class MonomialSums
   {
   public:
-    using Number = PointPack<dim>;
+    using Number                     = PointPack<dim>;
+    static constexpr int n_monomials = 1 << dim;
+
+    MonomialSums()
+    {
+      set_zero(sums);
+    }
 
     /** Points of volume V (m^dim, zero in idle lanes) at natural places xi. */
     __attribute__((always_inline)) void
     add(const std::array<Number, dim> &xi, const Number &V)
     {
-      std::array<Number, 1 << dim> monomials;
+      std::array<Number, n_monomials> monomials;
       monomials[0] = V;
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
@@ -91,18 +97,19 @@ namespace limber
         for (int k = 0; k < 1 << d; ++k)
           monomials[k | 1 << d] = monomials[k] * xi[d];
 #pragma GCC unroll 8
-      for (int k = 0; k < 1 << dim; ++k)
+      for (int k = 0; k < n_monomials; ++k)
         sums[k] += monomials[k];
     }
 
-    double
-    operator[](const int k) const
+    /** Those of all points. */
+    std::array<double, n_monomials>
+    total() const
     {
-      return sum(sums[k]);
+      return all_sums(sums);
     }
 
   private:
-    std::array<Number, 1 << dim> sums{};
+    std::array<Number, n_monomials> sums;
   };
 
 
@@ -117,7 +124,9 @@ namespace limber
 
     explicit StressOnNodes(const CellGeometry<dim> &cell)
       : cell(cell)
-    {}
+    {
+      set_zero(on_coefficients);
+    }
 
     /** P times volume (J, zero in idle lanes) at natural places xi. */
     __attribute__((always_inline)) void
@@ -148,8 +157,8 @@ namespace limber
 
     /** The same P (Pa) at all points, of which the monomials are summed up. */
     void
-    add_uniform(const SmallMatrix<dim, double> &P,
-                const MonomialSums<dim>        &monomials)
+    add_uniform(const SmallMatrix<dim, double>     &P,
+                const std::array<double, 1 << dim> &monomials)
     {
       // into one lane, as all will be added up
       for (int d = 0; d < dim; ++d)
@@ -173,7 +182,7 @@ namespace limber
 
   private:
     const CellGeometry<dim>                      &cell;
-    std::array<std::array<Number, 1 << dim>, dim> on_coefficients{};
+    std::array<std::array<Number, 1 << dim>, dim> on_coefficients;
   };
 } // namespace limber
 

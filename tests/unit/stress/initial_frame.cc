@@ -157,7 +157,7 @@ namespace
       std::vector<std::uint32_t> result;
       for (std::uint32_t c = 0; c < grid.n_cells; ++c)
         if (random.below(3) > 0)
-          result.insert(result.end(), 1 + random.below(3 << dim), c);
+          result.insert(result.end(), 1 + random.below(6 << dim), c);
       return result;
     }
   };
