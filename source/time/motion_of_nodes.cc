@@ -19,6 +19,7 @@ namespace limber
   {
     parts.nodes.clear();
     extremes.speed_squared = extremes.wave_squared = extremes.displacement = 0;
+    history_time = step;
     relocation.begin_step();
     lap(Verb::advance_nodes);
   }
@@ -219,7 +220,7 @@ namespace limber
 
 
 
-  // A velocity in the re-mapped slot, with the boundary conditions on it.
+  // The velocity that strains points, with the boundary conditions on it.
   template <int dim>
   void
   ExplicitIntegrator<dim>::form_velocity(const unsigned int momentum,
@@ -233,10 +234,10 @@ namespace limber
           continue;
         const double inverse = 1 / mass;
         for (int d = 0; d < dim; ++d)
-          record[Layout::remapped + d] = record[momentum + d] * inverse;
+          record[Layout::strain_velocity + d] = record[momentum + d] * inverse;
       }
     lap(Verb::advance_nodes);
-    boundaries.apply_trial(parts.nodes, Layout::remapped, when);
+    boundaries.apply_trial(parts.nodes, Layout::strain_velocity, when);
     lap(Verb::apply_boundaries);
   }
 
@@ -263,16 +264,20 @@ namespace limber
       {
         double *const record = parts.nodes.record(node);
         for (int d = 0; d < dim; ++d)
-          record[Layout::increment + d] =
+          record[Layout::middle_velocity + d] =
             record[Layout::velocity + d] - 0.5 * record[Layout::increment + d];
       }
     lap(Verb::advance_nodes);
-    boundaries.apply_trial(parts.nodes, Layout::increment, time + 0.5 * step);
+    boundaries.apply_trial(parts.nodes,
+                           Layout::middle_velocity,
+                           time + 0.5 * step);
     lap(Verb::apply_boundaries);
     for (const std::uint32_t node : parts.nodes.active_nodes())
       {
         double *const record = parts.nodes.record(node);
-        std::copy_n(record + Layout::increment, dim, record + Layout::velocity);
+        std::copy_n(record + Layout::middle_velocity,
+                    dim,
+                    record + Layout::moving_velocity);
       }
     lap(Verb::advance_nodes);
   }

@@ -67,9 +67,9 @@ namespace limber
     p2g();
     accelerate_nodes();
     g2p_and_remap();
-    account_loads(Layout::remapped);
+    account_loads(Layout::strain_velocity);
     interpolate_hanging();
-    update_stress_and_move(step, Layout::remapped);
+    update_stress_and_move(step, Layout::strain_velocity);
   }
 
 
@@ -85,10 +85,10 @@ namespace limber
     p2g_force();
     accelerate_nodes();
     g2p_and_remap();
-    account_loads(Layout::remapped);
+    account_loads(Layout::strain_velocity);
     centre_velocity();
     interpolate_hanging();
-    update_stress_and_move(0.5 * step, Layout::remapped);
+    update_stress_and_move(0.5 * step, Layout::strain_velocity);
   }
 
 

@@ -68,12 +68,12 @@ namespace limber
       return;
 
     for (const std::uint32_t node : nodes.active_nodes())
-      std::fill_n(nodes.record(node) + Layout::remapped, dim, 0.);
+      std::fill_n(nodes.record(node) + Layout::hourglass_force, dim, 0.);
     limber::resist_hourglass<dim>(nodes.owned_occupied_cells(),
                                   nodes.view(),
                                   resisting,
                                   step);
-    nodes.start_sum(Layout::remapped, Layout::remapped + dim);
+    nodes.start_sum(Layout::hourglass_force, Layout::hourglass_force + dim);
     nodes.finish_sum();
     for (const std::uint32_t node : nodes.active_nodes())
       {
@@ -83,7 +83,8 @@ namespace limber
           continue;
         for (int d = 0; d < dim; ++d)
           {
-            const double force = std::exchange(record[Layout::remapped + d], 0);
+            const double force =
+              std::exchange(record[Layout::hourglass_force + d], 0);
             // heat, but for the change of velocity within the step
             if (nodes.owns(node))
               parts.ledger.viscous -=

@@ -2,6 +2,7 @@
 #include <limber/time/explicit_integrator.h>
 
 #include <algorithm>
+#include <utility>
 
 /** @file The sweeps of an explicit step over the points of all bodies. */
 namespace limber
@@ -115,47 +116,46 @@ namespace limber
 
 
 
-  // With the velocity that has been given back, while points stay.
+  // While points stay where they are.
   template <int dim>
   void
   ExplicitIntegrator<dim>::update_stress(const double length)
   {
     StressSweep what;
-    what.step        = length;
-    what.remapped    = true;
-    what.shift_share = length / step;
-    strain(what, step);
+    what.step     = length;
+    what.remapped = true;
+    strain(what);
   }
 
 
 
-  // The means over cells are those of the beginning of the step: histories
-  // tend to them before anything is strained.
   template <int dim>
   void
   ExplicitIntegrator<dim>::update_stress_and_move(const double       length,
                                                   const unsigned int velocity)
   {
     StressSweep what;
-    what.step           = length;
-    what.remapped       = velocity == Layout::remapped;
-    what.move           = step;
-    what.shift_share    = length / step;
-    const bool is_first = length == step;
-    strain(what, is_first ? step : 0);
+    what.step     = length;
+    what.remapped = velocity == Layout::strain_velocity;
+    what.move     = step;
+    strain(what);
   }
 
 
 
-  // Points of loaded faces are strained by the same velocity.
+  // Points of loaded faces are strained by the same velocity. The means over
+  // cells are those of the beginning of the step: volumetric histories tend to
+  // them once, before anything is strained.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::strain(const StressSweep &what,
-                                  const double       history_time)
+  ExplicitIntegrator<dim>::strain(StressSweep what)
   {
+    what.shift_share = what.step / step;
     loads.deform(parts.nodes, what.remapped, what.step);
     sweeps.update_stress(what,
-                         {history_time, what.step, point_speed},
+                         {std::exchange(history_time, 0.),
+                          what.step,
+                          point_speed},
                          extremes);
     lap(Verb::update_stress);
   }

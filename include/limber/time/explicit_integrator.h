@@ -143,7 +143,7 @@ namespace limber
     void
     take(TakeFromGrid what);
     void
-    strain(const StressSweep &what, double history_time);
+    strain(StressSweep what);
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
 
@@ -155,7 +155,7 @@ namespace limber
 
     const RunParts<dim>                parts;
     const bool                         parallel;
-    const BoundaryConditions<dim>      boundaries;
+    BoundaryConditions<dim>            boundaries;
     ExternalLoads<dim>                 loads;
     BodySweeps<dim>                    sweeps;
     Stabilization<dim>                 stabilization;
@@ -175,6 +175,7 @@ namespace limber
 
     // Of the step that is being done, on this rank until it ends
     StepExtremes extremes;
+    double       history_time = 0; // that histories have yet to relax, s
     double       fastest_node = 0; // cells in this step, over all ranks
   };
 } // namespace limber

@@ -30,8 +30,8 @@ namespace limber
 
     /**
      * Add viscous forces against hourglass motion to those of the nodes, and
-     * their heat to the ledger. The re-mapped slots, which must not be in use,
-     * serve here and are zero afterwards. Collective.
+     * their heat to the ledger. Their own places are zero afterwards.
+     * Collective.
      */
     void
     resist_hourglass(double step, double wave_speed);
