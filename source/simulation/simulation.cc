@@ -49,7 +49,7 @@ namespace limber
     , balance_of_start(state)
     , health(state)
     , observables(state)
-    , checks(problem.checks, observables.names())
+    , checks(problem.checks, names_of(problem.observables))
     , writer(problem.output.directory)
     , checkpoints(problem, grid)
     , totals(balance_of_start.evaluate(state))
@@ -86,7 +86,7 @@ namespace limber
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
       {
         const std::string path    = problem.output.directory + "/statistics";
-        const auto        columns = statistics_columns(observables);
+        const auto        columns = statistics_columns(problem.observables);
         if (resumed)
           statistics.emplace(path, resumed->statistics_length, columns.size());
         else
