@@ -42,72 +42,89 @@ namespace limber
 
 
 
-  // A node is held by every side of the box that one of the faces that it
-  // belongs to lies in.
+  // A node lies in every side of the box that one of the faces that it belongs
+  // to lies in.
   template <int dim>
   void
   HeldNodes<dim>::find(const dealii::DoFHandler<dim> &dof_handler)
   {
-    const auto  &fe        = dof_handler.get_fe();
-    const auto  &grid      = problem.grid;
-    const double tolerance = same_place * grid.lower.distance(grid.upper);
+    const auto                   &fe = dof_handler.get_fe();
     const dealii::Quadrature<dim> places(
       fe.base_element(0).get_unit_support_points());
     dealii::FEValues<dim> values(fe, places, dealii::update_quadrature_points);
 
-    std::map<dealii::types::global_dof_index, Held> found;
+    struct Node
+    {
+      unsigned int       sides = 0, component; // a set, bits
+      dealii::Point<dim> place;
+    };
+    std::map<dealii::types::global_dof_index, Node> found;
     std::vector<dealii::types::global_dof_index>    dofs(fe.dofs_per_cell);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (!cell->is_artificial() && cell->at_boundary())
         for (const unsigned int f : cell->face_indices())
-          for (unsigned int side = 0; side < 2 * dim; ++side)
+          if (const unsigned int sides = sides_with(cell->face(f)); sides != 0)
             {
-              const SideCondition condition = problem.sides[side].condition;
-              const unsigned int  normal    = side / 2;
-              const double        plane =
-                side % 2 == 0 ? grid.lower[normal] : grid.upper[normal];
-              const auto face = cell->face(f);
-              bool       in_plane =
-                face->at_boundary() && condition != SideCondition::free;
-              for (unsigned int v = 0; in_plane && v < face->n_vertices(); ++v)
-                in_plane =
-                  std::abs(face->vertex(v)[normal] - plane) < tolerance;
-              if (!in_plane)
-                continue;
-              if (condition == SideCondition::friction)
-                throw InputError(
-                  std::string("The body touches the side '") +
-                  side_name<dim>(side) +
-                  "', which is 'friction' in section 'Boundaries'; the finite "
-                  "element reference knows no friction. Set that side to slip "
-                  "or no slip.");
               values.reinit(cell);
               cell->get_dof_indices(dofs);
               for (unsigned int i = 0; i < dofs.size(); ++i)
-                {
-                  const auto [component, node] =
-                    fe.system_to_component_index(i);
-                  if (fe.has_support_on_face(i, f) &&
-                      (condition != SideCondition::slip || component == normal))
-                    {
-                      // where two sides meet, the later one holds
-                      const Held entry{dofs[i],
-                                       side,
-                                       component,
-                                       values.quadrature_point(node)};
-                      const auto [place, is_new] =
-                        found.insert({dofs[i], entry});
-                      if (!is_new && place->second.side < side)
-                        place->second = entry;
-                    }
-                }
+                if (fe.has_support_on_face(i, f))
+                  {
+                    const auto [component, node] =
+                      fe.system_to_component_index(i);
+                    Node &entry = found[dofs[i]];
+                    entry.sides |= sides;
+                    entry.component = component;
+                    entry.place     = values.quadrature_point(node);
+                  }
             }
-    for (const auto &[key, value] : found)
-      {
-        all.push_back(value);
-        lines.add_line(value.dof);
-      }
+    for (const auto &[dof, node] : found)
+      for (const HeldComponent &held :
+           held_components(problem.sides, node.sides))
+        if (held.component == node.component)
+          {
+            // where two sides meet, the later one holds
+            const bool is_new = all.empty() || all.back().dof != dof;
+            if (is_new)
+              {
+                all.push_back({dof, held.side, held.component, node.place});
+                lines.add_line(dof);
+              }
+            all.back().side = held.side;
+          }
     lines.close();
+  }
+
+
+
+  // The set (bits) of the sides of the box that a face of the body lies in.
+  template <int dim>
+  unsigned int
+  HeldNodes<dim>::sides_with(
+    const typename dealii::DoFHandler<dim>::face_iterator &face) const
+  {
+    const auto  &grid      = problem.grid;
+    const double tolerance = same_place * grid.lower.distance(grid.upper);
+    unsigned int result    = 0;
+    for (unsigned int side = 0; face->at_boundary() && side < 2 * dim; ++side)
+      {
+        const unsigned int normal = side / 2;
+        const double       plane =
+          side % 2 == 0 ? grid.lower[normal] : grid.upper[normal];
+        bool in_plane = problem.sides[side].held != HeldComponents::none;
+        for (unsigned int v = 0; in_plane && v < face->n_vertices(); ++v)
+          in_plane = std::abs(face->vertex(v)[normal] - plane) < tolerance;
+        if (in_plane && problem.sides[side].one_sided)
+          throw InputError(std::string("The body touches the side '") +
+                           side_name<dim>(side) + "', which is '" +
+                           problem.sides[side].word +
+                           "' in section 'Boundaries'; the finite element "
+                           "reference knows no friction. Set that side to slip "
+                           "or no slip.");
+        if (in_plane)
+          result |= 1 << side;
+      }
+    return result;
   }
 
 
@@ -116,10 +133,9 @@ namespace limber
   double
   HeldNodes<dim>::prescribed_velocity(const Held &held, const double time) const
   {
-    const Side<dim> &side = problem.sides[held.side];
-    return side.condition == SideCondition::velocity ?
-             side.velocity.value(held.place, time, held.component) :
-             0;
+    return problem.sides[held.side].prescribed_velocity(held.place,
+                                                        time,
+                                                        held.component);
   }
 
 

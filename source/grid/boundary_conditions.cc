@@ -21,59 +21,71 @@ namespace limber
 
 
   template <int dim>
-  BoundaryConditions<dim>::BoundaryConditions(
-    const std::array<Side<dim>, 2 * dim> &sides)
+  BoundaryConditions<dim>::BoundaryConditions(const Sides<dim> &sides)
     : sides(sides)
+    , constraints(sides)
   {}
 
 
 
+  // work(node, first, last) on the constraints of each node that has mass.
   template <int dim>
-  bool
-  BoundaryConditions<dim>::act(
-    const unsigned int                  side,
-    const NodeTable<dim>               &nodes,
-    const std::uint32_t                 node,
-    const double                        time,
-    dealii::Tensor<1, dim>             &velocity,
-    const dealii::Tensor<1, dim> *const new_velocity) const
+  template <class Work>
+  void
+  BoundaryConditions<dim>::for_each_node(const NodalFields<dim> &nodes,
+                                         const double            time,
+                                         const Work             &work)
   {
-    const unsigned int normal  = side / 2;
-    const double       outward = side % 2 == 1 ? 1. : -1.;
-
-    switch (sides[side].condition)
+    const std::vector<Constraint> &all = constraints.at(nodes, time);
+    for (auto first = all.begin(), last = first; first != all.end();
+         first = last)
       {
-        case SideCondition::free:
-          return false;
-        case SideCondition::slip:
-          velocity[normal] = 0;
-          return true;
-        case SideCondition::no_slip:
-          velocity = 0;
-          return true;
-        case SideCondition::velocity:
-          velocity = sides[side].velocity.vector(nodes.places.at(node), time);
-          return true;
-        case SideCondition::friction:
-          {
-            const double pressing = outward * velocity[normal];
-            if (pressing <= 0)
-              return false;
-            velocity[normal]        = 0;
-            const double tangential = velocity.norm();
-            double       stopped    = sides[side].friction * pressing;
-            if (new_velocity != nullptr)
-              {
-                auto sliding    = *new_velocity;
-                sliding[normal] = 0;
-                stopped         = sliding.norm_square() == 0 ? tangential : 0;
-              }
-            if (tangential > 0)
-              velocity *= 1 - std::min(1., stopped / tangential);
-            return true;
-          }
+        while (last != all.end() && last->node == first->node)
+          ++last;
+        if (nodes.record(first->node)[NodeLayout<dim>::mass] > 0)
+          work(first->node, first, last);
       }
-    return false;
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryConditions<dim>::act(const Constraint     &constraint,
+                               Velocity             &velocity,
+                               const Velocity *const new_velocity) const
+  {
+    if (constraint.one_sided)
+      act_one_sided(constraint, velocity, new_velocity);
+    else
+      velocity[constraint.component] = constraint.value;
+  }
+
+
+
+  template <int dim>
+  void
+  BoundaryConditions<dim>::act_one_sided(
+    const Constraint     &constraint,
+    Velocity             &velocity,
+    const Velocity *const new_velocity) const
+  {
+    const unsigned int normal   = constraint.component;
+    const double       outward  = constraint.side % 2 == 1 ? 1. : -1.;
+    const double       pressing = outward * velocity[normal];
+    if (pressing <= 0)
+      return;
+    velocity[normal]        = 0;
+    const double tangential = velocity.norm();
+    double       stopped    = sides[constraint.side].friction * pressing;
+    if (new_velocity != nullptr)
+      {
+        auto sliding    = *new_velocity;
+        sliding[normal] = 0;
+        stopped         = sliding.norm_square() == 0 ? tangential : 0;
+      }
+    if (tangential > 0)
+      velocity *= 1 - std::min(1., stopped / tangential);
   }
 
 
@@ -82,35 +94,33 @@ namespace limber
   void
   BoundaryConditions<dim>::apply(NodalFields<dim> &nodes,
                                  const double      time,
-                                 const Account    &account) const
+                                 const Account    &account)
   {
     using Layout = NodeLayout<dim>;
-    for (const std::uint32_t node : nodes.active_boundary_nodes())
-      {
-        double *const record = nodes.record(node);
-        const double  mass   = record[Layout::mass];
-        if (!(mass > 0))
-          continue;
-
-        const auto free_velocity = read<dim>(record + Layout::velocity);
-        const auto old_velocity =
+    for_each_node(
+      nodes,
+      time,
+      [&](const std::uint32_t node, const auto first, const auto last) {
+        double *const  record        = nodes.record(node);
+        const double   mass          = record[Layout::mass];
+        const Velocity free_velocity = read<dim>(record + Layout::velocity);
+        const Velocity old_velocity =
           free_velocity - read<dim>(record + Layout::increment);
-        auto                                        velocity = free_velocity;
-        std::array<dealii::Tensor<1, dim>, 2 * dim> change;
-        for (unsigned int side = 0; side < 2 * dim; ++side)
+        Velocity                      velocity = free_velocity;
+        std::array<Velocity, 2 * dim> change;
+        for (auto c = first; c != last; ++c)
           {
-            const auto before = velocity;
-            if (nodes.table.sides[node] >> side & 1)
-              act(side, nodes.table, node, time, velocity, nullptr);
-            change[side] = velocity - before;
+            const Velocity before = velocity;
+            act(*c, velocity, nullptr);
+            change[c->side] += velocity - before;
           }
 
         // An impulse does work with the velocity that the side leaves. Where
         // the stress bears against the side, it does no work; what the points
         // bring to the node against the side is lost, as in an impact.
-        const auto step_change = velocity - old_velocity;
+        const Velocity step_change = velocity - old_velocity;
         for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (nodes.owns(node) && change[side] != dealii::Tensor<1, dim>())
+          if (nodes.owns(node) && change[side] != Velocity())
             {
               double work = change[side] * velocity;
               for (int d = 0; d < dim; ++d)
@@ -123,7 +133,7 @@ namespace limber
             record[Layout::increment + d] += velocity[d] - free_velocity[d];
             record[Layout::velocity + d] = velocity[d];
           }
-      }
+      });
   }
 
 
@@ -131,23 +141,23 @@ namespace limber
   template <int dim>
   void
   BoundaryConditions<dim>::apply_trial(NodalFields<dim>  &nodes,
-                                       const unsigned int first,
-                                       const double       time) const
+                                       const unsigned int slot,
+                                       const double       time)
   {
-    using Layout = NodeLayout<dim>;
-    for (const std::uint32_t node : nodes.active_boundary_nodes())
-      {
-        double *const record = nodes.record(node);
-        if (!(record[Layout::mass] > 0))
-          continue;
-        const auto new_velocity = read<dim>(record + Layout::velocity);
-        auto       velocity     = read<dim>(record + first);
-        for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (nodes.table.sides[node] >> side & 1)
-            act(side, nodes.table, node, time, velocity, &new_velocity);
-        for (int d = 0; d < dim; ++d)
-          record[first + d] = velocity[d];
-      }
+    for_each_node(nodes,
+                  time,
+                  [&](const std::uint32_t node,
+                      const auto          first,
+                      const auto          last) {
+                    double *const  record = nodes.record(node);
+                    const Velocity new_velocity =
+                      read<dim>(record + NodeLayout<dim>::velocity);
+                    Velocity velocity = read<dim>(record + slot);
+                    for (auto c = first; c != last; ++c)
+                      act(*c, velocity, &new_velocity);
+                    for (int d = 0; d < dim; ++d)
+                      record[slot + d] = velocity[d];
+                  });
   }
 
 
@@ -157,25 +167,18 @@ namespace limber
   BoundaryConditions<dim>::held(const NodalFields<dim> &nodes,
                                 const std::uint32_t     node) const
   {
-    const auto velocity =
+    const Velocity velocity =
       read<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
     std::array<unsigned int, dim> result{};
-    for (unsigned int side = 0; side < 2 * dim; ++side)
+    for (const HeldComponent &entry :
+         constraints.of_sides(nodes.table.sides[node]))
       {
-        if (!(nodes.table.sides[node] >> side & 1))
-          continue;
-        const unsigned int  normal    = side / 2;
-        const SideCondition condition = sides[side].condition;
-        const bool          rubs =
-          condition == SideCondition::friction && velocity[normal] == 0;
-        const bool holds_all = condition == SideCondition::no_slip ||
-                               condition == SideCondition::velocity ||
-                               (rubs && velocity.norm_square() == 0);
-        if (holds_all || rubs || condition == SideCondition::slip)
-          result[normal] |= 1 << normal;
-        if (holds_all)
+        const unsigned int direction = 1 << entry.side / 2;
+        if (!entry.one_sided || velocity[entry.component] == 0)
+          result[entry.component] |= direction;
+        if (entry.one_sided && velocity.norm_square() == 0)
           for (unsigned int &component : result)
-            component |= 1 << normal;
+            component |= direction;
       }
     return result;
   }

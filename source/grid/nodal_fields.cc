@@ -151,6 +151,7 @@ namespace limber
     for (const std::uint32_t cell : with_own_points)
       activate(cell);
     activate_agreed();
+    ++version;
   }
 
 
@@ -180,6 +181,7 @@ namespace limber
         activate(cell);
       }
     activate_masters();
+    ++version;
   }
 
 
@@ -279,6 +281,7 @@ namespace limber
         for (const std::uint32_t node : *records)
           activate_node(node);
     activate_masters();
+    ++version;
   }
 
 

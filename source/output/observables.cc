@@ -8,28 +8,8 @@ namespace limber
 {
   namespace
   {
-    constexpr double       not_known = std::numeric_limits<double>::quiet_NaN();
     constexpr unsigned int not_followed = static_cast<unsigned int>(-1);
     constexpr unsigned int not_one_body = static_cast<unsigned int>(-1);
-
-
-
-    bool
-    follows_point(const ObservableKind kind)
-    {
-      switch (kind)
-        {
-          case ObservableKind::displacement:
-          case ObservableKind::velocity:
-          case ObservableKind::position:
-          case ObservableKind::stress:
-          case ObservableKind::pressure:
-          case ObservableKind::volume_ratio:
-            return true;
-          default:
-            return false;
-        }
-    }
 
 
 
@@ -70,40 +50,41 @@ namespace limber
                              body.description.points_per_cell_edge[axis];
       return largest + 0.5 * spacing;
     }
+
+
+
+    /** Of a point; nothing where it has been lost. */
+    template <int dim>
+    Seen<dim>
+    see(const PointSample<dim> &point, const dealii::Point<dim> &start)
+    {
+      Seen<dim> seen;
+      seen.known        = !point.lost;
+      seen.position     = point.position;
+      seen.displacement = point.position - start;
+      seen.velocity     = point.velocity;
+      seen.stress       = point.stress;
+      seen.pressure     = point.pressure;
+      seen.volume_ratio = point.volume_ratio;
+      return seen;
+    }
+
+
+
+    template <int dim>
+    Seen<dim>
+    see(const BodyTotals<dim> &body)
+    {
+      Seen<dim> seen;
+      seen.mass             = body.mass;
+      seen.momentum         = body.momentum;
+      seen.mass_moment      = body.mass_moment;
+      seen.kinetic_energy   = body.kinetic_energy;
+      seen.strain_energy    = body.strain_energy;
+      seen.potential_energy = body.gravitational_energy;
+      return seen;
+    }
   } // namespace
-
-
-
-  std::string
-  unit_of(const ObservableKind kind)
-  {
-    switch (kind)
-      {
-        case ObservableKind::displacement:
-        case ObservableKind::position:
-        case ObservableKind::extreme_coordinate:
-        case ObservableKind::centre_of_mass:
-          return "m";
-        case ObservableKind::velocity:
-          return "m/s";
-        case ObservableKind::stress:
-        case ObservableKind::pressure:
-          return "Pa";
-        case ObservableKind::kinetic_energy:
-        case ObservableKind::strain_energy:
-        case ObservableKind::total_energy:
-          return "J";
-        case ObservableKind::momentum:
-          return "kg m/s";
-        case ObservableKind::volume_ratio:
-          return "";
-        case ObservableKind::frequency:
-          return "Hz";
-        case ObservableKind::reaction_force:
-          return "N";
-      }
-    return "";
-  }
 
 
 
@@ -115,7 +96,7 @@ namespace limber
     memory.crossings.resize(n);
     memory.tracked_of.assign(n, not_followed);
     for (unsigned int i = 0; i < n; ++i)
-      if (follows_point(problem.observables[i].kind))
+      if (looks_at_place(problem.observables[i]))
         memory.tracked_of[i] =
           points.follow_nearest(start,
                                 body_index(problem.observables[i].body),
@@ -143,12 +124,10 @@ namespace limber
     with_stress.assign(points.points().size(), false);
     for (unsigned int i = 0; i < problem.observables.size(); ++i)
       {
-        const ObservableKind kind = problem.observables[i].kind;
-        if (kind == ObservableKind::stress ||
-            kind == ObservableKind::pressure ||
-            kind == ObservableKind::volume_ratio)
+        const ObservedPart part = problem.observables[i].kind->looks_at;
+        if (part == ObservedPart::material)
           with_stress[memory.tracked_of[i]] = true;
-        has_extremes |= kind == ObservableKind::extreme_coordinate;
+        has_extremes |= part == ObservedPart::extent;
       }
   }
 
@@ -160,30 +139,6 @@ namespace limber
   {
     ObservablesState<dim> result = memory;
     result.tracked               = points.points();
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<std::string>
-  Observables<dim>::names() const
-  {
-    std::vector<std::string> result;
-    for (const Observable<dim> &observable : problem.observables)
-      result.push_back(observable.name);
-    return result;
-  }
-
-
-
-  template <int dim>
-  std::vector<std::string>
-  Observables<dim>::units() const
-  {
-    std::vector<std::string> result;
-    for (const Observable<dim> &observable : problem.observables)
-      result.push_back(unit_of(observable.kind));
     return result;
   }
 
@@ -231,66 +186,49 @@ namespace limber
 
 
   template <int dim>
-  double
-  Observables<dim>::value(const Observable<dim>               &observable,
-                          const unsigned int                   number,
-                          const Totals<dim>                   &totals,
-                          const std::vector<PointSample<dim>> &samples) const
+  Seen<dim>
+  Observables<dim>::look(const unsigned int                   number,
+                         const Totals<dim>                   &totals,
+                         const std::vector<PointSample<dim>> &samples,
+                         const std::vector<double>           &extents) const
   {
-    const unsigned int     axis = observable.axis;
-    const BodyTotals<dim>  body = totals_of(observable, totals);
-    const PointSample<dim> none;
-    const unsigned int     t     = memory.tracked_of[number];
-    const auto            &point = t == not_followed ? none : samples[t];
-    if (t != not_followed && point.lost)
-      return not_known;
-
-    switch (observable.kind)
+    const Observable<dim> &observable = problem.observables[number];
+    Seen<dim>              seen;
+    switch (observable.kind->looks_at)
       {
-        case ObservableKind::displacement:
-          return point.position[axis] - points.points()[t].reference[axis];
-        case ObservableKind::velocity:
-          return point.velocity[axis];
-        case ObservableKind::position:
-          return point.position[axis];
-        case ObservableKind::stress:
-          return point.stress[axis][observable.second_axis];
-        case ObservableKind::pressure:
-          return point.pressure;
-        case ObservableKind::volume_ratio:
-          return point.volume_ratio;
-        case ObservableKind::kinetic_energy:
-          return body.kinetic_energy;
-        case ObservableKind::strain_energy:
-          return body.strain_energy;
-        case ObservableKind::total_energy:
-          return body.total_energy();
-        case ObservableKind::momentum:
-          return body.momentum[axis];
-        case ObservableKind::centre_of_mass:
-          return body.mass > 0 ? body.mass_moment[axis] / body.mass : not_known;
-        case ObservableKind::reaction_force:
-          return memory.side_force[observable.side][axis];
-        case ObservableKind::extreme_coordinate:
-        case ObservableKind::frequency:
-          break; // filled in later
+        case ObservedPart::place:
+        case ObservedPart::material:
+          {
+            const unsigned int t = memory.tracked_of[number];
+            return see(samples[t], points.points()[t].reference);
+          }
+        case ObservedPart::body:
+          return see(totals_of(observable, totals));
+        case ObservedPart::extent:
+          seen.extent = extents[number];
+          return seen;
+        case ObservedPart::side:
+          seen.force = memory.side_force[observable.side];
+          return seen;
+        case ObservedPart::column:
+          break;
       }
-    return not_known;
+    return seen;
   }
 
 
 
+  // By observable: the largest coordinate in its direction, over all ranks.
   template <int dim>
-  void
-  Observables<dim>::fill_extremes(const State<dim>    &state,
-                                  std::vector<double> &values) const
+  std::vector<double>
+  Observables<dim>::extents(const State<dim> &state) const
   {
-    std::vector<double> largest(values.size(),
+    std::vector<double> largest(problem.observables.size(),
                                 -std::numeric_limits<double>::infinity());
-    for (unsigned int i = 0; i < values.size(); ++i)
+    for (unsigned int i = 0; i < largest.size(); ++i)
       {
         const Observable<dim> &observable = problem.observables[i];
-        if (observable.kind == ObservableKind::extreme_coordinate)
+        if (observable.kind->looks_at == ObservedPart::extent)
           for (unsigned int b = 0; b < state.bodies.size(); ++b)
             if (observable.body.empty() || b == body_index(observable.body))
               largest[i] = std::max(largest[i],
@@ -304,9 +242,10 @@ namespace limber
                   MPI_DOUBLE,
                   MPI_MAX,
                   state.grid.communicator);
-    for (unsigned int i = 0; i < values.size(); ++i)
-      if (std::isfinite(largest[i]))
-        values[i] = problem.observables[i].positive ? largest[i] : -largest[i];
+    for (double &extent : largest)
+      if (!std::isfinite(extent))
+        extent = not_known;
+    return largest;
   }
 
 
@@ -316,30 +255,14 @@ namespace limber
   Observables<dim>::evaluate(const State<dim> &state, const Totals<dim> &totals)
   {
     update_side_forces(state.time, totals);
-    const auto          samples = points.sample(state, with_stress);
-    std::vector<double> values(problem.observables.size());
-    for (unsigned int i = 0; i < values.size(); ++i)
-      {
-        const Observable<dim> &observable = problem.observables[i];
-        const double           sign       = observable.positive ? 1 : -1;
-        values[i] = sign * value(observable, i, totals, samples);
-      }
-    if (has_extremes)
-      fill_extremes(state, values);
-
-    const std::vector<std::string> all_names = names();
-    for (unsigned int i = 0; i < values.size(); ++i)
-      {
-        const Observable<dim> &observable = problem.observables[i];
-        if (observable.kind != ObservableKind::frequency)
-          continue;
-        const unsigned int of =
-          std::find(all_names.begin(), all_names.end(), observable.observable) -
-          all_names.begin();
-        memory.crossings[i].add(state.time, values[of]);
-        values[i] = memory.crossings[i].frequency();
-      }
-    return values;
+    const auto samples = points.sample(state, with_stress);
+    const auto largest = has_extremes ? extents(state) : std::vector<double>();
+    return observed_row(problem.observables,
+                        state.time,
+                        memory.crossings,
+                        [&](const unsigned int i) {
+                          return look(i, totals, samples, largest);
+                        });
   }
 
 

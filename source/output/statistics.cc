@@ -133,7 +133,7 @@ namespace limber
 
   template <int dim>
   std::vector<Column>
-  statistics_columns(const Observables<dim> &observables)
+  statistics_columns(const std::vector<Observable<dim>> &observables)
   {
     std::vector<Column> columns = {{"step", ""},
                                    {"time", "s"},
@@ -160,10 +160,8 @@ namespace limber
     columns.push_back({"largest volume ratio", ""});
     columns.push_back({"lost points", ""});
 
-    const std::vector<std::string> names = observables.names(),
-                                   units = observables.units();
-    for (std::size_t i = 0; i < names.size(); ++i)
-      columns.push_back({names[i], units[i]});
+    for (const Observable<dim> &observable : observables)
+      columns.push_back({observable.name, observable.kind->unit});
     return columns;
   }
 
@@ -206,9 +204,9 @@ namespace limber
 
 
   template std::vector<Column>
-  statistics_columns(const Observables<2> &);
+  statistics_columns(const std::vector<Observable<2>> &);
   template std::vector<Column>
-  statistics_columns(const Observables<3> &);
+  statistics_columns(const std::vector<Observable<3>> &);
   template std::vector<double>
   statistics_row(const State<2> &,
                  const Totals<2> &,

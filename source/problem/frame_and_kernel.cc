@@ -34,11 +34,9 @@ namespace limber
                           in_quotes(section.text("Material")) +
                           " does not have",
                         ", or an elastic material, for instance 'neo hookean'"};
-      const Projection treatment =
-        read_word(section, "Locking treatment", locking_words());
-      if (treatment != Projection::automatic && treatment != Projection::none &&
-          treatment != Projection::cell &&
-          treatment != Projection::assumed_strain)
+      if (!treatment_of(
+             read_word(section, "Locking treatment", locking_words()))
+             .in_initial_frame)
         return Obstacle{
           "has no locking treatment " +
             in_quotes(section.text("Locking treatment")),
@@ -108,10 +106,9 @@ namespace limber
     std::optional<Misfit>
     misfit_of_domains(const Section &section)
     {
-      const Projection treatment =
-        read_word(section, "Locking treatment", locking_words());
-      if (treatment != Projection::automatic && treatment != Projection::none &&
-          treatment != Projection::node)
+      if (!treatment_of(
+             read_word(section, "Locking treatment", locking_words()))
+             .with_domains)
         return Misfit{"Locking treatment",
                       "domains reach over several cells",
                       "'Locking treatment = node' or 'none'"};
@@ -188,13 +185,11 @@ namespace limber
       bool held = false, walls = false;
       for (unsigned int side = 0; side < 2 * dim; ++side)
         {
-          const SideCondition condition = problem.sides[side].condition;
-          walls = walls || condition != SideCondition::free;
-          if (condition == SideCondition::no_slip ||
-              condition == SideCondition::velocity)
+          const Side<dim> &wall = problem.sides[side];
+          walls                 = walls || wall.held != HeldComponents::none;
+          if (wall.held == HeldComponents::all && !wall.one_sided)
             held = held || has_face_in(side, body, problem.grid);
-          else if (condition == SideCondition::friction &&
-                   has_face_in(side, body, problem.grid))
+          else if (wall.one_sided && has_face_in(side, body, problem.grid))
             return "it may slide and lift from the side " +
                    in_quotes(side_names(dim)[side]);
         }

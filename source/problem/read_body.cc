@@ -307,18 +307,10 @@ namespace limber
     bool
     needs_hourglass_control(const Projection treatment, const bool fluid)
     {
-      switch (treatment)
-        {
-          case Projection::none:
-            return false;
-          case Projection::cell_full:
-            return true;
-          case Projection::cell_shear:
-          case Projection::hybrid:
-            return fluid || dim == 3;
-          default:
-            return fluid;
-        }
+      const Treatment &row = treatment_of(treatment);
+      if (treatment == Projection::none)
+        return false;
+      return fluid || (dim == 2 ? row.weak_in_2d : row.weak_in_3d);
     }
 
 

@@ -9,62 +9,13 @@ namespace limber
 {
   namespace
   {
-    /** An observable and the entries that it must or may be given. */
-    struct ObservableType
-    {
-      std::string              word;
-      ObservableKind           kind;
-      std::vector<std::string> required, optional;
-    };
-
-
-
-    const std::vector<ObservableType> &
-    observable_types()
-    {
-      using K                                  = ObservableKind;
-      const std::vector<std::string> at_point  = {"Location"};
-      const std::vector<std::string> component = {"Location", "Direction"};
-      const std::vector<std::string> body      = {"Body"};
-      static const std::vector<ObservableType> types = {
-        {"displacement", K::displacement, component, body},
-        {"velocity", K::velocity, component, body},
-        {"stress", K::stress, component, body},
-        {"pressure", K::pressure, at_point, body},
-        {"volume ratio", K::volume_ratio, at_point, body},
-        {"position", K::position, component, body},
-        {"extreme coordinate",
-         K::extreme_coordinate,
-         {"Direction"},
-         {"Body", "Within"}},
-        {"kinetic energy", K::kinetic_energy, {}, body},
-        {"strain energy", K::strain_energy, {}, body},
-        {"total energy", K::total_energy, {}, body},
-        {"momentum", K::momentum, {"Direction"}, body},
-        {"centre of mass", K::centre_of_mass, {"Direction"}, body},
-        {"frequency", K::frequency, {"Observable"}, {}},
-        {"reaction force", K::reaction_force, {"Side", "Direction"}, {}}};
-      return types;
-    }
-
-
-
-    const ObservableType &
-    type_of(const std::string &word)
-    {
-      return *std::find_if(observable_types().begin(),
-                           observable_types().end(),
-                           [&](const auto &type) { return type.word == word; });
-    }
-
-
-
+    /** The same in two and three dimensions. */
     std::vector<std::string>
-    type_words()
+    kind_words()
     {
       std::vector<std::string> words;
-      for (const ObservableType &type : observable_types())
-        words.push_back(type.word);
+      for (const auto &kind : observable_kinds<2>())
+        words.push_back(kind.word);
       return words;
     }
 
@@ -115,7 +66,7 @@ namespace limber
       parameters.enter_subsection("Observable " + name);
       parameters.declare("Type",
                          "",
-                         admissible::one_of(type_words()).or_empty(),
+                         admissible::one_of(kind_words()).or_empty(),
                          "What is observed in every step.");
       parameters.declare("Body",
                          "",
@@ -167,9 +118,10 @@ namespace limber
 
   namespace
   {
-    /** Every entry that the type needs is there, and no other. */
+    /** Every entry that the kind needs is there, and no other. */
+    template <int dim>
     void
-    check_entries(const Section &section, const ObservableType &type)
+    check_entries(const Section &section, const ObservableKind<dim> &kind)
     {
       const auto contains = [](const std::vector<std::string> &list,
                                const std::string              &entry) {
@@ -177,13 +129,13 @@ namespace limber
       };
       for (const std::string entry :
            {"Body", "Location", "Direction", "Within", "Observable", "Side"})
-        if (contains(type.required, entry))
+        if (contains(kind.required, entry))
           section.required_text(entry);
-        else if (!contains(type.optional, entry) && !section.is_empty(entry))
+        else if (!contains(kind.optional, entry) && !section.is_empty(entry))
           throw InputError("The value " + in_quotes(section.text(entry)) +
                            " in " + section.where(entry) +
                            " has no meaning for the type " +
-                           in_quotes(type.word) +
+                           in_quotes(kind.word) +
                            ". Usually it was copied along. Remove the entry or "
                            "choose another type.");
     }
@@ -251,14 +203,14 @@ namespace limber
       observable.positive = word.front() != '-';
       if (word.front() == '-' || word.front() == '+')
         word.erase(0, 1);
-      const bool is_stress = observable.kind == ObservableKind::stress;
-      if (word.size() != (is_stress ? 2 : 1))
+      const unsigned int letters = observable.kind->letters_of_direction;
+      if (word.size() != letters)
         throw InputError(
           "The direction " + in_quotes(section.text("Direction")) + " in " +
           section.where("Direction") + " does not fit the type " +
           in_quotes(section.text("Type")) +
           ". A stress needs two letters, all else one. Write " +
-          (is_stress ? "'xx'" : "'x'") + ", for instance.");
+          (letters == 2 ? "'xx'" : "'x'") + ", for instance.");
       observable.axis        = word.front() - 'x';
       observable.second_axis = word.back() - 'x';
     }
@@ -297,12 +249,10 @@ namespace limber
                     const std::string  &name,
                     const Problem<dim> &problem)
     {
-      const ObservableType &type = type_of(section.required_text("Type"));
-      check_entries(section, type);
-
       Observable<dim> observable;
       observable.name = name;
-      observable.kind = type.kind;
+      observable.kind = &observable_kind<dim>(section.required_text("Type"));
+      check_entries(section, *observable.kind);
       read_observed_body(section, problem, observable);
       read_location(section, problem.grid, observable);
       read_direction(section, observable);
@@ -323,7 +273,7 @@ namespace limber
       const std::vector<std::string> names = root.list("Observables");
       for (const Observable<dim> &observable : problem.observables)
         {
-          if (observable.kind != ObservableKind::frequency)
+          if (observable.kind->looks_at != ObservedPart::column)
             continue;
           const std::string where =
             root.subsection("Observable " + observable.name)
@@ -332,7 +282,7 @@ namespace limber
           const auto of =
             std::find(names.begin(), names.end(), observable.observable) -
             names.begin();
-          if (problem.observables[of].kind == ObservableKind::frequency)
+          if (problem.observables[of].kind->looks_at == ObservedPart::column)
             throw InputError("The frequency " + in_quotes(observable.name) +
                              " is taken of " +
                              in_quotes(observable.observable) +

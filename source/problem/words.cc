@@ -11,23 +11,6 @@ namespace limber
 
 
 
-  const Words<ShapeKind> &
-  shape_words()
-  {
-    static const Words<ShapeKind> words = {
-      {"box", ShapeKind::box, "between two corners"},
-      {"ball", ShapeKind::ball, "disc or ball, by centre and radius"},
-      {"cylinder", ShapeKind::cylinder, "along x, y or z; only in 3D"},
-      {"formula", ShapeKind::formula, "where a formula is positive"},
-      {"block",
-       ShapeKind::block,
-       "quadrilateral or hexahedron, by its corners"},
-      {"union", ShapeKind::union_of_shapes, "all that is in one of several"}};
-    return words;
-  }
-
-
-
   const Words<LawDescription> &
   law_words()
   {
@@ -192,28 +175,12 @@ namespace limber
   const Words<Projection> &
   locking_words()
   {
-    static const Words<Projection> words = {
-      {"auto",
-       Projection::automatic,
-       "'cell' for liquids; for solids 'assumed strain' with linear functions, "
-       "else 'none' or 'node', by Poisson's ratio"},
-      {"none", Projection::none, "values of the points as they are"},
-      {"cell",
-       Projection::cell,
-       "Hu-Washizu, volumetric strain and pressure constant in the cell"},
-      {"cell shear",
-       Projection::cell_shear,
-       "volumetric strain, shear strain and their stresses constant"},
-      {"cell full", Projection::cell_full, "all strain and stress constant"},
-      {"node",
-       Projection::node,
-       "volumetric strain and pressure averaged around nodes, linear between"},
-      {"hybrid",
-       Projection::hybrid,
-       "as 'node', and shear strain and its stress constant in the cell"},
-      {"assumed strain",
-       Projection::assumed_strain,
-       "constant but for what bends the cell, see 'Hourglass response'"}};
+    static const Words<Projection> words = []() {
+      Words<Projection> result;
+      for (const Treatment &treatment : treatments)
+        result.push_back({treatment.word, treatment.kind, treatment.text});
+      return result;
+    }();
     return words;
   }
 
@@ -254,17 +221,4 @@ namespace limber
     return words;
   }
 
-
-
-  const Words<SideCondition> &
-  side_condition_words()
-  {
-    static const Words<SideCondition> words = {
-      {"free", SideCondition::free, "nothing is prescribed"},
-      {"slip", SideCondition::slip, "no velocity through the side"},
-      {"no slip", SideCondition::no_slip, "no velocity"},
-      {"friction", SideCondition::friction, "slip with Coulomb friction"},
-      {"velocity", SideCondition::velocity, "prescribed by a formula"}};
-    return words;
-  }
 } // namespace limber

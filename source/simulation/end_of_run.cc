@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/base/timing.h>
 #include <limber/simulation/set_up.h>
 #include <limber/simulation/simulation.h>
 
@@ -134,7 +135,7 @@ namespace limber
   {
     // The speeds of a run that has blown up say nothing about its step.
     const Method &method = problem.method;
-    const auto    speeds = integrator.state();
+    const auto    speeds = integrator->state();
     Symptoms      symptoms =
       find_symptoms(state, speeds.wave_speed + speeds.point_speed);
     if (method.time_step == 0)
@@ -212,13 +213,12 @@ namespace limber
     summary.momentum_error  = totals.momentum_error;
     summary.lost_points     = sum(state.ledger.lost_points, communicator);
 
-    auto   verbs = integrator.verb_seconds;
-    double all   = 0;
-    for (double &seconds : verbs)
+    summary.verbs = integrator->verb_seconds();
+    double all    = 0;
+    for (auto &[name, seconds] : summary.verbs)
       all += seconds = sum(seconds, communicator);
-    for (std::size_t v = 0; v < verbs.size(); ++v)
-      summary.verbs.emplace_back(name_of(Verb(v)),
-                                 verbs[v] / std::max(all, 1e-300));
+    for (auto &[name, share_of_step] : summary.verbs)
+      share_of_step /= std::max(all, 1e-300);
 
     summary.checks = checks.results();
     for (const auto &[text, count] : console.warning_counts())
@@ -242,7 +242,7 @@ namespace limber
     summary.message   = message;
     summary.failure   = failure;
     summary.suspected = suspected;
-    integrator.bring_points_home();
+    integrator->bring_points_home();
     summary.health =
       judge(health.look(state, totals, balance_of_start.state().energy_scale));
     if (statistics)

@@ -60,7 +60,7 @@ namespace limber
         const auto beyond = farthest(state, *body);
         for (unsigned int side = 0; side < 2 * dim; ++side)
           {
-            if (state.problem.sides[side].condition == SideCondition::free ||
+            if (state.problem.sides[side].held == HeldComponents::none ||
                 beyond[side] <=
                   chance_overstep * state.problem.grid.edge(side / 2))
               continue;

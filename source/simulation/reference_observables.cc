@@ -10,21 +10,6 @@ namespace limber
 {
   namespace
   {
-    constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
-    bool
-    is_at_a_place(const ObservableKind kind)
-    {
-      return kind == ObservableKind::displacement ||
-             kind == ObservableKind::velocity ||
-             kind == ObservableKind::position ||
-             kind == ObservableKind::stress ||
-             kind == ObservableKind::pressure ||
-             kind == ObservableKind::volume_ratio;
-    }
-
-
-
     /**
      * J: laws take the difference of numbers of the size of one, so energies
      * are known to some last bits of the stiffness.
@@ -51,7 +36,7 @@ namespace limber
     , crossings(problem.observables.size())
   {
     for (const Observable<dim> &observable : problem.observables)
-      places.push_back(is_at_a_place(observable.kind) ?
+      places.push_back(looks_at_place(observable) ?
                          place_in_body(observable.location) :
                          dealii::Point<dim>());
   }
@@ -89,18 +74,6 @@ namespace limber
 
 
   template <int dim>
-  std::vector<std::string>
-  ReferenceObservables<dim>::names() const
-  {
-    std::vector<std::string> result;
-    for (const Observable<dim> &observable : problem.observables)
-      result.push_back(observable.name);
-    return result;
-  }
-
-
-
-  template <int dim>
   std::vector<Column>
   ReferenceObservables<dim>::columns() const
   {
@@ -123,7 +96,7 @@ namespace limber
     result.push_back({"smallest volume ratio", ""});
     result.push_back({"largest volume ratio", ""});
     for (const Observable<dim> &observable : problem.observables)
-      result.push_back({observable.name, unit_of(observable.kind)});
+      result.push_back({observable.name, observable.kind->unit});
     return result;
   }
 
@@ -191,7 +164,54 @@ namespace limber
         largest = std::max(largest, sign * place[axis]);
     });
     largest = dealii::Utilities::MPI::max(largest, model.communicator);
-    return std::isfinite(largest) ? sign * largest : not_known;
+    return std::isfinite(largest) ? largest : not_known;
+  }
+
+
+
+  template <int dim>
+  Seen<dim>
+  ReferenceObservables<dim>::look(const unsigned int          number,
+                                  const ReferenceTotals<dim> &totals) const
+  {
+    const Observable<dim>  &observable = problem.observables[number];
+    const SolidMotion<dim> &motion     = solver.motion();
+    Seen<dim>               seen;
+    switch (observable.kind->looks_at)
+      {
+        case ObservedPart::place:
+        case ObservedPart::material:
+          {
+            const PlaceSample<dim> here = sample_at(model,
+                                                    places[number],
+                                                    motion.displacement,
+                                                    motion.velocity);
+            seen.displacement           = here.displacement;
+            seen.position               = places[number] + here.displacement;
+            seen.velocity               = here.velocity;
+            seen.stress                 = here.material.stress;
+            seen.pressure               = here.material.pressure;
+            seen.volume_ratio           = here.material.volume_ratio;
+            return seen;
+          }
+        case ObservedPart::body:
+          seen.mass             = totals.mass;
+          seen.momentum         = totals.momentum;
+          seen.mass_moment      = totals.mass_moment;
+          seen.kinetic_energy   = totals.kinetic_energy;
+          seen.strain_energy    = totals.strain.strain_energy;
+          seen.potential_energy = totals.gravitational_energy;
+          return seen;
+        case ObservedPart::extent:
+          seen.extent = extreme(observable);
+          return seen;
+        case ObservedPart::side:
+          seen.force = -motion.side_force[observable.side];
+          return seen;
+        case ObservedPart::column:
+          break;
+      }
+    return seen;
   }
 
 
@@ -200,78 +220,10 @@ namespace limber
   std::vector<double>
   ReferenceObservables<dim>::observe(const ReferenceTotals<dim> &totals)
   {
-    const SolidMotion<dim> &motion = solver.motion();
-    std::vector<double>     values;
-    for (unsigned int i = 0; i < problem.observables.size(); ++i)
-      {
-        const Observable<dim> &observable = problem.observables[i];
-        const unsigned int     axis       = observable.axis;
-        const double           sign       = observable.positive ? 1 : -1;
-        PlaceSample<dim>       here;
-        if (is_at_a_place(observable.kind))
-          here =
-            sample_at(model, places[i], motion.displacement, motion.velocity);
-
-        double value = not_known;
-        switch (observable.kind)
-          {
-            case ObservableKind::displacement:
-              value = sign * here.displacement[axis];
-              break;
-            case ObservableKind::velocity:
-              value = sign * here.velocity[axis];
-              break;
-            case ObservableKind::position:
-              value = sign * (places[i][axis] + here.displacement[axis]);
-              break;
-            case ObservableKind::stress:
-              value = sign * here.material.stress[axis][observable.second_axis];
-              break;
-            case ObservableKind::pressure:
-              value = sign * here.material.pressure;
-              break;
-            case ObservableKind::volume_ratio:
-              value = sign * here.material.volume_ratio;
-              break;
-            case ObservableKind::extreme_coordinate:
-              value = extreme(observable);
-              break;
-            case ObservableKind::kinetic_energy:
-              value = totals.kinetic_energy;
-              break;
-            case ObservableKind::strain_energy:
-              value = totals.strain.strain_energy;
-              break;
-            case ObservableKind::total_energy:
-              value = totals.kinetic_energy + totals.strain.strain_energy +
-                      totals.gravitational_energy;
-              break;
-            case ObservableKind::momentum:
-              value = sign * totals.momentum[axis];
-              break;
-            case ObservableKind::centre_of_mass:
-              value = sign * totals.mass_moment[axis] / totals.mass;
-              break;
-            case ObservableKind::reaction_force:
-              value = -sign * motion.side_force[observable.side][axis];
-              break;
-            case ObservableKind::frequency:
-              break; // of the columns, below
-          }
-        values.push_back(value);
-      }
-
-    const auto all = names();
-    for (unsigned int i = 0; i < values.size(); ++i)
-      if (problem.observables[i].kind == ObservableKind::frequency)
-        {
-          const auto of = std::find(all.begin(),
-                                    all.end(),
-                                    problem.observables[i].observable);
-          crossings[i].add(motion.time, values[of - all.begin()]);
-          values[i] = crossings[i].frequency();
-        }
-    return values;
+    return observed_row(problem.observables,
+                        solver.motion().time,
+                        crossings,
+                        [&](const unsigned int i) { return look(i, totals); });
   }
 
 

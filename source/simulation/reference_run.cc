@@ -117,7 +117,7 @@ namespace limber
         , model(problem, MPI_COMM_WORLD)
         , solver(model)
         , observables(model, solver)
-        , checks(problem.checks, observables.names())
+        , checks(problem.checks, names_of(problem.observables))
         , targets(checks.times())
       {
         check_steps(problem, Task::reference, solver.longest_step());

@@ -26,7 +26,7 @@ namespace limber
     // Points were read by the owners of their cells.
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
       balance(grid, bodies);
-    integrator.restore(resumed->integrator);
+    integrator->restore(resumed->integrator);
 
     // The scales of the balance grow with rows only.
     balance_of_start.restore(resumed->balance);
@@ -56,7 +56,7 @@ namespace limber
     now.time              = state.time;
     now.step_size         = state.step_size;
     now.ledger            = state.ledger.sum_over_ranks(communicator);
-    now.integrator        = integrator.state();
+    now.integrator        = integrator->state();
     now.balance           = balance_of_start.state();
     now.observables       = observables.state();
     now.checks            = checks.state();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/base/timing.h>
 #include <limber/simulation/passed_sides.h>
 #include <limber/simulation/set_up.h>
 #include <limber/simulation/signals.h>
@@ -43,11 +44,12 @@ namespace limber
     , bodies(set_up_bodies(problem, grid))
     , nodes(grid)
     , state{problem, grid, nodes, bodies, 0, 0, 0, {}}
-    , integrator(problem, grid, nodes, bodies, state.ledger)
+    , integrator(
+        make_integrator<dim>({problem, grid, nodes, bodies, state.ledger}))
     , balance_of_start(state)
     , health(state)
     , observables(state)
-    , checks(problem.checks, observables.names())
+    , checks(problem.checks, names_of(problem.observables))
     , writer(problem.output.directory)
     , checkpoints(problem, grid)
     , totals(balance_of_start.evaluate(state))
@@ -70,7 +72,7 @@ namespace limber
     text << totals.points << " points of " << bodies.size()
          << (bodies.size() == 1 ? " body in " : " bodies in ") << totals.cells
          << " cells of " << grid.smallest_edge << " m; first step "
-         << integrator.longest_step() << " s, to end time " << problem.end_time
+         << integrator->longest_step() << " s, to end time " << problem.end_time
          << " s";
     console.say(text.str());
   }
@@ -84,7 +86,7 @@ namespace limber
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
       {
         const std::string path    = problem.output.directory + "/statistics";
-        const auto        columns = statistics_columns(observables);
+        const auto        columns = statistics_columns(problem.observables);
         if (resumed)
           statistics.emplace(path, resumed->statistics_length, columns.size());
         else
@@ -117,7 +119,7 @@ namespace limber
         record();
         write_pictures();
       }
-    const double first_step = integrator.longest_step();
+    const double first_step = integrator->longest_step();
     step_of_exchange        = state.step;
     while (state.time < problem.end_time &&
            (problem.end_step == 0 || state.step < problem.end_step))
@@ -130,12 +132,11 @@ namespace limber
              state.step % problem.checkpoint.steps == 0))
           write_checkpoint();
 
-        if (integrator.reorganise())
+        if (integrator->reorganise())
           rebalance_if_it_pays();
-        if (!(integrator.longest_step() > smallest_step * first_step))
+        if (!(integrator->longest_step() > smallest_step * first_step))
           refuse_step(first_step);
-        const double step = next_step();
-        integrator.advance(state.time, step);
+        const double step = integrator->advance(state.time, next_step());
         state.time += step;
         state.step_size = step;
         ++state.step;
@@ -145,7 +146,7 @@ namespace limber
             state.time = target;
         points_and_steps += totals.points;
 
-        if (integrator.points_were_lost())
+        if (integrator->points_were_lost())
           report_lost_points();
         if (row_is_due())
           record();
@@ -163,7 +164,7 @@ namespace limber
   Simulation<dim>::refuse_step(const double first_step) const
   {
     throw ComputationError("The step has shrunk to " +
-                             brief(integrator.longest_step()) + " s, from " +
+                             brief(integrator->longest_step()) + " s, from " +
                              brief(first_step) + " s at first, at time " +
                              brief(state.time) + " s.",
                            FailureKind::step_too_small);
@@ -177,7 +178,7 @@ namespace limber
   double
   Simulation<dim>::next_step() const
   {
-    const double longest = integrator.longest_step();
+    const double longest = integrator->longest_step();
     double       target  = problem.end_time;
     if (problem.method.time_step == 0)
       {
@@ -272,7 +273,7 @@ namespace limber
   {
     std::vector<std::string> own;
     std::string              first; // of them, without its velocity
-    for (const auto &[body, point] : integrator.lost_points())
+    for (const auto &[body, point] : integrator->lost_points())
       {
         std::ostringstream text;
         text.precision(4);
@@ -315,12 +316,12 @@ namespace limber
   Simulation<dim>::rebalance_if_it_pays()
   {
     steps_waited +=
-      (integrator.imbalance() - 1) * double(state.step - step_of_exchange);
+      (integrator->imbalance() - 1) * double(state.step - step_of_exchange);
     step_of_exchange = state.step;
     if (steps_waited < steps_to_balance)
       return;
     balance(grid, bodies);
-    integrator.reinit();
+    integrator->reinit();
     steps_waited = 0;
   }
 

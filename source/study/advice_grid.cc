@@ -70,7 +70,9 @@ namespace limber
     is_plane_along(const Problem<dim> &problem, const unsigned int axis)
     {
       for (const unsigned int side : {2 * axis, 2 * axis + 1})
-        if (problem.sides[side].condition != SideCondition::slip)
+        if (problem.sides[side].held != HeldComponents::normal ||
+            problem.sides[side].one_sided ||
+            !problem.sides[side].velocity.empty())
           return false;
       if (problem.loads.gravity[axis] != 0 || !problem.loads.faces.empty())
         return false;
@@ -142,7 +144,7 @@ namespace limber
              std::any_of(problem.sides.begin(),
                          problem.sides.end(),
                          [](const Side<dim> &side) {
-                           return side.condition == SideCondition::velocity;
+                           return !side.velocity.empty();
                          });
     }
 

@@ -170,12 +170,10 @@ namespace limber
     /** Energies may stay what they are; others are held against their change.
      */
     double
-    scale_of(const ObservableKind kind, const std::vector<double> &values)
+    scale_of(const std::string &unit, const std::vector<double> &values)
     {
       double largest = 0;
-      if (kind == ObservableKind::kinetic_energy ||
-          kind == ObservableKind::strain_energy ||
-          kind == ObservableKind::total_energy)
+      if (unit == "J")
         for (const double value : values)
           largest = std::max(largest, std::abs(value));
       return largest;
@@ -199,13 +197,13 @@ namespace limber
           if (own == nullptr || with == nullptr)
             continue;
           const std::string name = in_quotes(observable.name);
-          if (observable.kind != ObservableKind::frequency)
+          if (observable.kind->looks_at != ObservedPart::column)
             note(relative_change(times,
                                  *own,
                                  other,
                                  *with,
                                  effect.until,
-                                 scale_of(observable.kind, *own)),
+                                 scale_of(observable.kind->unit, *own)),
                  name,
                  effect);
           else if (const double last = at_time(times, *own, effect.until);

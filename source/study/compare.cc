@@ -21,8 +21,6 @@ namespace limber
 {
   namespace
   {
-    constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-
     // Times closer than this share of the last one are the same.
     constexpr double same_time = 1e-7;
 

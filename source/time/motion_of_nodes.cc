@@ -2,12 +2,9 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/time/explicit_integrator.h>
-#include <limber/transfer/chequerboard.h>
-#include <limber/transfer/hourglass.h>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 /**
  * @file What a step does to the nodes between the sweeps over points: forces
@@ -16,86 +13,35 @@
  */
 namespace limber
 {
-  // Before points give anything to the nodes: the records of those at the
-  // corners of cells serve here.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::control_chequerboards()
+  ExplicitIntegrator<dim>::clear()
   {
-    for (auto &body : bodies)
-      {
-        const double strength = body->description.chequerboard_control;
-        if (!(strength > 0))
-          continue;
-        const double share =
-          std::min(strength * wave_speed * step / grid.smallest_edge,
-                   1. / (1 << dim));
-        NodalFields<dim> &vertices = nodes.vertices();
-        gather_chequerboards<dim>(vertices.owned_occupied_cells(),
-                                  vertices.view(),
-                                  body->cell_sums->view());
-        // A node in the middle of an edge has not all cells around it.
-        for (const HangingNode &hanging : grid.vertices.hanging)
-          std::fill_n(vertices.record(hanging.node),
-                      NodeLayout<dim>::stride,
-                      0.);
-        vertices.start_sum(0, n_chequerboard_slots<dim>);
-        vertices.finish_sum();
-        for (const auto *const cells : {&vertices.owned_occupied_cells(),
-                                        &vertices.ghost_occupied_cells()})
-          find_chequerboard_shifts<dim>(*cells,
-                                        vertices.view(),
-                                        body->cell_sums->view(),
-                                        share,
-                                        body->cell_shift.data());
-        vertices.clear();
-        lap(Verb::update_stress);
-      }
+    parts.nodes.clear();
+    extremes.speed_squared = extremes.wave_squared = extremes.displacement = 0;
+    history_time = step;
+    relocation.begin_step();
+    lap(Verb::advance_nodes);
   }
 
 
 
-  // Its forces are summed up in the re-mapped slots, which are not in use
-  // before the nodes advance, and then join the others.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::control_chequerboards()
+  {
+    stabilization.control_chequerboards(step, wave_speed);
+    lap(Verb::stabilize);
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::resist_hourglass()
   {
-    using Layout = NodeLayout<dim>;
-
-    resisting.clear();
-    for (auto &body : bodies)
-      if (body->description.hourglass_control > 0)
-        resisting.push_back({body->cell_sums->view(),
-                             body->description.hourglass_control * wave_speed});
-    if (resisting.empty())
-      return;
-
-    for (const std::uint32_t node : nodes.active_nodes())
-      std::fill_n(nodes.record(node) + Layout::remapped, dim, 0.);
-    limber::resist_hourglass<dim>(nodes.owned_occupied_cells(),
-                                  nodes.view(),
-                                  resisting,
-                                  step);
-    lap(Verb::points_to_grid);
-    sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
-    for (const std::uint32_t node : nodes.active_nodes())
-      {
-        double *const record = nodes.record(node);
-        const double  mass   = record[Layout::mass];
-        if (!(mass > 0))
-          continue;
-        for (int d = 0; d < dim; ++d)
-          {
-            const double force = std::exchange(record[Layout::remapped + d], 0);
-            // heat, but for the change of velocity within the step
-            if (nodes.owns(node))
-              ledger.viscous -=
-                step * force * record[Layout::momentum + d] / mass;
-            record[Layout::force + d] += force;
-          }
-      }
-    lap(Verb::advance_nodes);
+    stabilization.resist_hourglass(step, wave_speed);
+    lap(Verb::stabilize);
   }
 
 
@@ -106,20 +52,19 @@ namespace limber
   void
   ExplicitIntegrator<dim>::damp()
   {
-    using Layout = NodeLayout<dim>;
-
-    const double lost_share = -std::expm1(-problem.method.damping_rate * step);
+    const double lost_share =
+      -std::expm1(-parts.problem.method.damping_rate * step);
     if (lost_share == 0)
       return;
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : parts.nodes.active_nodes())
       {
-        double *const record = nodes.record(node);
+        double *const record = parts.nodes.record(node);
         for (int d = 0; d < dim; ++d)
           {
             const double lost = lost_share * record[Layout::momentum + d];
             record[Layout::force + d] -= lost / step;
-            if (nodes.owns(node))
-              ledger.load_impulse[d] -= lost;
+            if (parts.nodes.owns(node))
+              parts.ledger.load_impulse[d] -= lost;
           }
       }
     lap(Verb::advance_nodes);
@@ -132,9 +77,10 @@ namespace limber
   void
   ExplicitIntegrator<dim>::add_loads()
   {
-    const bool at_middle = problem.method.order == StressUpdateOrder::usavg;
+    const bool at_middle =
+      parts.problem.method.order == StressUpdateOrder::usavg;
     if (loads.any())
-      loads.add(nodes, at_middle ? time + 0.5 * step : time);
+      loads.add(parts.nodes, at_middle ? time + 0.5 * step : time);
     lap(Verb::add_loads);
   }
 
@@ -145,19 +91,17 @@ namespace limber
   void
   ExplicitIntegrator<dim>::advance_nodes()
   {
-    using Layout = NodeLayout<dim>;
-
     std::array<double, dim> gravity_step;
     for (int d = 0; d < dim; ++d)
-      gravity_step[d] = step * problem.loads.gravity[d];
+      gravity_step[d] = step * parts.problem.loads.gravity[d];
 
     double total_mass = 0, checked_speed = 0, all = 0;
     // A node that only touches the material may be fast for a moment.
-    const double checked_mass = 0.1 * largest_mass;
-    largest_mass              = 0;
-    for (const std::uint32_t node : nodes.active_nodes())
+    const double checked_mass = 0.1 * extremes.largest_mass;
+    extremes.largest_mass     = 0;
+    for (const std::uint32_t node : parts.nodes.active_nodes())
       {
-        double *const record = nodes.record(node);
+        double *const record = parts.nodes.record(node);
         const double  mass   = record[Layout::mass];
         if (!(mass > 0))
           continue;
@@ -173,19 +117,19 @@ namespace limber
             record[Layout::velocity + d]  = after;
             squared += after * after;
           }
-        if (nodes.owns(node))
+        if (parts.nodes.owns(node))
           total_mass += mass;
-        largest_mass = std::max(largest_mass, mass);
+        extremes.largest_mass = std::max(extremes.largest_mass, mass);
         all += squared;
         if (mass > checked_mass)
           checked_speed = std::max(checked_speed, squared);
       }
     for (int d = 0; d < dim; ++d)
-      ledger.gravity_impulse[d] += total_mass * gravity_step[d];
+      parts.ledger.gravity_impulse[d] += total_mass * gravity_step[d];
 
-    fastest_node = std::isfinite(all) ?
-                     std::sqrt(checked_speed) * step / grid.smallest_edge :
-                     1e300;
+    fastest_node = std::isfinite(all) ? std::sqrt(checked_speed) * step /
+                                          parts.grid.smallest_edge :
+                                        1e300;
     lap(Verb::advance_nodes);
   }
 
@@ -196,8 +140,12 @@ namespace limber
   ExplicitIntegrator<dim>::check_nodes()
   {
     if (parallel)
-      MPI_Allreduce(
-        MPI_IN_PLACE, &fastest_node, 1, MPI_DOUBLE, MPI_MAX, grid.communicator);
+      MPI_Allreduce(MPI_IN_PLACE,
+                    &fastest_node,
+                    1,
+                    MPI_DOUBLE,
+                    MPI_MAX,
+                    parts.grid.communicator);
     lap(Verb::check_nodes);
     const double cells = fastest_node;
     if (cells <= 1)
@@ -211,7 +159,7 @@ namespace limber
     throw ComputationError("The run is unstable: a node moves by " +
                              brief(cells) + " cells in one step of " +
                              brief(step) + " s, at " +
-                             brief(cells * grid.smallest_edge / step) +
+                             brief(cells * parts.grid.smallest_edge / step) +
                              " m/s," + where,
                            FailureKind::growing_energy);
   }
@@ -226,28 +174,28 @@ namespace limber
   void
   ExplicitIntegrator<dim>::account_loads(const unsigned int velocity_after)
   {
-    using Layout = NodeLayout<dim>;
-
-    const double lost_share = -std::expm1(-problem.method.damping_rate * step);
-    const bool   loaded     = loads.any();
+    const double lost_share =
+      -std::expm1(-parts.problem.method.damping_rate * step);
+    const bool loaded = loads.any();
     if (!loaded && lost_share == 0)
       return;
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : parts.nodes.active_nodes())
       {
-        const double *const record = nodes.record(node);
-        if (!nodes.owns(node) || !(record[Layout::mass] > 0))
+        const double *const record = parts.nodes.record(node);
+        if (!parts.nodes.owns(node) || !(record[Layout::mass] > 0))
           continue;
         dealii::Tensor<1, dim> force;
         if (loaded)
           force = loads.on_node(node);
-        ledger.load_impulse += step * force;
+        parts.ledger.load_impulse += step * force;
         for (int d = 0; d < dim; ++d)
           {
             const double before =
               record[Layout::velocity + d] - record[Layout::increment + d];
             const double mean = 0.5 * (before + record[velocity_after + d]);
-            ledger.load_work += step * force[d] * mean;
-            ledger.viscous += lost_share * record[Layout::mass] * before * mean;
+            parts.ledger.load_work += step * force[d] * mean;
+            parts.ledger.viscous +=
+              lost_share * record[Layout::mass] * before * mean;
           }
       }
     lap(Verb::add_loads);
@@ -259,39 +207,49 @@ namespace limber
   void
   ExplicitIntegrator<dim>::apply_boundaries()
   {
-    boundaries.apply(nodes,
+    boundaries.apply(parts.nodes,
                      time + step,
                      [this](const unsigned int            side,
                             const dealii::Tensor<1, dim> &impulse,
                             const double                  work) {
-                       ledger.side_impulse[side] += impulse;
-                       ledger.boundary_work += work;
+                       parts.ledger.side_impulse[side] += impulse;
+                       parts.ledger.boundary_work += work;
                      });
     lap(Verb::apply_boundaries);
   }
 
 
 
-  // A velocity in the re-mapped slot, with the boundary conditions on it.
+  // The velocity that strains points, with the boundary conditions on it.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::divide_remapped(const unsigned int momentum,
-                                           const double       when)
+  ExplicitIntegrator<dim>::form_velocity(const unsigned int momentum,
+                                         const double       when)
   {
-    using Layout = NodeLayout<dim>;
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : parts.nodes.active_nodes())
       {
-        double *const record = nodes.record(node);
+        double *const record = parts.nodes.record(node);
         const double  mass   = record[Layout::mass];
         if (!(mass > 0))
           continue;
         const double inverse = 1 / mass;
         for (int d = 0; d < dim; ++d)
-          record[Layout::remapped + d] = record[momentum + d] * inverse;
+          record[Layout::strain_velocity + d] = record[momentum + d] * inverse;
       }
     lap(Verb::advance_nodes);
-    boundaries.apply_trial(nodes, Layout::remapped, when);
+    boundaries.apply_trial(parts.nodes, Layout::strain_velocity, when);
     lap(Verb::apply_boundaries);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::clear_remapped()
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      std::fill_n(parts.nodes.record(node) + Layout::remapped, dim, 0.);
+    lap(Verb::advance_nodes);
   }
 
 
@@ -302,23 +260,52 @@ namespace limber
   void
   ExplicitIntegrator<dim>::centre_velocity()
   {
-    using Layout = NodeLayout<dim>;
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : parts.nodes.active_nodes())
       {
-        double *const record = nodes.record(node);
+        double *const record = parts.nodes.record(node);
         for (int d = 0; d < dim; ++d)
-          record[Layout::increment + d] =
+          record[Layout::middle_velocity + d] =
             record[Layout::velocity + d] - 0.5 * record[Layout::increment + d];
       }
     lap(Verb::advance_nodes);
-    boundaries.apply_trial(nodes, Layout::increment, time + 0.5 * step);
+    boundaries.apply_trial(parts.nodes,
+                           Layout::middle_velocity,
+                           time + 0.5 * step);
     lap(Verb::apply_boundaries);
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : parts.nodes.active_nodes())
       {
-        double *const record = nodes.record(node);
-        std::copy_n(record + Layout::increment, dim, record + Layout::velocity);
+        double *const record = parts.nodes.record(node);
+        std::copy_n(record + Layout::middle_velocity,
+                    dim,
+                    record + Layout::moving_velocity);
       }
     lap(Verb::advance_nodes);
+  }
+
+
+
+  // Points then take it as with PIC; in steps between, as with FLIP.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::filter_velocity()
+  {
+    if (!full_mass)
+      return;
+    const Method &method = parts.problem.method;
+    steps_since_filter   = (steps_since_filter + 1) % method.transfer_period;
+    if (steps_since_filter == 0)
+      {
+        const auto action = full_mass->apply(parts.nodes,
+                                             parts.bodies,
+                                             method.transfer_order,
+                                             method.transfer == Transfer::xpic);
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          parts.ledger.side_impulse[side] += action.impulse[side];
+        // What points lose to the filter contains it.
+        parts.ledger.boundary_work += action.work;
+        parts.ledger.transfer += action.work;
+      }
+    lap(Verb::grid_to_points);
   }
 
 
@@ -327,12 +314,14 @@ namespace limber
   void
   ExplicitIntegrator<dim>::interpolate_hanging()
   {
-    nodes.interpolate_hanging();
+    parts.nodes.interpolate_hanging();
     lap(Verb::apply_boundaries);
   }
 
 
 
+  template void
+  ExplicitIntegrator<2>::clear();
   template void
   ExplicitIntegrator<2>::control_chequerboards();
   template void
@@ -350,11 +339,17 @@ namespace limber
   template void
   ExplicitIntegrator<2>::apply_boundaries();
   template void
-  ExplicitIntegrator<2>::divide_remapped(unsigned int, double);
+  ExplicitIntegrator<2>::form_velocity(unsigned int, double);
+  template void
+  ExplicitIntegrator<2>::clear_remapped();
   template void
   ExplicitIntegrator<2>::centre_velocity();
   template void
+  ExplicitIntegrator<2>::filter_velocity();
+  template void
   ExplicitIntegrator<2>::interpolate_hanging();
+  template void
+  ExplicitIntegrator<3>::clear();
   template void
   ExplicitIntegrator<3>::control_chequerboards();
   template void
@@ -372,9 +367,13 @@ namespace limber
   template void
   ExplicitIntegrator<3>::apply_boundaries();
   template void
-  ExplicitIntegrator<3>::divide_remapped(unsigned int, double);
+  ExplicitIntegrator<3>::form_velocity(unsigned int, double);
+  template void
+  ExplicitIntegrator<3>::clear_remapped();
   template void
   ExplicitIntegrator<3>::centre_velocity();
+  template void
+  ExplicitIntegrator<3>::filter_velocity();
   template void
   ExplicitIntegrator<3>::interpolate_hanging();
 } // namespace limber

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/time/explicit_integrator.h>
+#include <limber/time/relocation.h>
 #include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/grid_to_points.h>
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 
-/**
- * @file What happens to points between the sweeps of two steps: cells and
- * sums that follow them, order in memory, changes of rank, losses.
- */
 namespace limber
 {
   namespace
@@ -21,60 +17,89 @@ namespace limber
 
 
 
+  template <int dim>
+  Relocation<dim>::Relocation(const RunParts<dim> &parts,
+                              ExternalLoads<dim>  &loads)
+    : parts(parts)
+    , loads(loads)
+    , parallel(
+        dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
+  {}
+
+
+
+  template <int dim>
+  void
+  Relocation<dim>::reinit()
+  {
+    travelled = 0;
+    sort_points(/*agree=*/true);
+    gather_cells();
+  }
+
+
+
   // The one reduction over ranks that every step needs.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::reduce_extremes()
+  Relocation<dim>::reduce(StepExtremes &extremes)
   {
-    any_lost           = nodes.points_have_left() ? 1 : 0;
-    any_entered_shared = nodes.has_entered_shared() ? 1 : 0;
-    any_entered_ghosts = nodes.has_entered_ghosts() ? 1 : 0;
+    any_lost           = parts.nodes.points_have_left() ? 1 : 0;
+    any_entered_shared = parts.nodes.has_entered_shared() ? 1 : 0;
+    any_entered_ghosts = parts.nodes.has_entered_ghosts() ? 1 : 0;
     most_points        = 0;
-    for (const auto &body : bodies)
+    for (const auto &body : parts.bodies)
       most_points += body->points.size();
     most_excess_batches = excess_batches;
-    if (parallel)
-      {
-        double *const extremes[] = {&speed_squared,
-                                    &wave_squared,
-                                    &displacement,
-                                    &largest_mass,
-                                    &any_lost,
-                                    &any_entered_shared,
-                                    &any_entered_ghosts,
-                                    &most_points,
-                                    &most_excess_batches};
-        constexpr int n          = std::size(extremes);
-        double        values[n];
-        for (int k = 0; k < n; ++k)
-          values[k] = *extremes[k];
-        MPI_Allreduce(
-          MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_MAX, grid.communicator);
-        for (int k = 0; k < n; ++k)
-          *extremes[k] = values[k];
-      }
-    wave_speed  = std::sqrt(wave_squared);
-    point_speed = std::sqrt(speed_squared);
+    if (!parallel)
+      return;
+    double *const all[] = {&extremes.speed_squared,
+                           &extremes.wave_squared,
+                           &extremes.displacement,
+                           &extremes.largest_mass,
+                           &any_lost,
+                           &any_entered_shared,
+                           &any_entered_ghosts,
+                           &most_points,
+                           &most_excess_batches};
+    constexpr int n     = std::size(all);
+    double        values[n];
+    for (int k = 0; k < n; ++k)
+      values[k] = *all[k];
+    MPI_Allreduce(
+      MPI_IN_PLACE, values, n, MPI_DOUBLE, MPI_MAX, parts.grid.communicator);
+    for (int k = 0; k < n; ++k)
+      *all[k] = values[k];
   }
 
 
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::relocate()
+  Relocation<dim>::begin_step()
+  {
+    n_batches = 0;
+    lost.clear();
+  }
+
+
+
+  template <int dim>
+  void
+  Relocation<dim>::end_step(StepExtremes &extremes)
   {
     if (n_batches > n_batches_sorted)
       excess_batches += n_batches - n_batches_sorted;
-    reduce_extremes();
+    reduce(extremes);
     if (any_lost > 0)
       remove_lost_points();
-    nodes.add_entered();
+    parts.nodes.add_entered();
     if (any_entered_shared > 0)
-      nodes.agree_on_sums();
-    complete_cells(&MaterialBody<dim>::cell_sums);
-
-    travelled += displacement;
-    lap(Verb::relocate);
+      parts.nodes.agree_on_sums();
+    complete_sums(parts.bodies,
+                  &MaterialBody<dim>::cell_sums,
+                  parts.nodes.cell_plan());
+    travelled += extremes.displacement;
   }
 
 
@@ -83,9 +108,10 @@ namespace limber
   // linear ones.
   template <int dim>
   bool
-  ExplicitIntegrator<dim>::bring_points_home()
+  Relocation<dim>::bring_points_home()
   {
-    if (!parallel || !grid.reaches_beyond_cells() || !(any_entered_ghosts > 0))
+    if (!parallel || !parts.grid.reaches_beyond_cells() ||
+        !(any_entered_ghosts > 0))
       return false;
     exchange_points();
     return true;
@@ -93,42 +119,27 @@ namespace limber
 
 
 
-  // The sums that a sweep has gathered.
-  template <int dim>
-  void
-  ExplicitIntegrator<dim>::complete_cells(
-    std::optional<CellFields<dim>> MaterialBody<dim>::*const sums)
-  {
-    for (auto &body : bodies)
-      if ((*body).*sums)
-        ((*body).*sums)->start_completion(nodes.cell_plan());
-    for (auto &body : bodies)
-      if (auto &own = (*body).*sums)
-        own->finish_completion();
-  }
-
-
-
   // For points that have come to their cells other than by moving.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::gather_cells()
+  Relocation<dim>::gather_cells()
   {
-    for (auto &body : bodies)
+    for (auto &body : parts.bodies)
       if (body->cell_sums)
         gather_cell_sums<dim>(body->points.view(),
-                              nodes.view(),
+                              parts.nodes.view(),
                               body->cell_sums->view());
-    complete_cells(&MaterialBody<dim>::cell_sums);
+    complete_sums(parts.bodies,
+                  &MaterialBody<dim>::cell_sums,
+                  parts.nodes.cell_plan());
   }
 
 
 
   template <int dim>
   bool
-  ExplicitIntegrator<dim>::reorganise()
+  Relocation<dim>::reorganise(const double displacement)
   {
-    stopwatch.start();
     bool exchanged = bring_points_home();
     // The next step may be somewhat longer than the last one.
     if (parallel && travelled + 1.5 * displacement > travel_limit)
@@ -140,7 +151,6 @@ namespace limber
     // ranks sort in the same step, or each would wait while the others do.
     else if (most_excess_batches > most_points / 4)
       sort_points(/*agree=*/false);
-    lap(Verb::relocate);
     return exchanged;
   }
 
@@ -149,9 +159,9 @@ namespace limber
   // A point without a cell has left the box, or this rank's part of it.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::remove_lost_points()
+  Relocation<dim>::remove_lost_points()
   {
-    for (auto &body : bodies)
+    for (auto &body : parts.bodies)
       {
         const auto strain_energy = [&]() {
           return body->stress->summarize(body->points.view()).strain_energy;
@@ -159,17 +169,17 @@ namespace limber
         const double before = strain_energy();
         for (const LostPoint<dim> &point : body->points.remove_lost())
           {
-            ++ledger.lost_points;
-            ledger.lost_mass += point.mass;
-            ledger.lost_momentum += point.momentum;
-            ledger.lost_energy +=
+            ++parts.ledger.lost_points;
+            parts.ledger.lost_mass += point.mass;
+            parts.ledger.lost_momentum += point.momentum;
+            parts.ledger.lost_energy +=
               0.5 * point.momentum.norm_square() / point.mass;
             for (int d = 0; d < dim; ++d)
-              ledger.lost_energy -=
-                point.mass * problem.loads.gravity[d] * point.position[d];
+              parts.ledger.lost_energy -=
+                point.mass * parts.problem.loads.gravity[d] * point.position[d];
             lost.emplace_back(body->description.name, point);
           }
-        ledger.lost_energy += before - strain_energy();
+        parts.ledger.lost_energy += before - strain_energy();
       }
   }
 
@@ -177,9 +187,9 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::exchange_points()
+  Relocation<dim>::exchange_points()
   {
-    for (auto &body : bodies)
+    for (auto &body : parts.bodies)
       body->points.hand_over();
     loads.exchange_pieces();
     travelled          = 0;
@@ -192,11 +202,11 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::sort_points(const bool agree)
+  Relocation<dim>::sort_points(const bool agree)
   {
     std::vector<std::uint32_t> cells;
     n_batches_sorted = 0;
-    for (auto &body : bodies)
+    for (auto &body : parts.bodies)
       {
         const auto        of_body = body->points.sort_by_cell();
         const std::size_t before  = cells.size();
@@ -205,7 +215,7 @@ namespace limber
         std::inplace_merge(cells.begin(), cells.begin() + before, cells.end());
         if (const auto points = body->points.view(); points.has_domains())
           {
-            const auto corners = cells_of_corners(points, nodes.view());
+            const auto corners = cells_of_corners(points, parts.nodes.view());
             const auto middle  = cells.size();
             cells.insert(cells.end(), corners.begin(), corners.end());
             std::inplace_merge(cells.begin(),
@@ -214,7 +224,7 @@ namespace limber
           }
       }
     cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-    nodes.set_occupied(std::move(cells), agree);
+    parts.nodes.set_occupied(std::move(cells), agree);
     excess_batches = 0;
   }
 
@@ -222,58 +232,18 @@ namespace limber
 
   template <int dim>
   double
-  ExplicitIntegrator<dim>::imbalance() const
+  Relocation<dim>::imbalance() const
   {
     double own = 0;
-    for (const auto &body : bodies)
+    for (const auto &body : parts.bodies)
       own += body->points.size();
     const auto all =
-      dealii::Utilities::MPI::min_max_avg(own, grid.communicator);
+      dealii::Utilities::MPI::min_max_avg(own, parts.grid.communicator);
     return all.avg > 0 ? all.max / all.avg : 1;
   }
 
 
 
-  template void
-  ExplicitIntegrator<2>::reduce_extremes();
-  template void
-  ExplicitIntegrator<2>::relocate();
-  template void
-  ExplicitIntegrator<2>::complete_cells(
-    std::optional<CellFields<2>> MaterialBody<2>::*);
-  template void
-  ExplicitIntegrator<2>::gather_cells();
-  template bool
-  ExplicitIntegrator<2>::bring_points_home();
-  template bool
-  ExplicitIntegrator<2>::reorganise();
-  template void
-  ExplicitIntegrator<2>::remove_lost_points();
-  template void
-  ExplicitIntegrator<2>::exchange_points();
-  template void
-  ExplicitIntegrator<2>::sort_points(bool);
-  template double
-  ExplicitIntegrator<2>::imbalance() const;
-  template void
-  ExplicitIntegrator<3>::reduce_extremes();
-  template void
-  ExplicitIntegrator<3>::relocate();
-  template void
-  ExplicitIntegrator<3>::complete_cells(
-    std::optional<CellFields<3>> MaterialBody<3>::*);
-  template void
-  ExplicitIntegrator<3>::gather_cells();
-  template bool
-  ExplicitIntegrator<3>::bring_points_home();
-  template bool
-  ExplicitIntegrator<3>::reorganise();
-  template void
-  ExplicitIntegrator<3>::remove_lost_points();
-  template void
-  ExplicitIntegrator<3>::exchange_points();
-  template void
-  ExplicitIntegrator<3>::sort_points(bool);
-  template double
-  ExplicitIntegrator<3>::imbalance() const;
+  template class Relocation<2>;
+  template class Relocation<3>;
 } // namespace limber

@@ -74,7 +74,7 @@ namespace limber
               velocity += Kernel::sign(e) * Kernel::across(velocity, e);
             force[d] = -k / n_nodes * velocity;
           }
-        add_to_nodes<dim, Layout::remapped>(cell, force, grid.nodes);
+        add_to_nodes<dim, Layout::hourglass_force>(cell, force, grid.nodes);
       }
   }
 

@@ -340,7 +340,7 @@ namespace limber
         , grid(problem.grid, MPI_COMM_WORLD)
         , bodies(set_up_bodies(problem, grid))
         , nodes(grid)
-        , integrator(problem, grid, nodes, bodies, ledger)
+        , integrator({problem, grid, nodes, bodies, ledger})
         , plain(problem, grid, *bodies[0])
       {}
 

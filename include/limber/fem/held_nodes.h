@@ -81,6 +81,9 @@ namespace limber
 
     void
     find(const dealii::DoFHandler<dim> &dof_handler);
+    unsigned int
+    sides_with(
+      const typename dealii::DoFHandler<dim>::face_iterator &face) const;
     double
     prescribed_velocity(const Held &held, const double time) const;
 

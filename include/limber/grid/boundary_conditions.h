@@ -2,22 +2,17 @@
 #ifndef limber_grid_boundary_conditions_h
 #define limber_grid_boundary_conditions_h
 
-#include <limber/grid/nodal_fields.h>
+#include <limber/grid/side_constraints.h>
 
 #include <functional>
 
 namespace limber
 {
   /**
-   * What the sides of the box do to the velocity of their nodes:
-   *  - free: nothing; points may leave;
-   *  - slip: the normal velocity is zero;
-   *  - no slip: the velocity is zero;
-   *  - friction: the normal velocity is not outward, and a contact impulse
-   *    J_n bears a tangential one of at most the friction coefficient times
-   *    J_n against the motion (Coulomb); the material may part from the side;
-   *  - velocity: a formula of place and time.
-   * Where sides meet they act one after the other, in deal.II's order.
+   * What the constraints of the sides (SideConstraints) do to nodes that an
+   * explicit step has moved: one after another they change a velocity, and the
+   * impulses that this takes are those of the sides. A one-sided constraint
+   * lets the material part, and bears friction.
    */
   template <int dim>
   class BoundaryConditions
@@ -27,7 +22,7 @@ namespace limber
     using Account = std::function<
       void(unsigned int side, const dealii::Tensor<1, dim> &, double work)>;
 
-    explicit BoundaryConditions(const std::array<Side<dim>, 2 * dim> &sides);
+    explicit BoundaryConditions(const Sides<dim> &sides);
 
     /**
      * Change the new velocity of the nodes, and their increment with it, so
@@ -35,16 +30,16 @@ namespace limber
      * for.
      */
     void
-    apply(NodalFields<dim> &nodes, double time, const Account &account) const;
+    apply(NodalFields<dim> &nodes, double time, const Account &account);
 
     /**
-     * Change the velocity that begins at slot @p first of the records
+     * Change the velocity that begins at @p slot of the records
      * likewise; impulses of such a trial velocity do not reach the points. A
      * node that sticks to a side with friction, given its new velocity, sticks
      * here too.
      */
     void
-    apply_trial(NodalFields<dim> &nodes, unsigned int first, double time) const;
+    apply_trial(NodalFields<dim> &nodes, unsigned int slot, double time);
 
     /**
      * For each component of the new velocity of a node the directions (bits)
@@ -55,15 +50,22 @@ namespace limber
     held(const NodalFields<dim> &nodes, std::uint32_t node) const;
 
   private:
-    bool
-    act(unsigned int                  side,
-        const NodeTable<dim>         &nodes,
-        std::uint32_t                 node,
-        double                        time,
-        dealii::Tensor<1, dim>       &velocity,
-        const dealii::Tensor<1, dim> *sticking) const;
+    using Velocity = dealii::Tensor<1, dim>;
 
-    const std::array<Side<dim>, 2 * dim> &sides;
+    template <class Work>
+    void
+    for_each_node(const NodalFields<dim> &nodes, double time, const Work &work);
+    void
+    act(const Constraint &constraint,
+        Velocity         &velocity,
+        const Velocity   *new_velocity) const;
+    void
+    act_one_sided(const Constraint &constraint,
+                  Velocity         &velocity,
+                  const Velocity   *new_velocity) const;
+
+    const Sides<dim>    &sides;
+    SideConstraints<dim> constraints;
   };
 } // namespace limber
 

@@ -19,22 +19,33 @@ namespace limber
   inline constexpr std::uint32_t invalid_cell = 0xffffffffu;
 
   /**
-   * The record of a node. Before the nodes are advanced the slots hold sums
-   * over points: mass, force, momentum, re-mapped momentum. Afterwards the
-   * same storage holds mass, velocity increment of the step, new velocity,
-   * re-mapped velocity. Two dimensions are padded to one cache line.
+   * The record of a node. Fields that are never needed at a time share their
+   * place, but each has its own name. Two dimensions are padded to one cache
+   * line.
    */
   template <int dim>
   struct NodeLayout
   {
-    static constexpr unsigned int mass     = 0;
-    static constexpr unsigned int force    = 1;
-    static constexpr unsigned int momentum = 1 + dim;
+    // Sums over points, until nodes are advanced
+    static constexpr unsigned int mass     = 0;       // kg
+    static constexpr unsigned int force    = 1;       // N
+    static constexpr unsigned int momentum = 1 + dim; // kg m/s
+    // Momentum that points give back with their new velocities, kg m/s
     static constexpr unsigned int remapped = 1 + 2 * dim;
     static constexpr unsigned int stride   = dim == 2 ? 8 : 10;
 
+    // Of advanced nodes: change of the velocity in the step, new one, m/s
     static constexpr unsigned int increment = force;
     static constexpr unsigned int velocity  = momentum;
+    // Of the middle of the step, once the increment has been taken, and that
+    // with which points move: the new one or the middle one, m/s
+    static constexpr unsigned int middle_velocity = force;
+    static constexpr unsigned int moving_velocity = momentum;
+    // Formed of a momentum to strain the points: of that which they bring,
+    // before there are forces, or of that which they give back, m/s
+    static constexpr unsigned int strain_velocity = remapped;
+    // Between these two
+    static constexpr unsigned int hourglass_force = remapped; // N
   };
 
 

@@ -143,6 +143,13 @@ namespace limber
       return active_boundary;
     }
 
+    /** Another number whenever these lists have changed. */
+    std::uint64_t
+    version_of_active() const
+    {
+      return version;
+    }
+
     /** Sums over the nodes of all ranks meet each node once, where this is. */
     bool
     owns(const std::uint32_t node) const
@@ -201,6 +208,7 @@ namespace limber
     std::vector<std::uint32_t> border_cells; // with a node that is shared
     std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
     std::vector<std::uint32_t> entered, active, active_boundary;
+    std::uint64_t              version = 0; // of the active nodes
     LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
     bool                       left = false, in_ghosts = false;
 

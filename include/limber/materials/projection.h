@@ -23,11 +23,142 @@ namespace limber
 
 
 
+  /** Over what a part of strain and stress is averaged. */
+  enum class Mean
+  {
+    none,
+    cell,
+    node
+  };
+
+
+
+  /** A treatment against locking: how the scene calls it and what it does. */
+  struct Treatment
+  {
+    Projection  kind;
+    const char *word, *text;
+    // Of the volumetric part, the shear components, the deviatoric rest
+    Mean volume = Mean::none, shear = Mean::none, rest = Mean::none;
+    // Other sums over a cell that strain and stress are formed with
+    bool needs_moments = false;
+    // Whether means leave motions of a cell without resistance in a solid
+    bool weak_in_2d = false, weak_in_3d = false;
+    // Whether bodies in the initial frame have it, and points with domains
+    bool in_initial_frame = false, with_domains = false;
+  };
+
+
+
+  /**
+   * The list of treatments. What the scene accepts
+   * and what the averages_...() below say follow from it; the strain operator
+   * of each is in interpolation/strain_operator.h.
+   */
+  inline constexpr Treatment treatments[] = {
+    {Projection::automatic,
+     "auto",
+     "'cell' for liquids; for solids 'assumed strain' with linear functions, "
+     "else 'none' or 'node', by Poisson's ratio",
+     Mean::none,
+     Mean::none,
+     Mean::none,
+     false,
+     false,
+     false,
+     true,
+     true},
+    {Projection::none,
+     "none",
+     "values of the points as they are",
+     Mean::none,
+     Mean::none,
+     Mean::none,
+     false,
+     false,
+     false,
+     true,
+     true},
+    {Projection::cell,
+     "cell",
+     "Hu-Washizu, volumetric strain and pressure constant in the cell",
+     Mean::cell,
+     Mean::none,
+     Mean::none,
+     false,
+     false,
+     false,
+     true,
+     false},
+    {Projection::cell_shear,
+     "cell shear",
+     "volumetric strain, shear strain and their stresses constant",
+     Mean::cell,
+     Mean::cell,
+     Mean::none,
+     false,
+     false,
+     true},
+    {Projection::cell_full,
+     "cell full",
+     "all strain and stress constant",
+     Mean::cell,
+     Mean::cell,
+     Mean::cell,
+     false,
+     true,
+     true},
+    {Projection::node,
+     "node",
+     "volumetric strain and pressure averaged around nodes, linear between",
+     Mean::node,
+     Mean::none,
+     Mean::none,
+     false,
+     false,
+     false,
+     false,
+     true},
+    {Projection::hybrid,
+     "hybrid",
+     "as 'node', and shear strain and its stress constant in the cell",
+     Mean::node,
+     Mean::cell,
+     Mean::none,
+     false,
+     false,
+     true},
+    {Projection::assumed_strain,
+     "assumed strain",
+     "constant but for what bends the cell, see 'Hourglass response'",
+     Mean::none,
+     Mean::none,
+     Mean::none,
+     true,
+     false,
+     false,
+     true,
+     false}};
+
+
+
+  /** The row of a treatment. */
+  constexpr const Treatment &
+  treatment_of(const Projection kind)
+  {
+    for (const Treatment &treatment : treatments)
+      if (treatment.kind == kind)
+        return treatment;
+    return treatments[0]; // every kind has its row
+  }
+
+
+
   /** Whether the volumetric part is averaged around nodes. */
   constexpr bool
   averages_around_nodes(const Projection kind)
   {
-    return kind == Projection::node || kind == Projection::hybrid;
+    return treatment_of(kind).volume == Mean::node;
   }
 
 
@@ -36,8 +167,7 @@ namespace limber
   constexpr bool
   averages_volume_in_cells(const Projection kind)
   {
-    return kind == Projection::cell || kind == Projection::cell_shear ||
-           kind == Projection::cell_full;
+    return treatment_of(kind).volume == Mean::cell;
   }
 
 
@@ -46,8 +176,7 @@ namespace limber
   constexpr bool
   averages_shear_in_cells(const Projection kind)
   {
-    return kind == Projection::cell_shear || kind == Projection::cell_full ||
-           kind == Projection::hybrid;
+    return treatment_of(kind).shear == Mean::cell;
   }
 
 
@@ -56,7 +185,9 @@ namespace limber
   constexpr bool
   needs_cell_means(const Projection kind)
   {
-    return kind != Projection::none && kind != Projection::node;
+    const Treatment &treatment = treatment_of(kind);
+    return treatment.volume == Mean::cell || treatment.shear == Mean::cell ||
+           treatment.needs_moments;
   }
 
 

@@ -2,21 +2,14 @@
 #ifndef limber_output_observables_h
 #define limber_output_observables_h
 
-#include <limber/output/frequency.h>
+#include <limber/output/observed_row.h>
 #include <limber/output/totals.h>
 #include <limber/output/tracked_points.h>
 
-#include <string>
 #include <vector>
 
 namespace limber
 {
-  /** SI, for instance "m"; forces in two dimensions are per metre. */
-  std::string
-  unit_of(const ObservableKind kind);
-
-
-
   /** What observables remember between two rows; plain, for checkpoints. */
   template <int dim>
   struct ObservablesState
@@ -53,12 +46,6 @@ namespace limber
     std::vector<double>
     evaluate(const State<dim> &state, const Totals<dim> &totals);
 
-    std::vector<std::string>
-    names() const;
-
-    std::vector<std::string>
-    units() const;
-
     ObservablesState<dim>
     state() const;
 
@@ -67,13 +54,13 @@ namespace limber
     decide_what_to_sample();
     void
     update_side_forces(const double time, const Totals<dim> &totals);
-    double
-    value(const Observable<dim>               &observable,
-          const unsigned int                   number,
-          const Totals<dim>                   &totals,
-          const std::vector<PointSample<dim>> &samples) const;
-    void
-    fill_extremes(const State<dim> &state, std::vector<double> &values) const;
+    Seen<dim>
+    look(unsigned int                         number,
+         const Totals<dim>                   &totals,
+         const std::vector<PointSample<dim>> &samples,
+         const std::vector<double>           &extents) const;
+    std::vector<double>
+    extents(const State<dim> &state) const;
     unsigned int
     body_index(const std::string &name) const;
     BodyTotals<dim>

@@ -69,7 +69,7 @@ namespace limber
   /** The fixed columns, then the observables. */
   template <int dim>
   std::vector<Column>
-  statistics_columns(const Observables<dim> &observables);
+  statistics_columns(const std::vector<Observable<dim>> &observables);
 
   /** The numbers for these columns. */
   template <int dim>

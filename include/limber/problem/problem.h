@@ -9,7 +9,9 @@
 #include <limber/materials/frame.h>
 #include <limber/materials/kernel.h>
 #include <limber/materials/projection.h>
+#include <limber/problem/observable.h>
 #include <limber/problem/shapes.h>
+#include <limber/problem/side_conditions.h>
 
 #include <array>
 #include <limits>
@@ -67,15 +69,6 @@ namespace limber
   {
     return transfer == Transfer::fmpm || transfer == Transfer::xpic;
   }
-
-  enum class SideCondition
-  {
-    free,
-    slip,
-    no_slip,
-    friction,
-    velocity
-  };
 
   /**
    * A load on one face of a box or block, or on the whole surface of a body of
@@ -165,15 +158,6 @@ namespace limber
     }
   };
 
-  /** What one side of the box does; sides in deal.II's order. */
-  template <int dim>
-  struct Side
-  {
-    SideCondition condition = SideCondition::slip;
-    double        friction  = 0; // Coulomb coefficient
-    Formula<dim>  velocity;      // dim components, m/s
-  };
-
   template <int dim>
   struct Loads
   {
@@ -246,42 +230,6 @@ namespace limber
     unsigned int              frequencies = 0;    // how many; 0: solve in time
   };
 
-  enum class ObservableKind
-  {
-    displacement,
-    velocity,
-    stress,
-    pressure,
-    volume_ratio,
-    position,
-    extreme_coordinate,
-    kinetic_energy,
-    strain_energy,
-    total_energy,
-    momentum,
-    centre_of_mass,
-    frequency,
-    reaction_force
-  };
-
-  template <int dim>
-  struct Observable
-  {
-    std::string        name;
-    ObservableKind     kind = ObservableKind::displacement;
-    std::string        body; // empty: all bodies
-    dealii::Point<dim> location;
-    // direction of a component, and of an extreme: +x, -x, +y, ...
-    unsigned int axis     = 0;
-    bool         positive = true;
-    // second axis of a stress component: xx, xy, ...
-    unsigned int second_axis = 0;
-    // extreme coordinate: only points within this box, where given
-    std::optional<std::pair<dealii::Point<dim>, dealii::Point<dim>>> within;
-    std::string  observable; // frequency: of which other observable
-    unsigned int side = 0;   // reaction force
-  };
-
   /** Formulas of initial place and time; those not given are empty. */
   template <int dim>
   struct ExactSolution
@@ -305,18 +253,18 @@ namespace limber
     double        end_time     = 1; // s
     unsigned long end_step     = 0; // 0: the time alone counts
     double        memory_limit = 0; // bytes, all ranks; 0: what the machine has
-    std::vector<Body<dim>>         bodies;
-    GridDescription<dim>           grid;
-    std::array<Side<dim>, 2 * dim> sides;
-    Loads<dim>                     loads;
-    Method                         method;
-    OutputRequest                  output;
-    CheckpointRequest              checkpoint;
-    ReferenceRequest               reference;
-    ExactSolution<dim>             exact;
-    std::vector<Observable<dim>>   observables;
-    std::vector<Check>             checks;
-    std::vector<std::string> notes; // what the reader decided, for the log
+    std::vector<Body<dim>>       bodies;
+    GridDescription<dim>         grid;
+    Sides<dim>                   sides;
+    Loads<dim>                   loads;
+    Method                       method;
+    OutputRequest                output;
+    CheckpointRequest            checkpoint;
+    ReferenceRequest             reference;
+    ExactSolution<dim>           exact;
+    std::vector<Observable<dim>> observables;
+    std::vector<Check>           checks;
+    std::vector<std::string>     notes; // what the reader decided, for the log
     // Entries that a run cannot change on its way, as "name = value"
     std::vector<std::string> fixed_entries;
   };

@@ -70,6 +70,11 @@ namespace limber
   Corners<dim>
   corners(const GridDescription<dim> &grid);
 
+  /** 'Lower corner' and 'Upper corner', those of a default where empty. */
+  template <int dim>
+  Corners<dim>
+  read_corners(const Section &section, const Corners<dim> &default_box);
+
   /** "(1, 2)" */
   template <int dim>
   std::string

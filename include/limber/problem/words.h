@@ -32,23 +32,14 @@ namespace limber
   template <typename Enum>
   using Words = std::vector<Word<Enum>>;
 
-  enum class ShapeKind
-  {
-    box,
-    ball,
-    cylinder,
-    formula,
-    block,
-    union_of_shapes
-  };
-
   enum class TimeIntegrationKind
   {
     explicit_steps
   };
 
 
-  const Words<ShapeKind> &
+  /** From the list of shapes, and that of unions. */
+  const Words<std::string> &
   shape_words();
 
   /** From the list of laws. */
@@ -87,9 +78,6 @@ namespace limber
 
   const Words<HistoryTreatment> &
   history_words();
-
-  const Words<SideCondition> &
-  side_condition_words();
 
 
 

@@ -4,7 +4,7 @@
 
 #include <limber/fem/reference_solver.h>
 #include <limber/fem/solid_totals.h>
-#include <limber/output/frequency.h>
+#include <limber/output/observed_row.h>
 #include <limber/output/statistics.h>
 
 #include <string>
@@ -54,9 +54,6 @@ namespace limber
     std::vector<Column>
     columns() const;
 
-    std::vector<std::string>
-    names() const;
-
     /** Energies and drift count on from row to row. */
     ReferenceTotals<dim>
     totals();
@@ -72,6 +69,8 @@ namespace limber
   private:
     dealii::Point<dim>
     place_in_body(const dealii::Point<dim> &place) const;
+    Seen<dim>
+    look(unsigned int number, const ReferenceTotals<dim> &totals) const;
     double
     extreme(const Observable<dim> &observable) const;
 

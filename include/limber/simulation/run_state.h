@@ -5,7 +5,7 @@
 #include <limber/output/checks.h>
 #include <limber/output/observables.h>
 #include <limber/output/writer.h>
-#include <limber/time/explicit_integrator.h>
+#include <limber/time/integrator.h>
 
 #include <map>
 #include <string>

@@ -14,7 +14,7 @@
 #include <limber/output/totals.h>
 #include <limber/output/writer.h>
 #include <limber/simulation/checkpoints.h>
-#include <limber/time/explicit_integrator.h>
+#include <limber/time/integrator.h>
 
 #include <memory>
 #include <optional>
@@ -113,17 +113,17 @@ namespace limber
     BackgroundGrid<dim> grid;
     const double        memory_with_grid = resident_memory();
     std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
-    const double              memory_with_points = resident_memory();
-    NodalFields<dim>          nodes;
-    State<dim>                state;
-    ExplicitIntegrator<dim>   integrator;
-    Balance<dim>              balance_of_start;
-    const Health<dim>         health;
-    Observables<dim>          observables;
-    Checks                    checks;
-    Writer<dim>               writer;
-    Checkpoints<dim>          checkpoints;
-    std::optional<Statistics> statistics;
+    const double     memory_with_points = resident_memory();
+    NodalFields<dim> nodes;
+    State<dim>       state;
+    const std::unique_ptr<Integrator<dim>> integrator;
+    Balance<dim>                           balance_of_start;
+    const Health<dim>                      health;
+    Observables<dim>                       observables;
+    Checks                                 checks;
+    Writer<dim>                            writer;
+    Checkpoints<dim>                       checkpoints;
+    std::optional<Statistics>              statistics;
 
     Totals<dim>         totals; // of the last row
     const unsigned long n_points_at_start;

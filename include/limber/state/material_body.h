@@ -29,7 +29,40 @@ namespace limber
     // Per cell, what the volumetric variable gets in this step against
     // chequerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};
+
+    /** Forget all sums and means, of a mesh that has changed. */
+    void
+    reinit_sums(const BackgroundGrid<dim> &grid)
+    {
+      for (auto *const sums : {&cell_sums, &deviator_sums})
+        if (*sums)
+          (*sums)->reinit();
+      if (cell_shift.size() > 0)
+        cell_shift.reinit(grid.n_cells());
+      if (nodal_means)
+        nodal_means->reinit();
+    }
   };
+
+
+
+  /**
+   * Complete what a sweep has gathered in these sums of all bodies that have
+   * them, with what other ranks have; collective.
+   */
+  template <int dim>
+  void
+  complete_sums(const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
+                std::optional<CellFields<dim>> MaterialBody<dim>::*const sums,
+                const ExchangePlan                                      &plan)
+  {
+    for (auto &body : bodies)
+      if (auto &own = (*body).*sums)
+        own->start_completion(plan);
+    for (auto &body : bodies)
+      if (auto &own = (*body).*sums)
+        own->finish_completion();
+  }
 
 
 

@@ -172,11 +172,11 @@ namespace limber::test
   {
     SampleRun<2>  run(true);
     Observable<2> probe;
-    probe.kind     = ObservableKind::pressure;
+    probe.kind     = &observable_kind<2>("pressure");
     probe.body     = "block";
     probe.location = dealii::Point<2>(0.3, 0.7);
     auto second    = probe;
-    second.kind    = ObservableKind::stress;
+    second.kind    = &observable_kind<2>("stress");
     second.axis = second.second_axis = 1;
     run.problem.observables          = {probe, second};
     Observables<2> observables(run.state);

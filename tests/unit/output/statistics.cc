@@ -98,12 +98,12 @@ namespace limber::test
     SampleRun<3>  run(false);
     Observable<3> mass_centre;
     mass_centre.name        = "height";
-    mass_centre.kind        = ObservableKind::centre_of_mass;
+    mass_centre.kind        = &observable_kind<3>("centre of mass");
     mass_centre.axis        = 2;
     run.problem.observables = {mass_centre};
     Observables<3>  observables(run.state);
     const Totals<3> totals  = Balance<3>(run.state).evaluate(run.state);
-    const auto      columns = statistics_columns(observables);
+    const auto      columns = statistics_columns(run.problem.observables);
     const auto      row     = statistics_row(run.state,
                                     totals,
                                     observables.evaluate(run.state, totals));

@@ -56,7 +56,7 @@ TEST(Scenes, DamBreakReadsAsWritten)
 
   EXPECT_EQ(problem.grid.upper, Point<2>(5, 3));
   EXPECT_EQ(problem.grid.cells[1], 24u);
-  EXPECT_EQ(problem.sides[3].condition, SideCondition::slip);
+  EXPECT_EQ(problem.sides[3].held, HeldComponents::normal);
   EXPECT_DOUBLE_EQ(problem.loads.gravity[1], -9.81);
   EXPECT_FALSE(problem.loads.body_force);
   EXPECT_EQ(problem.method.order, StressUpdateOrder::musl);
@@ -73,7 +73,7 @@ TEST(Scenes, DamBreakObservablesAndChecks)
   const Problem<2> problem =
     read_problem<2>(SceneFile(prm_folder() + "dam_break.prm"));
   ASSERT_EQ(problem.observables.size(), 2u);
-  EXPECT_EQ(problem.observables[0].kind, ObservableKind::extreme_coordinate);
+  EXPECT_EQ(problem.observables[0].kind->word, "extreme coordinate");
   EXPECT_EQ(problem.observables[0].axis, 0u);
   EXPECT_TRUE(problem.observables[0].positive);
   EXPECT_FALSE(problem.observables[0].within);
@@ -101,10 +101,10 @@ TEST(Scenes, CantileverReadsAsWritten)
   EXPECT_NEAR(beam.initial_velocity.value(Point<2>(8, 2), 0., 1), 0.01, 1e-5);
   EXPECT_NEAR(beam.initial_velocity.value(Point<2>(0, 2), 0., 1), 0, 1e-12);
 
-  EXPECT_EQ(problem.sides[0].condition, SideCondition::no_slip);
-  EXPECT_EQ(problem.sides[1].condition, SideCondition::free);
+  EXPECT_EQ(problem.sides[0].held, HeldComponents::all);
+  EXPECT_EQ(problem.sides[1].held, HeldComponents::none);
   EXPECT_EQ(problem.observables[0].location, Point<2>(8, 2.5));
-  EXPECT_EQ(problem.observables[1].kind, ObservableKind::frequency);
+  EXPECT_EQ(problem.observables[1].kind->word, "frequency");
   EXPECT_EQ(problem.observables[1].observable, "tip");
   EXPECT_FALSE(problem.checks[0].at_time);
 }

@@ -38,6 +38,7 @@ namespace
     Problem<2>    problem;
     Observable<2> tip;
     tip.name = "tip";
+    tip.kind = &observable_kind<2>("displacement");
     problem.observables.push_back(tip);
     problem.checks.push_back({"end", "tip", {}, 1, 0.05});
     return problem;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_shape_h
+#define limber_problem_shape_h
+
+#include <deal.II/base/point.h>
+
+#include <limber/base/functions.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace limber
+{
+  class Parameters;
+  class Section;
+
+
+
+  /** Lower and upper corner of a box along the axes. */
+  template <int dim>
+  using Corners = std::pair<dealii::Point<dim>, dealii::Point<dim>>;
+
+
+
+  /** The region that a body fills at the start; boundaries belong to it. */
+  template <int dim>
+  class Shape
+  {
+  public:
+    virtual ~Shape() = default;
+
+    virtual bool
+    contains(const dealii::Point<dim> &point) const = 0;
+
+    /** A box that holds the whole shape, as tight as is cheaply known. */
+    virtual Corners<dim>
+    bounding_box() const = 0;
+
+    /** m^dim, where a formula gives it. */
+    virtual std::optional<double>
+    exact_volume() const
+    {
+      return std::nullopt;
+    }
+  };
+
+
+
+  /** Where the scene describes a shape, and what it may refer to. */
+  template <int dim>
+  struct ShapeSections
+  {
+    const Section      &owner;   // has the entry 'Shape'
+    const Section      &details; // has the measures
+    const Constants    &constants;
+    const Corners<dim> &grid;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_side_conditions_h
+#define limber_problem_side_conditions_h
+
+#include <deal.II/base/point.h>
+
+#include <limber/base/functions.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /** The components of a velocity that a kind of side holds. */
+  enum class HeldComponents
+  {
+    none,
+    normal,
+    all
+  };
+
+
+
+  /**
+   * What one side of the box does to the velocity of its nodes, as its word in
+   * the scene says (source/problem/side_conditions.cc has the list of words).
+   * Whoever applies sides knows these properties and no word.
+   */
+  template <int dim>
+  struct Side
+  {
+    std::string    word = "slip";
+    HeldComponents held = HeldComponents::normal;
+    // Holds only what moves outward, so that the material may part from it; the
+    // impulse J_n that it then gives bears a tangential one of at most the
+    // friction coefficient times J_n against the motion (Coulomb).
+    bool         one_sided = false;
+    double       friction  = 0;
+    Formula<dim> velocity; // of the side, dim components, m/s; empty: at rest
+
+    /** Of a component at a place and a time (s), m/s. */
+    double
+    prescribed_velocity(const dealii::Point<dim> &place,
+                        const double              time,
+                        const unsigned int        component) const
+    {
+      return velocity.empty() ? 0 : velocity.value(place, time, component);
+    }
+  };
+
+
+
+  /** Sides in deal.II's order: left right bottom top back front. */
+  template <int dim>
+  using Sides = std::array<Side<dim>, 2 * dim>;
+
+
+
+  /** A component of the velocity of a node that a side holds. */
+  struct HeldComponent
+  {
+    unsigned int side, component;
+    bool         one_sided;
+  };
+
+
+
+  /**
+   * What the sides of a set (bits) hold of a node that lies in all of them,
+   * in the order in which they act: of several entries for one component the
+   * last counts.
+   */
+  template <int dim>
+  std::vector<HeldComponent>
+  held_components(const Sides<dim> &sides, const unsigned int set)
+  {
+    std::vector<HeldComponent> result;
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      if (set >> side & 1)
+        for (unsigned int component = 0; component < dim; ++component)
+          if (sides[side].held == HeldComponents::all ||
+              (sides[side].held == HeldComponents::normal &&
+               component == side / 2))
+            result.push_back({side, component, sides[side].one_sided});
+    return result;
+  }
+} // namespace limber
+
+#endif

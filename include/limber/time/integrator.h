@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_integrator_h
+#define limber_time_integrator_h
+
+#include <limber/state/material_body.h>
+#include <limber/time/loads.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace limber
+{
+  /** The parts of a run that steps work on; they outlive the integrator. */
+  template <int dim>
+  struct RunParts
+  {
+    const Problem<dim>                              &problem;
+    BackgroundGrid<dim>                             &grid;
+    NodalFields<dim>                                &nodes;
+    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
+    Ledger<dim>                                     &ledger;
+  };
+
+
+
+  /** What an integrator takes from step to step; plain, for checkpoints. */
+  template <int dim>
+  struct IntegratorState
+  {
+    // Of the last step, over all ranks: m/s, m/s, cells, kg
+    double                              wave_speed         = 0;
+    double                              point_speed        = 0;
+    double                              displacement       = 0;
+    double                              largest_mass       = 0;
+    unsigned long                       steps_since_filter = 0;
+    typename ExternalLoads<dim>::Pieces face_pieces;
+  };
+
+
+
+  /** A point that a step has lost, and the name of its body. */
+  template <int dim>
+  using LostPointOfBody = std::pair<std::string, LostPoint<dim>>;
+
+
+
+  /**
+   * Takes a run from step to step. The points are the state, and between two
+   * calls it is complete: pictures, rows and checkpoints are made of it. All
+   * functions but those that only tell something are collective.
+   *
+   * How often a step has to be tried is the integrator's own affair. An
+   * explicit step is done once and stands. One that iterates may find no
+   * solution; it then leaves points and ledger as they were, tries a shorter
+   * step, and tells by the result of advance() how far it has come.
+   */
+  template <int dim>
+  class Integrator
+  {
+  public:
+    virtual ~Integrator() = default;
+
+    /**
+     * To be called before each step: exchange points between ranks or sort
+     * them, where due. Returns whether ranks have exchanged points.
+     */
+    virtual bool
+    reorganise() = 0;
+
+    /**
+     * Where points see nodes beyond those of their cells, give those in ghost
+     * cells to the ranks that own these, who alone know all; records of nodes
+     * are given up. To be called before anything but a step evaluates
+     * functions at points; returns whether there were any.
+     */
+    virtual bool
+    bring_points_home() = 0;
+
+    /** The longest step that may be asked for now, s. */
+    virtual double
+    longest_step() const = 0;
+
+    /**
+     * One step from @p time over at most @p step seconds; returns its length,
+     * s, which is positive. Throws ComputationError when no step can be done.
+     */
+    virtual double
+    advance(double time, double step) = 0;
+
+    /** Adopt a mesh that has changed, and points that have moved with it. */
+    virtual void
+    reinit() = 0;
+
+    virtual IntegratorState<dim>
+    state() const = 0;
+
+    /** Adopt points that have been replaced by those of a checkpoint. */
+    virtual void
+    restore(const IntegratorState<dim> &former) = 0;
+
+    /** Share of all points on the fullest rank times the number of ranks. */
+    virtual double
+    imbalance() const = 0;
+
+    /** Whether any rank has lost points in the last step. */
+    virtual bool
+    points_were_lost() const = 0;
+
+    /** Points that were lost in the last step, on this rank. */
+    virtual const std::vector<LostPointOfBody<dim>> &
+    lost_points() const = 0;
+
+    /** The verbs of a step and the wall time each has taken here so far, s. */
+    virtual std::vector<std::pair<std::string, double>>
+    verb_seconds() const = 0;
+  };
+
+
+
+  /** The integrator that the problem's method asks for. Collective. */
+  template <int dim>
+  std::unique_ptr<Integrator<dim>>
+  make_integrator(const RunParts<dim> &parts);
+} // namespace limber
+
+#endif

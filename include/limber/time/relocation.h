@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_relocation_h
+#define limber_time_relocation_h
+
+#include <limber/time/integrator.h>
+
+#include <vector>
+
+namespace limber
+{
+  /** The largest that a step finds on its way, on this rank or over all. */
+  struct StepExtremes
+  {
+    double speed_squared = 0;     // of points, m^2/s^2
+    double wave_squared  = 0;     // of waves in them, m^2/s^2
+    double displacement  = 0;     // of points over the edges of their cells
+    double largest_mass  = 1e300; // of a node, kg
+  };
+
+
+
+  /**
+   * What happens to points between the sweeps of two steps, however they are
+   * moved: cells and sums that follow them, order in memory, changes of rank,
+   * losses.
+   */
+  template <int dim>
+  class Relocation
+  {
+  public:
+    /** Pieces of @p loads follow the points that carry them. */
+    Relocation(const RunParts<dim> &parts, ExternalLoads<dim> &loads);
+
+    /** Adopt points that have come to their cells other than by steps. */
+    void
+    reinit();
+
+    /** The extremes over all ranks, in place. */
+    void
+    reduce(StepExtremes &extremes);
+
+    void
+    begin_step();
+
+    /** Note the batches of the first sweep of a step. */
+    void
+    note_batches(const std::size_t n)
+    {
+      n_batches = n;
+    }
+
+    /**
+     * After the points have moved: the extremes over all ranks, losses, cells
+     * that were entered, and the complete sums of the new places.
+     */
+    void
+    end_step(StepExtremes &extremes);
+
+    /** See Integrator; the last step has moved points so far, in cells. */
+    bool
+    reorganise(double displacement);
+
+    /** See Integrator. */
+    bool
+    bring_points_home();
+    double
+    imbalance() const;
+
+    bool
+    points_were_lost() const
+    {
+      return any_lost > 0;
+    }
+
+    const std::vector<LostPointOfBody<dim>> &
+    lost_points() const
+    {
+      return lost;
+    }
+
+  private:
+    void
+    remove_lost_points();
+    void
+    sort_points(bool agree);
+    void
+    exchange_points();
+    void
+    gather_cells();
+
+    const RunParts<dim> parts;
+    ExternalLoads<dim> &loads;
+    const bool          parallel;
+
+    std::vector<LostPointOfBody<dim>> lost; // in the last step, on this rank
+
+    // Over all ranks
+    double any_lost            = 0;
+    double any_entered_shared  = 0;
+    double any_entered_ghosts  = 0;
+    double most_points         = 0; // on one rank
+    double most_excess_batches = 0; // on one rank, see below
+
+    // Sum of largest displacements since ranks exchanged points, in cells
+    double travelled = 0;
+    // Batches beyond one per occupied cell, summed since the last sort
+    std::size_t excess_batches = 0, n_batches = 0, n_batches_sorted = 0;
+  };
+} // namespace limber
+
+#endif

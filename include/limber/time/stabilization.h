@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_stabilization_h
+#define limber_time_stabilization_h
+
+#include <limber/time/integrator.h>
+#include <limber/transfer/hourglass.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * What keeps motions and pressures in check that means over cells do not
+   * see. A body that asks for none costs nothing.
+   */
+  template <int dim>
+  class Stabilization
+  {
+  public:
+    explicit Stabilization(const RunParts<dim> &parts);
+
+    /**
+     * Find what the volumetric variable of the points in each cell is to lose
+     * over @p step, s, with waves of that speed, m/s. Before points give
+     * anything to the nodes: the records of those at the corners of cells
+     * serve here. Collective.
+     */
+    void
+    control_chequerboards(double step, double wave_speed);
+
+    /**
+     * Add viscous forces against hourglass motion to those of the nodes, and
+     * their heat to the ledger. Their own places are zero afterwards.
+     * Collective.
+     */
+    void
+    resist_hourglass(double step, double wave_speed);
+
+  private:
+    const RunParts<dim> parts;
+    // Refilled in each step, which then allocates nothing
+    std::vector<HourglassResistance<dim>> resisting;
+  };
+} // namespace limber
+
+#endif

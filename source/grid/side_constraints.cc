@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/side_constraints.h>
+
+namespace limber
+{
+  template <int dim>
+  SideConstraints<dim>::SideConstraints(const Sides<dim> &sides)
+    : sides(sides)
+  {
+    for (unsigned int set = 0; set < held.size(); ++set)
+      held[set] = held_components(sides, set);
+  }
+
+
+
+  template <int dim>
+  const std::vector<Constraint> &
+  SideConstraints<dim>::at(const NodalFields<dim> &nodes, const double time)
+  {
+    if (version != nodes.version_of_active())
+      rebuild(nodes);
+    if (!has_values || time != time_of_values)
+      evaluate(nodes, time);
+    return list;
+  }
+
+
+
+  template <int dim>
+  void
+  SideConstraints<dim>::rebuild(const NodalFields<dim> &nodes)
+  {
+    list.clear();
+    moving.clear();
+    for (const std::uint32_t node : nodes.active_boundary_nodes())
+      for (const HeldComponent &entry : of_sides(nodes.table.sides[node]))
+        {
+          if (!sides[entry.side].velocity.empty())
+            moving.push_back(list.size());
+          list.push_back({node,
+                          static_cast<std::uint8_t>(entry.component),
+                          static_cast<std::uint8_t>(entry.side),
+                          entry.one_sided,
+                          0});
+        }
+    version    = nodes.version_of_active();
+    has_values = false;
+  }
+
+
+
+  template <int dim>
+  void
+  SideConstraints<dim>::evaluate(const NodalFields<dim> &nodes,
+                                 const double            time)
+  {
+    for (const std::size_t number : moving)
+      {
+        Constraint &constraint = list[number];
+        constraint.value       = sides[constraint.side].prescribed_velocity(
+          nodes.table.places.at(constraint.node), time, constraint.component);
+      }
+    time_of_values = time;
+    has_values     = true;
+  }
+
+
+
+  template class SideConstraints<2>;
+  template class SideConstraints<3>;
+} // namespace limber

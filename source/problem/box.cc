@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+
+namespace limber
+{
+  using dealii::Point;
+
+
+
+  namespace
+  {
+    template <int dim>
+    typename BlockShape<dim>::Vertices
+    vertices_of_box(const Point<dim> &lower, const Point<dim> &upper)
+    {
+      typename BlockShape<dim>::Vertices result;
+      for (unsigned int i = 0; i < result.size(); ++i)
+        for (unsigned int d = 0; d < dim; ++d)
+          result[i][d] = i >> d & 1 ? upper[d] : lower[d];
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BoxShape<dim>::BoxShape(const Point<dim> &lower, const Point<dim> &upper)
+    : BlockShape<dim>(vertices_of_box(lower, upper))
+    , lower(lower)
+    , upper(upper)
+  {}
+
+
+
+  template <int dim>
+  bool
+  BoxShape<dim>::contains(const Point<dim> &point) const
+  {
+    for (unsigned int d = 0; d < dim; ++d)
+      if (point[d] < lower[d] || point[d] > upper[d])
+        return false;
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  BoxShape<dim>::declare(Parameters &parameters)
+  {
+    parameters.declare("Lower corner",
+                       for_each_direction(dim, "0"),
+                       admissible::numbers(dim, for_each_direction(dim, "0")),
+                       "Corner with the smallest coordinates, m.");
+    parameters.declare("Upper corner",
+                       for_each_direction(dim, "1"),
+                       admissible::numbers(dim, for_each_direction(dim, "1")),
+                       "The opposite corner, m.");
+  }
+
+
+
+  template <int dim>
+  std::shared_ptr<const Shape<dim>>
+  BoxShape<dim>::read(const ShapeSections<dim> &scene)
+  {
+    const auto box = read_corners(scene.details, scene.grid);
+    return std::make_shared<BoxShape<dim>>(box.first, box.second);
+  }
+
+
+
+  template class BoxShape<2>;
+  template class BoxShape<3>;
+} // namespace limber

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/problem/observable.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  template <int dim>
+  const std::vector<ObservableKind<dim>> &
+  observable_kinds()
+  {
+    using O    = const Observable<dim> &;
+    using S    = const Seen<dim> &;
+    using Part = ObservedPart;
+
+    const std::vector<std::string> at_place  = {"Location"};
+    const std::vector<std::string> component = {"Location", "Direction"};
+    const std::vector<std::string> body      = {"Body"};
+
+    static const std::vector<ObservableKind<dim>> kinds = {
+      {"displacement",
+       "m",
+       Part::place,
+       component,
+       body,
+       [](O o, S s) { return s.displacement[o.axis]; }},
+      {"velocity",
+       "m/s",
+       Part::place,
+       component,
+       body,
+       [](O o, S s) { return s.velocity[o.axis]; }},
+      {"stress",
+       "Pa",
+       Part::material,
+       component,
+       body,
+       [](O o, S s) { return s.stress[o.axis][o.second_axis]; },
+       2},
+      {"pressure",
+       "Pa",
+       Part::material,
+       at_place,
+       body,
+       [](O, S s) { return s.pressure; }},
+      {"volume ratio",
+       "",
+       Part::material,
+       at_place,
+       body,
+       [](O, S s) { return s.volume_ratio; }},
+      {"position",
+       "m",
+       Part::place,
+       component,
+       body,
+       [](O o, S s) { return s.position[o.axis]; }},
+      {"extreme coordinate",
+       "m",
+       Part::extent,
+       {"Direction"},
+       {"Body", "Within"},
+       [](O, S s) { return s.extent; }},
+      {"kinetic energy",
+       "J",
+       Part::body,
+       {},
+       body,
+       [](O, S s) { return s.kinetic_energy; }},
+      {"strain energy",
+       "J",
+       Part::body,
+       {},
+       body,
+       [](O, S s) { return s.strain_energy; }},
+      {"total energy",
+       "J",
+       Part::body,
+       {},
+       body,
+       [](O, S s) {
+         return s.kinetic_energy + s.strain_energy + s.potential_energy;
+       }},
+      {"momentum",
+       "kg m/s",
+       Part::body,
+       {"Direction"},
+       body,
+       [](O o, S s) { return s.momentum[o.axis]; }},
+      {"centre of mass",
+       "m",
+       Part::body,
+       {"Direction"},
+       body,
+       [](O o, S s) {
+         return s.mass > 0 ? s.mass_moment[o.axis] / s.mass : not_known;
+       }},
+      {"frequency",
+       "Hz",
+       Part::column,
+       {"Observable"},
+       {},
+       [](O, S s) { return s.frequency; }},
+      {"reaction force",
+       "N",
+       Part::side,
+       {"Side", "Direction"},
+       {},
+       [](O o, S s) { return s.force[o.axis]; }}};
+    return kinds;
+  }
+
+
+
+  template <int dim>
+  const ObservableKind<dim> &
+  observable_kind(const std::string &word)
+  {
+    const auto &kinds = observable_kinds<dim>();
+    return *std::find_if(kinds.begin(), kinds.end(), [&](const auto &kind) {
+      return kind.word == word;
+    });
+  }
+
+
+
+  template const std::vector<ObservableKind<2>> &
+  observable_kinds();
+  template const std::vector<ObservableKind<3>> &
+  observable_kinds();
+  template const ObservableKind<2> &
+  observable_kind(const std::string &);
+  template const ObservableKind<3> &
+  observable_kind(const std::string &);
+} // namespace limber

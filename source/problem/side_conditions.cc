@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+namespace limber
+{
+  namespace
+  {
+    /** The entry of a side's own section that a word needs. */
+    enum class SideDetail
+    {
+      none,
+      friction, // its coefficient; the side is one-sided
+      velocity  // its formula
+    };
+
+
+
+    /** What a word makes of a side. */
+    struct SideKind
+    {
+      HeldComponents held;
+      SideDetail     detail = SideDetail::none;
+    };
+
+
+
+    /** The list of side conditions. */
+    const Words<SideKind> &
+    side_words()
+    {
+      using Held                         = HeldComponents;
+      using Detail                       = SideDetail;
+      static const Words<SideKind> words = {
+        {"free", SideKind{Held::none}, "nothing is prescribed"},
+        {"slip", SideKind{Held::normal}, "no velocity through the side"},
+        {"no slip", SideKind{Held::all}, "no velocity"},
+        {"friction",
+         SideKind{Held::normal, Detail::friction},
+         "slip with Coulomb friction"},
+        {"velocity",
+         SideKind{Held::all, Detail::velocity},
+         "prescribed by a formula"}};
+      return words;
+    }
+  } // namespace
+
+
+
+  void
+  declare_boundaries(Parameters &parameters, const unsigned int dim)
+  {
+    const std::vector<std::string> meanings = {"lowest x",
+                                               "highest x",
+                                               "lowest y",
+                                               "highest y",
+                                               "lowest z",
+                                               "highest z"};
+
+    parameters.enter_subsection("Boundaries");
+    for (const std::string &side : side_names(dim))
+      declare_word(parameters,
+                   side,
+                   "slip",
+                   side_words(),
+                   "What the side of the grid at the " +
+                     meanings[side_index(side)] + " does to the velocity.");
+    for (const std::string &side : side_names(dim))
+      {
+        parameters.enter_subsection("Side " + side);
+        parameters.declare(
+          "Friction coefficient",
+          "",
+          admissible::non_negative_number("0.3").or_empty(),
+          "Coulomb's coefficient mu, no unit, for 'friction'.");
+        parameters.declare(
+          "Velocity",
+          "",
+          admissible::text("formula of " + variable_names(dim) + " with " +
+                             std::to_string(dim) + " components, or empty",
+                           for_each_direction(dim, "0", "; ")),
+          "Velocity of the side, m/s, for 'velocity'.");
+        declare_constants(parameters);
+        parameters.leave_subsection();
+      }
+    parameters.leave_subsection();
+  }
+
+
+
+  namespace
+  {
+    /** Throws InputError where a side lacks the entry that its word needs. */
+    void
+    require(const Section     &boundaries,
+            const std::string &side,
+            const Section     &details,
+            const std::string &entry,
+            const std::string &example)
+    {
+      if (details.is_empty(entry))
+        throw InputError("The condition " + in_quotes(boundaries.text(side)) +
+                         " in " + boundaries.where(side) + " lacks its " +
+                         in_quotes(entry) +
+                         ". Usually the section of the details was forgotten. "
+                         "Add 'set " +
+                         entry + " = " + example + "' in section 'Boundaries/" +
+                         "Side " + side + "'.");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  read_boundaries(const Section &section, Problem<dim> &problem)
+  {
+    const auto names = side_names(dim);
+    for (unsigned int s = 0; s < names.size(); ++s)
+      {
+        const Section  details = section.subsection("Side " + names[s]);
+        const SideKind kind    = read_word(section, names[s], side_words());
+        Side<dim>     &side    = problem.sides[s];
+        side.word              = section.text(names[s]);
+        side.held              = kind.held;
+        side.one_sided         = kind.detail == SideDetail::friction;
+        if (kind.detail == SideDetail::friction)
+          {
+            require(section, names[s], details, "Friction coefficient", "0.3");
+            side.friction = details.number("Friction coefficient");
+          }
+        if (kind.detail == SideDetail::velocity)
+          {
+            require(section,
+                    names[s],
+                    details,
+                    "Velocity",
+                    for_each_direction(dim, "0", "; "));
+            side.velocity = read_formula<dim>(details,
+                                              "Velocity",
+                                              dim,
+                                              read_constants(details),
+                                              corners(problem.grid));
+          }
+      }
+  }
+
+
+
+  template void
+  read_boundaries<2>(const Section &, Problem<2> &);
+  template void
+  read_boundaries<3>(const Section &, Problem<3> &);
+} // namespace limber

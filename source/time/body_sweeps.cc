@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/body_sweeps.h>
+#include <limber/transfer/project_on_nodes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace limber
+{
+  namespace
+  {
+    /** The sums of a projected body for the sweeps; nothing for others. */
+    template <int dim>
+    std::optional<CellSums<dim>>
+    sums_of(MaterialBody<dim> &body)
+    {
+      if (!body.cell_sums)
+        return std::nullopt;
+      return body.cell_sums->view();
+    }
+
+
+
+    /** The records of a body with means around nodes; null for others. */
+    template <int dim>
+    double *
+    nodal_means_of(MaterialBody<dim> &body)
+    {
+      return body.nodal_means ? body.nodal_means->data() : nullptr;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  BodySweeps<dim>::BodySweeps(const RunParts<dim> &parts)
+    : parts(parts)
+  {}
+
+
+
+  template <int dim>
+  std::size_t
+  BodySweeps<dim>::points_to_grid(GiveToGrid what)
+  {
+    const GridView<dim> nodes = parts.nodes.view();
+    if (what.force)
+      project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+        sum_pressure<dim>(body.points.view(), nodes, records);
+      });
+    std::size_t n_batches = 0;
+    for (auto &body : parts.bodies)
+      {
+        what.inverse_density = 1 / body->stress->density();
+        what.projection      = body->stress->projection();
+        what.initial_frame   = body->stress->initial_frame();
+        what.nodal_pressure  = nodal_means_of(*body);
+        const auto sums      = sums_of(*body);
+        n_batches += limber::points_to_grid<dim>(body->points.view(),
+                                                 nodes,
+                                                 what,
+                                                 sums ? &*sums : nullptr);
+      }
+    return n_batches;
+  }
+
+
+
+  // Means around nodes for the bodies that are averaged so; sum(body, records)
+  // adds what the points give.
+  template <int dim>
+  template <class Sum>
+  void
+  BodySweeps<dim>::project_on_nodes(const Sum &sum)
+  {
+    const NodalFields<dim> &vertices = parts.nodes.vertices();
+    for (auto &body : parts.bodies)
+      if (body->nodal_means)
+        {
+          body->nodal_means->clear(vertices.active_nodes());
+          sum(*body, body->nodal_means->data());
+          body->nodal_means->start_completion(vertices.node_plan());
+        }
+    for (auto &body : parts.bodies)
+      if (body->nodal_means)
+        body->nodal_means->finish_completion(vertices.active_nodes());
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::grid_to_points(const TakeFromGrid &what,
+                                  StepExtremes       &extremes)
+  {
+    for (auto &body : parts.bodies)
+      grid_to_points(*body, what, extremes);
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::grid_to_points_ahead(const TakeFromGrid &what,
+                                        StepExtremes       &extremes)
+  {
+    for (auto &body : parts.bodies)
+      if (!body->stress->takes_velocity())
+        grid_to_points(*body, what, extremes);
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::grid_to_points(MaterialBody<dim>  &body,
+                                  const TakeFromGrid &what,
+                                  StepExtremes       &extremes)
+  {
+    const auto sums  = sums_of(body);
+    const auto found = limber::grid_to_points<dim>(body.points.view(),
+                                                   parts.nodes.view(),
+                                                   what,
+                                                   sums ? &*sums : nullptr);
+    extremes.speed_squared =
+      std::max(extremes.speed_squared, found.speed_squared);
+    extremes.displacement = std::max(extremes.displacement, found.displacement);
+    parts.ledger.transfer += found.removed;
+  }
+
+
+
+  // The share of the way to the mean that a history goes in that time.
+  template <int dim>
+  double
+  BodySweeps<dim>::relaxation(const Body<dim>       &body,
+                              const HistoryTreatment history,
+                              const double           length,
+                              const double           speed) const
+  {
+    if (!(length > 0))
+      return 0;
+    switch (history)
+      {
+        case HistoryTreatment::keep:
+          return 0;
+        case HistoryTreatment::relax:
+          return -std::expm1(-length / body.relaxation_time);
+        case HistoryTreatment::crossing:
+          return -std::expm1(-length * speed / parts.grid.smallest_edge);
+        case HistoryTreatment::replace:
+          return 1;
+      }
+    return 0;
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::relax_deviators(const Pace &pace)
+  {
+    for (auto &body : parts.bodies)
+      if (body->deviator_sums)
+        body->stress->sum_deviators(body->points.view(),
+                                    body->deviator_sums->view());
+    complete_sums(parts.bodies,
+                  &MaterialBody<dim>::deviator_sums,
+                  parts.nodes.cell_plan());
+    for (auto &body : parts.bodies)
+      if (body->deviator_sums)
+        {
+          const Body<dim> &description = body->description;
+          parts.ledger.history += body->stress->relax_deviators(
+            body->points.view(),
+            body->deviator_sums->view().now,
+            relaxation(description,
+                       description.deviatoric_history,
+                       pace.deviatoric,
+                       pace.speed));
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::update_stress(StressSweep   what,
+                                 const Pace   &pace,
+                                 StepExtremes &extremes)
+  {
+    const GridView<dim> nodes = parts.nodes.view();
+    relax_deviators(pace);
+    project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+      sum_divergence<dim>(body.points.view(), nodes, what.remapped, records);
+    });
+    for (auto &body : parts.bodies)
+      {
+        const Body<dim> &description = body->description;
+        what.nodal_divergence        = nodal_means_of(*body);
+        what.relaxation              = relaxation(description,
+                                     description.history,
+                                     pace.volumetric,
+                                     pace.speed);
+        what.shift                   = description.chequerboard_control > 0 ?
+                                         body->cell_shift.data() :
+                                         nullptr;
+        const auto sums              = sums_of(*body);
+        const auto found             = body->stress->update(body->points.view(),
+                                                nodes,
+                                                sums ? &*sums : nullptr,
+                                                what);
+        extremes.wave_squared =
+          std::max(extremes.wave_squared, found.wave_speed_squared);
+        extremes.displacement =
+          std::max(extremes.displacement, found.displacement);
+        extremes.speed_squared =
+          std::max(extremes.speed_squared, found.speed_squared);
+        parts.ledger.transfer += found.removed;
+        parts.ledger.viscous += found.viscous;
+        parts.ledger.history += found.history;
+      }
+  }
+
+
+
+  template class BodySweeps<2>;
+  template class BodySweeps<3>;
+} // namespace limber

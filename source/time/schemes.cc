@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/explicit_integrator.h>
+
+/**
+ * @file The schemes of an explicit step: the order of its verbs. They differ in
+ * when the stress follows the motion, and in whose velocity strains the
+ * points: that which points bring to the nodes, the new one, or the one that
+ * points would bring back with their new velocities (re-mapped).
+ */
+namespace limber
+{
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::do_scheme()
+  {
+    switch (parts.problem.method.order)
+      {
+        case StressUpdateOrder::usf:
+          return usf();
+        case StressUpdateOrder::usl:
+          return usl();
+        case StressUpdateOrder::musl:
+          return musl();
+        case StressUpdateOrder::automatic: // has been chosen long before
+        case StressUpdateOrder::usavg:
+          return usavg();
+      }
+  }
+
+
+
+  // Update stress first, by the velocity that the points bring.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::usf()
+  {
+    p2g_momentum();
+    strain_at_start(step);
+    p2g_force();
+    accelerate_nodes();
+    account_loads(Layout::velocity);
+    g2p_and_move();
+  }
+
+
+
+  // Update stress last, by the new velocity of the nodes.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::usl()
+  {
+    p2g();
+    accelerate_nodes();
+    account_loads(Layout::velocity);
+    filter_velocity();
+    g2p_update_stress_and_move();
+  }
+
+
+
+  // The same by the velocity that the points give back to the nodes.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::musl()
+  {
+    p2g();
+    accelerate_nodes();
+    g2p_and_remap();
+    account_loads(Layout::strain_velocity);
+    interpolate_hanging();
+    update_stress_and_move(step);
+  }
+
+
+
+  // The average of the first and the last: half of the strain at either end,
+  // loads and motion at the middle.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::usavg()
+  {
+    p2g_momentum();
+    strain_at_start(0.5 * step);
+    p2g_force();
+    accelerate_nodes();
+    g2p_and_remap();
+    account_loads(Layout::strain_velocity);
+    centre_velocity();
+    interpolate_hanging();
+    update_stress_and_move(0.5 * step);
+  }
+
+
+
+  // Strain over @p length while points stay, by the velocity that they bring.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::strain_at_start(const double length)
+  {
+    form_velocity(Layout::momentum, time);
+    interpolate_hanging();
+    update_stress(length);
+    clear_remapped();
+  }
+
+
+
+  // All forces are known but those that stress does not make.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::accelerate_nodes()
+  {
+    resist_hourglass();
+    damp();
+    add_loads();
+    advance_nodes();
+    apply_boundaries();
+    interpolate_hanging();
+    check_nodes();
+  }
+
+
+
+  template void
+  ExplicitIntegrator<2>::do_scheme();
+  template void
+  ExplicitIntegrator<3>::do_scheme();
+} // namespace limber

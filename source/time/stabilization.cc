@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/stabilization.h>
+#include <limber/transfer/chequerboard.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace limber
+{
+  template <int dim>
+  Stabilization<dim>::Stabilization(const RunParts<dim> &parts)
+    : parts(parts)
+  {}
+
+
+
+  template <int dim>
+  void
+  Stabilization<dim>::control_chequerboards(const double step,
+                                            const double wave_speed)
+  {
+    NodalFields<dim> &vertices = parts.nodes.vertices();
+    for (auto &body : parts.bodies)
+      {
+        const double strength = body->description.chequerboard_control;
+        if (!(strength > 0))
+          continue;
+        const double share =
+          std::min(strength * wave_speed * step / parts.grid.smallest_edge,
+                   1. / (1 << dim));
+        gather_chequerboards<dim>(vertices.owned_occupied_cells(),
+                                  vertices.view(),
+                                  body->cell_sums->view());
+        // A node in the middle of an edge has not all cells around it.
+        for (const HangingNode &hanging : parts.grid.vertices.hanging)
+          std::fill_n(vertices.record(hanging.node),
+                      NodeLayout<dim>::stride,
+                      0.);
+        vertices.start_sum(0, n_chequerboard_slots<dim>);
+        vertices.finish_sum();
+        for (const auto *const cells : {&vertices.owned_occupied_cells(),
+                                        &vertices.ghost_occupied_cells()})
+          find_chequerboard_shifts<dim>(*cells,
+                                        vertices.view(),
+                                        body->cell_sums->view(),
+                                        share,
+                                        body->cell_shift.data());
+        vertices.clear();
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Stabilization<dim>::resist_hourglass(const double step,
+                                       const double wave_speed)
+  {
+    using Layout            = NodeLayout<dim>;
+    NodalFields<dim> &nodes = parts.nodes;
+
+    resisting.clear();
+    for (auto &body : parts.bodies)
+      if (body->description.hourglass_control > 0)
+        resisting.push_back({body->cell_sums->view(),
+                             body->description.hourglass_control * wave_speed});
+    if (resisting.empty())
+      return;
+
+    for (const std::uint32_t node : nodes.active_nodes())
+      std::fill_n(nodes.record(node) + Layout::hourglass_force, dim, 0.);
+    limber::resist_hourglass<dim>(nodes.owned_occupied_cells(),
+                                  nodes.view(),
+                                  resisting,
+                                  step);
+    nodes.start_sum(Layout::hourglass_force, Layout::hourglass_force + dim);
+    nodes.finish_sum();
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        double *const record = nodes.record(node);
+        const double  mass   = record[Layout::mass];
+        if (!(mass > 0))
+          continue;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double force =
+              std::exchange(record[Layout::hourglass_force + d], 0);
+            // heat, but for the change of velocity within the step
+            if (nodes.owns(node))
+              parts.ledger.viscous -=
+                step * force * record[Layout::momentum + d] / mass;
+            record[Layout::force + d] += force;
+          }
+      }
+  }
+
+
+
+  template class Stabilization<2>;
+  template class Stabilization<3>;
+} // namespace limber

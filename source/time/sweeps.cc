@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/explicit_integrator.h>
+
+#include <algorithm>
+#include <utility>
+
+/** @file The sweeps of an explicit step over the points of all bodies. */
+namespace limber
+{
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::p2g()
+  {
+    give({});
+    sum_shared_nodes(0, Layout::remapped);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::p2g_momentum()
+  {
+    GiveToGrid what;
+    what.force = false;
+    give(what);
+    sum_shared_nodes(0, Layout::remapped);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::p2g_force()
+  {
+    GiveToGrid what;
+    what.momentum = false;
+    give(what);
+    sum_shared_nodes(Layout::force, Layout::force + dim);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::give(GiveToGrid what)
+  {
+    what.affine =
+      what.momentum && parts.problem.method.transfer == Transfer::apic;
+    relocation.note_batches(sweeps.points_to_grid(what));
+    lap(Verb::points_to_grid);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::sum_shared_nodes(const unsigned int first,
+                                            const unsigned int last)
+  {
+    parts.nodes.start_sum(first, last);
+    parts.nodes.finish_sum();
+    lap(Verb::sum_shared_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::g2p_and_move()
+  {
+    TakeFromGrid what;
+    what.move = step;
+    take(what);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::g2p_and_remap()
+  {
+    TakeFromGrid what;
+    what.remap = true;
+    take(what);
+    sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+    form_velocity(Layout::remapped, time + step);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::take(TakeFromGrid what)
+  {
+    what.affine     = parts.problem.method.transfer == Transfer::apic;
+    what.flip_share = flip_share();
+    sweeps.grid_to_points(what, extremes);
+    lap(Verb::grid_to_points);
+  }
+
+
+
+  // The share of increments in the velocities of points; the rest is PIC.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::flip_share() const
+  {
+    const Method &method = parts.problem.method;
+    if (method.transfer == Transfer::pic ||
+        (full_mass && steps_since_filter == 0))
+      return 0;
+    return method.damping_time > 0 ?
+             std::max(0., 1 - step / method.damping_time) :
+             1;
+  }
+
+
+
+  // While points stay where they are.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::update_stress(const double length)
+  {
+    StressSweep what;
+    what.step     = length;
+    what.remapped = true;
+    strain(what);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::update_stress_and_move(const double length)
+  {
+    StressSweep what;
+    what.step     = length;
+    what.remapped = true;
+    what.move     = step;
+    strain(what);
+  }
+
+
+
+  // By the new velocity of the nodes. Points with a stencil of their own take
+  // their velocities in the same sweep, which spares looking it up once more.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::g2p_update_stress_and_move()
+  {
+    TakeFromGrid taken;
+    taken.affine     = parts.problem.method.transfer == Transfer::apic;
+    taken.flip_share = flip_share();
+    sweeps.grid_to_points_ahead(taken, extremes);
+    lap(Verb::grid_to_points);
+
+    StressSweep what;
+    what.step       = step;
+    what.move       = step;
+    what.flip_share = taken.flip_share;
+    strain(what);
+  }
+
+
+
+  // Points of loaded faces are strained by the same velocity. The means over
+  // cells are those of the beginning of the step: volumetric histories tend to
+  // them once, before anything is strained.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::strain(StressSweep what)
+  {
+    what.shift_share = what.step / step;
+    loads.deform(parts.nodes, what.remapped, what.step);
+    sweeps.update_stress(what,
+                         {std::exchange(history_time, 0.),
+                          what.step,
+                          point_speed},
+                         extremes);
+    lap(Verb::update_stress);
+  }
+
+
+
+  template void
+  ExplicitIntegrator<2>::p2g();
+  template void
+  ExplicitIntegrator<2>::p2g_momentum();
+  template void
+  ExplicitIntegrator<2>::p2g_force();
+  template void
+  ExplicitIntegrator<2>::g2p_and_move();
+  template void
+  ExplicitIntegrator<2>::g2p_and_remap();
+  template void
+  ExplicitIntegrator<2>::update_stress(double);
+  template void
+  ExplicitIntegrator<2>::update_stress_and_move(double);
+  template void
+  ExplicitIntegrator<2>::g2p_update_stress_and_move();
+  template void
+  ExplicitIntegrator<3>::p2g();
+  template void
+  ExplicitIntegrator<3>::p2g_momentum();
+  template void
+  ExplicitIntegrator<3>::p2g_force();
+  template void
+  ExplicitIntegrator<3>::g2p_and_move();
+  template void
+  ExplicitIntegrator<3>::g2p_and_remap();
+  template void
+  ExplicitIntegrator<3>::update_stress(double);
+  template void
+  ExplicitIntegrator<3>::update_stress_and_move(double);
+  template void
+  ExplicitIntegrator<3>::g2p_update_stress_and_move();
+} // namespace limber
