@@ -34,9 +34,9 @@ namespace limber
                           in_quotes(section.text("Material")) +
                           " does not have",
                         ", or an elastic material, for instance 'neo hookean'"};
-      if (!treatment_of(
-             read_word(section, "Locking treatment", locking_words()))
-             .in_initial_frame)
+      const Projection treatment =
+        read_word(section, "Locking treatment", locking_words());
+      if (!treatment_of(treatment).in_initial_frame)
         return Obstacle{
           "has no locking treatment " +
             in_quotes(section.text("Locking treatment")),

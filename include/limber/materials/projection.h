@@ -59,7 +59,7 @@ namespace limber
     {Projection::automatic,
      "auto",
      "'cell' for liquids; for solids 'assumed strain' with linear functions, "
-     "else 'none' or 'node', by Poisson's ratio",
+     "else 'none', 'node' or (initial frame) 'cell', by Poisson's ratio",
      Mean::none,
      Mean::none,
      Mean::none,

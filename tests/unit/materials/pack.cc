@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/pack.h>
+#include <limber/grid/record_window.h>
 
 #include <gtest/gtest.h>
 
@@ -128,4 +129,80 @@ TYPED_TEST(PackOf, InverseCubeRootOfOneIsOne)
   const TypeParam one = inverse_cube_root(broadcast<TypeParam>(1.));
   for (int i = 0; i < pack_width<TypeParam>; ++i)
     EXPECT_NEAR(lane(one, i), 1., 2e-16);
+}
+
+
+
+TYPED_TEST(PackOf, IntegersAreWhatIsBeforeThePoint)
+{
+  constexpr int       width = TestFixture::width;
+  std::vector<double> values(width);
+  for (int i = 0; i < width; ++i)
+    values[i] = 1000 * i + 0.999 * (i % 2);
+  const auto a = load<TypeParam>(values.data());
+  for (int i = 0; i < width; ++i)
+    EXPECT_EQ(lane(rounded_down(a), i), 1000 * i);
+}
+
+
+
+// In groups as large as a pack is wide, and one that is not full.
+TEST(Packs, AreSummedUpTogether)
+{
+  constexpr int                    width = 4;
+  std::array<Pack<width>, 2 * width + 3> packs;
+  for (std::size_t n = 0; n < packs.size(); ++n)
+    for (int i = 0; i < width; ++i)
+      packs[n][i] = 10. * n + i;
+  const auto sums = all_sums(packs);
+  for (std::size_t n = 0; n < packs.size(); ++n)
+    EXPECT_EQ(sums[n], 40. * n + 6);
+}
+
+
+
+TEST(Packs, TakeTheirLanesTwice)
+{
+  const Pack<4> a = {1, 2, 3, 4};
+  for (int i = 0; i < 8; ++i)
+    EXPECT_EQ(doubled(a)[i], 1 + i % 4);
+}
+
+
+
+namespace
+{
+  /** From slots to records and back, with @p width points. */
+  template <int width, int n_slots>
+  void
+  expect_slots_to_return()
+  {
+    using Number = Pack<width>;
+    std::array<Number, n_slots> slots;
+    for (int s = 0; s < n_slots; ++s)
+      for (int p = 0; p < width; ++p)
+        slots[s][p] = 10. * s + p;
+    const auto records = records_of<Pack<n_slots>>(slots);
+    for (int p = 0; p < width; ++p)
+      for (int s = 0; s < n_slots; ++s)
+        EXPECT_EQ(records[p][s], 10. * s + p);
+    if constexpr (n_slots <= width)
+      {
+        const auto back = slots_of<Number>(records);
+        for (int s = 0; s < n_slots; ++s)
+          for (int p = 0; p < width; ++p)
+            EXPECT_EQ(back[s][p], slots[s][p]);
+      }
+  }
+} // namespace
+
+
+
+TEST(Packs, OfSlotsBecomeRecordsOfPoints)
+{
+  expect_slots_to_return<4, 2>();
+  expect_slots_to_return<4, 4>();
+  expect_slots_to_return<4, 8>();
+  expect_slots_to_return<8, 4>();
+  expect_slots_to_return<8, 8>();
 }
