@@ -4,7 +4,8 @@
     plot_study.py <folder of the study>
 
 Reads study.csv and study.json, as `limber study` and `limber stability` write
-them. One panel for each measure and one line for each method; on charts of
+them. One panel for each measure and one line for each method, where the axis is a
+variation and there are others also one panel for each of their values; on charts of
 error against cost the Pareto front is ringed, variants that have failed stand
 as crosses at the upper edge, each with what went wrong. On maps of stability an
 open triangle means that no limit was found below it.
@@ -97,6 +98,11 @@ def draw_closed_forms(axis, methods, meta):
 
 def draw_panel(axis, rows, measure, meta):
     methods = methods_of(rows)
+    if not meta["against cost"]:
+        values = sorted({number(row[meta["horizontal"]]) for row in rows})
+        if len(values) <= 4:
+            axis.set_xticks(values, [f"{value:g}" for value in values])
+            axis.set_xmargin(0.2)
     for index, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
         style = {"color": COLOURS[index % len(COLOURS)],
@@ -129,6 +135,19 @@ def draw_panel(axis, rows, measure, meta):
     axis.grid(alpha=0.25)
 
 
+def panels_of(rows, meta):
+    """Titles and rows of the panels beside each other: for a chart against one of
+    several variations one for each combination of the others, else one."""
+    others = [name for name in meta["variations"] if name != meta["horizontal"]]
+    if meta["against cost"] or not others:
+        return {"": rows}
+    panels = {}
+    for row in rows:
+        title = ", ".join(f"{name} {row[name]}" for name in others)
+        panels.setdefault(title, []).append(row)
+    return panels
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -139,21 +158,33 @@ def main():
     meta = json.loads((folder / "study.json").read_text())
 
     measures = meta["measures"]
-    figure, axes = plt.subplots(1, len(measures), squeeze=False,
-                                figsize=(2.5 + 6 * len(measures), 5.2),
-                                layout="constrained")
-    for axis, measure in zip(axes[0], measures):
-        draw_panel(axis, rows, measure, meta)
-        if len(measures) > 1:
-            axis.set_title(measure, fontsize=9)
+    panels = panels_of(rows, meta)
+    width = 6 if len(panels) == 1 else 3
+    figure, axes = plt.subplots(
+        1, len(measures) * len(panels), squeeze=False, layout="constrained",
+        figsize=(2.5 + width * len(measures) * len(panels), 5.2))
+    for index, measure in enumerate(measures):
+        row_of_axes = axes[0][index * len(panels):(index + 1) * len(panels)]
+        for axis, (title, own) in zip(row_of_axes, panels.items()):
+            draw_panel(axis, own, measure, meta)
+            title = ", ".join(([measure] if len(measures) > 1 else []) +
+                              ([title] if title else []))
+            if title:
+                axis.set_title(title, fontsize=9)
+            if axis is not row_of_axes[0]:
+                axis.set_ylabel("")
+        limits = [axis.get_ylim() for axis in row_of_axes]
+        for axis in row_of_axes:
+            axis.set_ylim(min(low for low, _ in limits),
+                          max(high for _, high in limits))
     handles, labels = max((axis.get_legend_handles_labels() for axis in axes[0]),
                           key=lambda found: len(found[1]))
     if handles:
         axes[0][-1].legend(handles, labels, fontsize=7, loc="upper left",
                            bbox_to_anchor=(1.01, 1))
     figure.suptitle(meta["title"])
-    width = 100 * len(measures)
-    figure.supxlabel("\n".join(textwrap.wrap(meta["caption"], width)),
+    letters = 17 * width * len(measures) * len(panels)
+    figure.supxlabel("\n".join(textwrap.wrap(meta["caption"], letters)),
                      fontsize=6, color="grey")
     for ending in ("svg", "png"):
         figure.savefig(folder / f"study.{ending}", dpi=150)

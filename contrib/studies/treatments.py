@@ -2,12 +2,12 @@
 """Measures the treatments of locking and prints the table of
 doc/theory/treatments.md.
 
-    treatments.py [path of limber] [--quick] [--only="node;hybrid"]
+    treatments.py [path of limber] [--quick] [--liquids] [--only="node;hybrid"]
 
 Runs the free soft beam, the cantilever, Cook's membrane, the dam break, the
 tank and the sliding block with every treatment; --quick leaves out the slow
-beams. Takes some 25 minutes on one core; --only takes the treatments that it
-names.
+beams, --liquids all but the dam break and the tank. Takes some 25 minutes on one
+core; --only takes the treatments that it names.
 """
 
 import json
@@ -37,6 +37,7 @@ TREATMENTS = {
                                      "Deviatoric history": "replace"},
 }
 LIQUIDS = ("none", "cell", "cell, replaced", "node")
+SPLINES = ("none", "cell", "node")  # of liquids, with quadratic functions
 ORDER = "musl"  # of the beam; or "usavg"
 FREE_BEAM = {"0.3": 3.3990, "0.499": 3.6963}  # Hz, fine Q2 finite elements
 
@@ -200,15 +201,7 @@ def block(runner, treatment, scene):
     return f"{min(costs[treatment]) / min(costs['none']):.2f}"
 
 
-def main():
-    arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
-    quick = "--quick" in sys.argv
-    only = [a[len("--only="):].split(";") for a in sys.argv[1:]
-            if a.startswith("--only=")]
-    chosen = [t for t in TREATMENTS if not only or t in only[0]]
-    runner = Runner(arguments[0] if arguments else
-                    str(TOP / "build/release/limber"))
-
+def solids(runner, chosen, quick):
     print("| treatment | f, nu .3 (%) | E (%) | f, nu .499 (%) | E (%) | "
           "E, v0 = 3, nu .3 (%) | E, v0 = 3, nu .499 (%) | shear (%) | "
           "cost 2D | cost 3D |")
@@ -232,6 +225,18 @@ def main():
         print("| " + " | ".join([treatment, *cook(runner, treatment)]) + " |",
               flush=True)
 
+
+def main():
+    arguments = [a for a in sys.argv[1:] if not a.startswith("--")]
+    quick = "--quick" in sys.argv
+    only = [a[len("--only="):].split(";") for a in sys.argv[1:]
+            if a.startswith("--only=")]
+    chosen = [t for t in TREATMENTS if not only or t in only[0]]
+    runner = Runner(arguments[0] if arguments else
+                    str(TOP / "build/release/limber"))
+
+    if "--liquids" not in sys.argv:
+        solids(runner, chosen, quick)
     print("\n| liquid | chi | chequerboard control | Z(3) | H(3) | "
           "roughness at T = 1 / 2 / 3 (%) | jumps (%) | "
           "tank, kinetic energy | tank, pressure error (%) |")
@@ -249,6 +254,14 @@ def main():
             row += tank(runner, treatment, control)
             print("| " + " | ".join([treatment, chi, chequerboard, *row]) +
                   " |", flush=True)
+    for treatment in (t for t in SPLINES if t in chosen):
+        for chequerboard in ("0", "0.5") if treatment == "cell" else ("0",):
+            settings = ["Method/Kernel=quadratic",
+                        f"Body water/Chequerboard control={chequerboard}"]
+            row = dam_break(runner, treatment, settings)
+            row += tank(runner, treatment, settings)
+            print("| " + " | ".join([treatment + ", splines", "-", chequerboard,
+                                     *row]) + " |", flush=True)
 
 
 if __name__ == "__main__":
