@@ -29,17 +29,12 @@ namespace limber
             "transfer filters.");
           return;
         }
-      // A liquid, which has linear functions then, would fail with it.
-      const bool any_liquid =
-        std::any_of(problem.bodies.begin(),
-                    problem.bodies.end(),
-                    [](const auto &body) { return body.is_liquid; });
-      if (problem.grid.kernel == KernelKind::cpdi && !any_liquid)
+      if (problem.grid.kernel == KernelKind::cpdi)
         {
-          problem.method.order = StressUpdateOrder::usl;
+          problem.method.order = StressUpdateOrder::musl;
           problem.notes.push_back(
-            "Stress update 'auto' is 'usl', as domains do not creep where the "
-            "velocity that moves them also strains them.");
+            "Stress update 'auto' is 'musl', which keeps the energy and moves "
+            "domains by the velocity that strains them.");
           return;
         }
       const auto solid =

@@ -255,17 +255,23 @@ namespace limber
 
 
   // From the new velocity to that of the middle of the step, with which points
-  // move to second order in time.
+  // move to second order in time. Domains creep unless they move as they are
+  // strained: with the mean of the two velocities that do so.
   template <int dim>
   void
   ExplicitIntegrator<dim>::centre_velocity()
   {
+    const bool as_strained = parts.problem.grid.kernel == KernelKind::cpdi;
     for (const std::uint32_t node : parts.nodes.active_nodes())
       {
         double *const record = parts.nodes.record(node);
         for (int d = 0; d < dim; ++d)
           record[Layout::middle_velocity + d] =
-            record[Layout::velocity + d] - 0.5 * record[Layout::increment + d];
+            as_strained ? 0.5 * (record[Layout::velocity + d] -
+                                 record[Layout::increment + d] +
+                                 record[Layout::strain_velocity + d]) :
+                          record[Layout::velocity + d] -
+                            0.5 * record[Layout::increment + d];
       }
     lap(Verb::advance_nodes);
     boundaries.apply_trial(parts.nodes,
@@ -276,6 +282,25 @@ namespace limber
       {
         double *const record = parts.nodes.record(node);
         std::copy_n(record + Layout::middle_velocity,
+                    dim,
+                    record + Layout::moving_velocity);
+      }
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  // The velocity that strains points also moves those with domains.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::move_domains_as_strained()
+  {
+    if (parts.problem.grid.kernel != KernelKind::cpdi)
+      return;
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const record = parts.nodes.record(node);
+        std::copy_n(record + Layout::strain_velocity,
                     dim,
                     record + Layout::moving_velocity);
       }
@@ -345,6 +370,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::centre_velocity();
   template void
+  ExplicitIntegrator<2>::move_domains_as_strained();
+  template void
   ExplicitIntegrator<2>::filter_velocity();
   template void
   ExplicitIntegrator<2>::interpolate_hanging();
@@ -372,6 +399,8 @@ namespace limber
   ExplicitIntegrator<3>::clear_remapped();
   template void
   ExplicitIntegrator<3>::centre_velocity();
+  template void
+  ExplicitIntegrator<3>::move_domains_as_strained();
   template void
   ExplicitIntegrator<3>::filter_velocity();
   template void

@@ -44,7 +44,7 @@ namespace limber
     bool         is_liquid         = false;
     unsigned int points_per_edge   = 2; // the smallest of all directions
     KernelKind   kernel            = KernelKind::linear;
-    bool         strained_as_moved = false; // by the same velocity (USL)
+    bool         strained_as_moved = false; // by the same velocity
 
     // At the start
     unsigned long points       = 0;

@@ -133,6 +133,8 @@ namespace limber
     void
     centre_velocity();
     void
+    move_domains_as_strained();
+    void
     filter_velocity();
 
     // Parts of these

@@ -149,7 +149,7 @@ TYPED_TEST(PackOf, IntegersAreWhatIsBeforeThePoint)
 // In groups as large as a pack is wide, and one that is not full.
 TEST(Packs, AreSummedUpTogether)
 {
-  constexpr int                    width = 4;
+  constexpr int                          width = 4;
   std::array<Pack<width>, 2 * width + 3> packs;
   for (std::size_t n = 0; n < packs.size(); ++n)
     for (int i = 0; i < width; ++i)

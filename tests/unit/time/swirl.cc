@@ -149,6 +149,21 @@ namespace
                   result);
       return result;
     }
+
+    /** By how much half the size of the cells reduces the error. */
+    double
+    ratio() const
+    {
+      const double coarse = error(16), fine = error(32);
+      std::printf("%s, %s, %s points, %s: %.4f and %.4f\n",
+                  frame.c_str(),
+                  kernel.c_str(),
+                  points.c_str(),
+                  transfer.c_str(),
+                  coarse,
+                  fine);
+      return coarse / fine;
+    }
   };
 } // namespace
 
@@ -159,11 +174,7 @@ TEST(Swirl, IsOfSecondOrderInTheInitialFrame)
   for (const std::string kernel : {"linear", "quadratic"})
     {
       SCOPED_TRACE(kernel);
-      const Swirl  swirl{"initial", kernel, "2"};
-      const double coarse = swirl.error(16), fine = swirl.error(32);
-      RecordProperty("coarse, " + kernel, std::to_string(coarse));
-      RecordProperty("fine, " + kernel, std::to_string(fine));
-      EXPECT_GE(coarse / fine, 3.2);
+      EXPECT_GE((Swirl{"initial", kernel, "2"}.ratio()), 3.2);
     }
 }
 
@@ -186,14 +197,14 @@ TEST(Swirl, IsOfSecondOrderWithSplinesAndEnoughPoints)
 {
   const Swirl flip{"current", "quadratic", "3"};
   const Swirl fmpm{"current", "quadratic", "3", "fmpm", "usl"};
-  EXPECT_GE(flip.error(16) / flip.error(32), 3.2);
-  EXPECT_GE(fmpm.error(16) / fmpm.error(32), 3.2);
+  EXPECT_GE(flip.ratio(), 3.2);
+  EXPECT_GE(fmpm.ratio(), 3.2);
 }
 
 
 
 TEST(Swirl, IsOfSecondOrderWithConvectedDomains)
 {
-  const Swirl cpdi{"current", "cpdi", "2", "flip", "usl"};
-  EXPECT_GE(cpdi.error(16) / cpdi.error(32), 3.2);
+  const Swirl cpdi{"current", "cpdi", "2"};
+  EXPECT_GE(cpdi.ratio(), 3.2);
 }
