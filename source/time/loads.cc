@@ -183,12 +183,10 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::deform(NodalFields<dim> &nodes,
-                             const bool        remapped,
-                             const double      step)
+  ExternalLoads<dim>::deform(NodalFields<dim> &nodes, const StressSweep &what)
   {
     const unsigned int slot =
-      remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
+      what.remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
     for (LoadedFace<dim> &face : faces)
       {
         const PointView<dim> points = face.body.points.view();
@@ -201,8 +199,10 @@ namespace limber
                 for (int e = 0; e < dim; ++e)
                   velocity_gradient[d][e] +=
                     nodes.record(at.node[i])[slot + d] * at.gradient[i][e];
-            const dealii::Tensor<2, dim> change =
-              step * velocity_gradient * pull_back(points, p);
+            dealii::Tensor<2, dim> change =
+              what.step * velocity_gradient * pull_back(points, p);
+            if (!points.in_initial_frame())
+              change += what.square * change * change;
             piece->arm += change * piece->arm;
             for (auto &edge : piece->edges)
               edge += change * edge;

@@ -122,8 +122,37 @@ namespace limber
 
 
 
+  // What makes f = 1 + a + c a^2 that by which points move, a being the part of
+  // the step that is strained at a time. With the new velocity x' = (1 + a) x;
+  // the velocity that points bring has moved them by (1 - a)^-1 before; and the
+  // two halves of USAVG follow each other, (1 + a)(1 + b), where points move by
+  // 1 + a + b.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::square_of_strain() const
+  {
+    switch (parts.problem.method.order)
+      {
+        case StressUpdateOrder::usf:
+          return 1;
+        case StressUpdateOrder::usl:
+        case StressUpdateOrder::musl:
+          return 0;
+        case StressUpdateOrder::automatic: // has been chosen long before
+        case StressUpdateOrder::usavg:
+          return -0.5;
+      }
+    return 0;
+  }
+
+
+
   template void
   ExplicitIntegrator<2>::do_scheme();
+  template double
+  ExplicitIntegrator<2>::square_of_strain() const;
   template void
   ExplicitIntegrator<3>::do_scheme();
+  template double
+  ExplicitIntegrator<3>::square_of_strain() const;
 } // namespace limber

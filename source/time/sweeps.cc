@@ -172,7 +172,8 @@ namespace limber
   ExplicitIntegrator<dim>::strain(StressSweep what)
   {
     what.shift_share = what.step / step;
-    loads.deform(parts.nodes, what.remapped, what.step);
+    what.square      = square_of_strain();
+    loads.deform(parts.nodes, what);
     sweeps.update_stress(what,
                          {std::exchange(history_time, 0.),
                           what.step,

@@ -27,6 +27,7 @@ namespace limber
     std::array<std::array<Number, dim>, dim> gradient; // dt grad v, as it is
     Number volumetric; // dt div v, averaged where the body is projected
     double step;       // dt, s
+    double square = 0; // c in f = 1 + a + c a^2, see StressSweep
 
     Number
     trace() const
@@ -35,6 +36,39 @@ namespace limber
       for (int d = 1; d < dim; ++d)
         result += gradient[d][d];
       return result;
+    }
+
+    /** f, by which the motion deforms: no average acts on it. */
+    SmallMatrix<dim, Number>
+    deformation() const
+    {
+      SmallMatrix<dim, Number> f;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          {
+            f[i][j] = gradient[i][0] * gradient[0][j];
+            for (int k = 1; k < dim; ++k)
+              f[i][j] += gradient[i][k] * gradient[k][j];
+            f[i][j] = gradient[i][j] + square * f[i][j];
+          }
+      for (int d = 0; d < dim; ++d)
+        f[d][d] += 1.;
+      return f;
+    }
+
+    /** det(f) to second order in a, with the averaged trace in the first. */
+    Number
+    volume_ratio() const
+    {
+      const Number tr = trace();
+      Number       tr_square{}; // tr(a^2)
+      for (int i = 0; i < dim; ++i)
+        {
+          tr_square += gradient[i][i] * gradient[i][i];
+          for (int j = 0; j < i; ++j)
+            tr_square += 2. * (gradient[i][j] * gradient[j][i]);
+        }
+      return 1. + volumetric + 0.5 * tr * tr + (square - 0.5) * tr_square;
     }
   };
 

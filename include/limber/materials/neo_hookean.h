@@ -18,10 +18,9 @@ namespace limber
    *
    * A point keeps J and the part of be that det(be) = 1 leaves free: xx, yy,
    * xy in plane strain; all but zz in three dimensions, where zz follows from
-   * the determinant as well. The motion enters through f = 1 + a + a^2/2 with
-   * a = dt grad v (exact to second order for a steady rotation); be takes its
-   * isochoric part, so averaging the volumetric part leaves be alone and be
-   * cannot drift away from det(be) = 1.
+   * the determinant as well. The motion enters through the f by which points
+   * move (MotionIncrement); be takes its isochoric part, so averaging the
+   * volumetric part leaves be alone and be cannot drift away from det(be) = 1.
    */
   class NeoHookean
   {
@@ -77,17 +76,7 @@ namespace limber
     update(const MotionIncrement<dim, Number> &motion,
            State<dim, Number>                 &state) const
     {
-      const auto                              &a = motion.gradient;
-      std::array<std::array<Number, dim>, dim> f;
-      for (int i = 0; i < dim; ++i)
-        for (int j = 0; j < dim; ++j)
-          {
-            f[i][j] = a[i][j];
-            for (int k = 0; k < dim; ++k)
-              f[i][j] += 0.5 * a[i][k] * a[k][j];
-          }
-      for (int d = 0; d < dim; ++d)
-        f[d][d] += 1.;
+      const auto f = motion.deformation();
 
       // be = (det f)^(-2/3) f be f^T
       const Number J_of_step = determinant<dim>(f);

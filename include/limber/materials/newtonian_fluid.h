@@ -10,7 +10,7 @@ namespace limber
   /**
    * Weakly compressible Newtonian fluid,
    *
-   *   sigma = -p 1 + 2 mu dev(D),   J <- J (1 + dt div v)
+   *   sigma = -p 1 + 2 mu dev(D),   J <- J det(f)
    *   p = K (1/J - 1)                     (linear in the density)
    *   p = K/gamma (J^-gamma - 1)          (Tait, Cole)
    *
@@ -56,7 +56,7 @@ namespace limber
     static constexpr int  n_history      = 1;
     static constexpr bool has_deviator   = viscous;
     static constexpr bool keeps_deviator = false;
-    static constexpr bool uses_spin      = false;
+    static constexpr bool uses_spin      = true;
     static constexpr bool dissipates     = true;
     static constexpr int  volumetric     = 0;
     static constexpr bool is_elastic     = false;
@@ -99,7 +99,7 @@ namespace limber
            State<dim, Number>                 &state) const
     {
       Dissipation<Number> dissipation;
-      Number              J = state.history[0] * (1. + motion.volumetric);
+      Number              J = state.history[0] * motion.volume_ratio();
       if (tension_cutoff)
         {
           const Number cut   = larger(J, broadcast<Number>(1.));

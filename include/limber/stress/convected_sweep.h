@@ -93,7 +93,8 @@ namespace limber
                 points, lanes, fields, *what.flip_share, taken);
 
           MotionIncrement<dim, Number> motion;
-          motion.step = what.step;
+          motion.step   = what.step;
+          motion.square = what.square;
           for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
               motion.gradient[d][e] =

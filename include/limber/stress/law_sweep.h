@@ -166,7 +166,8 @@ namespace limber
         const auto xi = lanes.natural(points, batch.cell);
 
         MotionIncrement<dim, Number> motion;
-        motion.step = what.step;
+        motion.step   = what.step;
+        motion.square = what.square;
         batch.strain.template evaluate<Number, Law::uses_spin>(xi, motion);
 
         auto state = owner.strain(

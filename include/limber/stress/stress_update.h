@@ -19,6 +19,11 @@ namespace limber
   {
     double step     = 0;     // over which they are strained, s
     bool   remapped = false; // grad v of the re-mapped velocity, not the new
+    // Points are strained by the f by which they move: f = 1 + a + c a^2 with
+    // a = step grad v and this c. A body that turns would grow or shrink by
+    // w^2 dt/2 of its radius per second otherwise. No matter in the initial
+    // frame, where F gets step grad_X v.
+    double square = 0;
     // Over which they then move with the new velocity, s; 0: they stay.
     double move = 0;
     // With this share of FLIP points take their velocities in the same sweep,

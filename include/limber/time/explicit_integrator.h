@@ -86,6 +86,8 @@ namespace limber
     strain_at_start(double length);
     void
     accelerate_nodes();
+    double
+    square_of_strain() const;
 
     // Sweeps: sums over points are complete on all ranks when they are done
     void

@@ -2,6 +2,7 @@
 #ifndef limber_time_loads_h
 #define limber_time_loads_h
 
+#include <limber/stress/stress_update.h>
 #include <limber/time/loaded_face.h>
 
 namespace limber
@@ -37,11 +38,11 @@ namespace limber
     add(NodalFields<dim> &nodes, double time);
 
     /**
-     * Deform the pieces of faces over a step with the nodal velocity, or the
-     * re-mapped one, while points still are where they were.
+     * Deform the pieces of faces as the points around them are strained, while
+     * these still are where they were.
      */
     void
-    deform(NodalFields<dim> &nodes, bool remapped, double step);
+    deform(NodalFields<dim> &nodes, const StressSweep &what);
 
     /** After points have changed ranks; collective. */
     void
