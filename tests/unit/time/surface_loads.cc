@@ -124,7 +124,9 @@ TYPED_TEST(SurfaceLoads, UniformPressureOnAClosedSurfaceDoesTheWorkOfItsVolume)
             for (int e = 0; e < dim; ++e)
               gradient[d][e] = 0.3 * (d == e) + 0.8 * (d - e) + 0.2 * d * e;
           set_nodal_velocity(run, gradient);
-          loads.deform(run.nodes, /*remapped=*/false, 0.1);
+          StressSweep motion;
+          motion.step = 0.1;
+          loads.deform(run.nodes, motion);
           EXPECT_LT(Resultant<dim>(run, loads).force.norm(), 1e-12 * p);
         }
     }
