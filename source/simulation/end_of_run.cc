@@ -105,6 +105,7 @@ namespace limber
   void
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
+    integrator->synchronise();
     const Diagnosis suspected = look_for_cause(/*unstable=*/true);
     std::string     message   = std::string(failure.what()) + " " +
                           (suspected.mode.empty() ? usual_cause(failure.kind) :

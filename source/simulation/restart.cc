@@ -74,6 +74,7 @@ namespace limber
   Simulation<dim>::write_checkpoint()
   {
     const double before = cpu_time();
+    integrator->synchronise();
     if (statistics)
       statistics->flush();
     checkpoints.save(present_state(), bodies);

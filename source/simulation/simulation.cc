@@ -214,6 +214,7 @@ namespace limber
   void
   Simulation<dim>::record()
   {
+    integrator->synchronise();
     totals              = balance_of_start.evaluate(state);
     const auto observed = observables.evaluate(state, totals);
     checks.add(state.time, observed);
@@ -254,6 +255,7 @@ namespace limber
     if (interval <= 0)
       return;
     const double before = cpu_time();
+    integrator->synchronise();
     writer.write(state);
     const double passed = state.time * (1 + same_time);
     if (next_pictures <= passed)
@@ -320,6 +322,7 @@ namespace limber
     step_of_exchange = state.step;
     if (steps_waited < steps_to_balance)
       return;
+    integrator->synchronise();
     balance(grid, bodies);
     integrator->reinit();
     steps_waited = 0;

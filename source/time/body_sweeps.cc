@@ -54,7 +54,6 @@ namespace limber
       {
         what.inverse_density = 1 / body->stress->density();
         what.projection      = body->stress->projection();
-        what.initial_frame   = body->stress->initial_frame();
         what.nodal_pressure  = nodal_means_of(*body);
         const auto sums      = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),

@@ -11,6 +11,11 @@ namespace limber
     : parts(parts)
     , parallel(
         dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
+    , in_initial_frame(std::all_of(parts.bodies.begin(),
+                                   parts.bodies.end(),
+                                   [](const auto &body) {
+                                     return body->stress->gives_force();
+                                   }))
     , boundaries(parts.problem.sides)
     , loads(parts.problem, parts.grid, parts.bodies)
     , sweeps(parts)
@@ -201,6 +206,8 @@ namespace limber
     extremes.displacement = former.displacement;
     extremes.largest_mass = former.largest_mass;
     steps_since_filter    = former.steps_since_filter;
+    unstrained            = 0;
+    stress_is_behind      = false;
     loads.restore(former.face_pieces);
     reinit();
   }

@@ -17,7 +17,11 @@ namespace limber
   void
   ExplicitIntegrator<dim>::clear()
   {
-    parts.nodes.clear();
+    if (unstrained > 0) // what else they know is still wanted
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        std::fill_n(parts.nodes.record(node) + Layout::force, dim, 0.);
+    else
+      parts.nodes.clear();
     extremes.speed_squared = extremes.wave_squared = extremes.displacement = 0;
     history_time = step;
     relocation.begin_step();
@@ -191,7 +195,9 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           {
             const double before =
-              record[Layout::velocity + d] - record[Layout::increment + d];
+              leapfrogs() ?
+                record[Layout::former_velocity + d] :
+                record[Layout::velocity + d] - record[Layout::increment + d];
             const double mean = 0.5 * (before + record[velocity_after + d]);
             parts.ledger.load_work += step * force[d] * mean;
             parts.ledger.viscous +=
@@ -250,6 +256,75 @@ namespace limber
     for (const std::uint32_t node : parts.nodes.active_nodes())
       std::fill_n(parts.nodes.record(node) + Layout::remapped, dim, 0.);
     lap(Verb::advance_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::clear_momentum()
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const record = parts.nodes.record(node);
+        record[Layout::mass] = 0;
+        std::fill_n(record + Layout::momentum, dim, 0.);
+        std::fill_n(record + Layout::remapped, dim, 0.);
+      }
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  // What points have given back is the momentum of the next step; the velocity
+  // at the beginning of this one is still wanted for the work of loads.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::keep_momentum()
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const record = parts.nodes.record(node);
+        for (int d = 0; d < dim; ++d)
+          {
+            record[Layout::former_velocity + d] =
+              record[Layout::velocity + d] - record[Layout::increment + d];
+            record[Layout::momentum + d] = record[Layout::remapped + d];
+          }
+      }
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::strain_by_new_velocity()
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const record = parts.nodes.record(node);
+        std::copy_n(record + Layout::velocity,
+                    dim,
+                    record + Layout::strain_velocity);
+      }
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  // Pictures of the nodes want a velocity where the momentum is.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::show_velocity()
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const record = parts.nodes.record(node);
+        std::copy_n(record + Layout::strain_velocity,
+                    dim,
+                    record + Layout::velocity);
+      }
   }
 
 
@@ -368,6 +443,14 @@ namespace limber
   template void
   ExplicitIntegrator<2>::clear_remapped();
   template void
+  ExplicitIntegrator<2>::clear_momentum();
+  template void
+  ExplicitIntegrator<2>::keep_momentum();
+  template void
+  ExplicitIntegrator<2>::strain_by_new_velocity();
+  template void
+  ExplicitIntegrator<2>::show_velocity();
+  template void
   ExplicitIntegrator<2>::centre_velocity();
   template void
   ExplicitIntegrator<2>::move_domains_as_strained();
@@ -397,6 +480,14 @@ namespace limber
   ExplicitIntegrator<3>::form_velocity(unsigned int, double);
   template void
   ExplicitIntegrator<3>::clear_remapped();
+  template void
+  ExplicitIntegrator<3>::clear_momentum();
+  template void
+  ExplicitIntegrator<3>::keep_momentum();
+  template void
+  ExplicitIntegrator<3>::strain_by_new_velocity();
+  template void
+  ExplicitIntegrator<3>::show_velocity();
   template void
   ExplicitIntegrator<3>::centre_velocity();
   template void

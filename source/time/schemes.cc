@@ -18,12 +18,12 @@ namespace limber
         case StressUpdateOrder::usf:
           return usf();
         case StressUpdateOrder::usl:
-          return usl();
+          return in_initial_frame ? usl_in_initial_frame() : usl();
         case StressUpdateOrder::musl:
-          return musl();
+          return in_initial_frame ? leapfrog(0) : musl();
         case StressUpdateOrder::automatic: // has been chosen long before
         case StressUpdateOrder::usavg:
-          return usavg();
+          return in_initial_frame ? leapfrog(0.5 * step) : usavg();
       }
   }
 
@@ -93,6 +93,61 @@ namespace limber
 
 
 
+  // MUSL and USAVG in the initial frame. There the functions at the points
+  // never change: what points give back to the nodes is what they bring to the
+  // next step. One velocity strains them at the end of a step and at the
+  // beginning of the next, in one sweep, which forms the forces as well.
+  // @p ahead (s) is the part that belongs to the beginning.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::leapfrog(const double ahead)
+  {
+    if (!(unstrained > 0))
+      {
+        p2g_momentum();
+        form_velocity(Layout::momentum, time);
+        interpolate_hanging();
+      }
+    strain_and_give_force(unstrained + ahead);
+    sum_shared_nodes(Layout::force, Layout::force + dim);
+    clear_remapped();
+    accelerate_nodes();
+    g2p_and_remap();
+    account_loads(Layout::strain_velocity);
+    interpolate_hanging();
+    unstrained = step - ahead;
+  }
+
+
+
+  // The strain of a step waits for the next, where forces are formed with it.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::usl_in_initial_frame()
+  {
+    strain_and_give_force(unstrained);
+    clear_momentum();
+    p2g_momentum();
+    accelerate_nodes();
+    account_loads(Layout::velocity);
+    filter_velocity();
+    g2p();
+    strain_by_new_velocity();
+    unstrained = step;
+  }
+
+
+
+  template <int dim>
+  bool
+  ExplicitIntegrator<dim>::leapfrogs() const
+  {
+    return in_initial_frame &&
+           parts.problem.method.order != StressUpdateOrder::usl;
+  }
+
+
+
   // Strain over @p length while points stay, by the velocity that they bring.
   template <int dim>
   void
@@ -151,8 +206,12 @@ namespace limber
   ExplicitIntegrator<2>::do_scheme();
   template double
   ExplicitIntegrator<2>::square_of_strain() const;
+  template bool
+  ExplicitIntegrator<2>::leapfrogs() const;
   template void
   ExplicitIntegrator<3>::do_scheme();
   template double
   ExplicitIntegrator<3>::square_of_strain() const;
+  template bool
+  ExplicitIntegrator<3>::leapfrogs() const;
 } // namespace limber

@@ -78,12 +78,23 @@ namespace limber
 
   template <int dim>
   void
+  ExplicitIntegrator<dim>::g2p()
+  {
+    take({});
+  }
+
+
+
+  template <int dim>
+  void
   ExplicitIntegrator<dim>::g2p_and_remap()
   {
     TakeFromGrid what;
     what.remap = true;
     take(what);
     sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
+    if (leapfrogs())
+      keep_momentum();
     form_velocity(Layout::remapped, time + step);
   }
 
@@ -164,6 +175,47 @@ namespace limber
 
 
 
+  // In the initial frame. Ranks have yet to sum up the forces.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::strain_and_give_force(const double length)
+  {
+    StressSweep what;
+    what.step       = length;
+    what.remapped   = true;
+    what.give_force = true;
+    strain(what);
+    unstrained       = 0;
+    stress_is_behind = true;
+  }
+
+
+
+  // Wave speeds are those of the steps: the next one is to be as long whether
+  // anybody has looked or not. Where a step has failed, nodes may hold
+  // anything.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::synchronise()
+  {
+    if (!stress_is_behind)
+      return;
+    stopwatch.start();
+    if (!(unstrained > 0))
+      clear_remapped();
+    const StepExtremes those_of_the_step = extremes;
+    StressSweep        what;
+    what.step     = std::exchange(unstrained, 0.);
+    what.remapped = true;
+    strain(what);
+    if (leapfrogs() && what.step > 0)
+      show_velocity();
+    extremes         = those_of_the_step;
+    stress_is_behind = false;
+  }
+
+
+
   // Points of loaded faces are strained by the same velocity. The means over
   // cells are those of the beginning of the step: volumetric histories tend to
   // them once, before anything is strained.
@@ -193,6 +245,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::g2p_and_move();
   template void
+  ExplicitIntegrator<2>::g2p();
+  template void
   ExplicitIntegrator<2>::g2p_and_remap();
   template void
   ExplicitIntegrator<2>::update_stress(double);
@@ -200,6 +254,10 @@ namespace limber
   ExplicitIntegrator<2>::update_stress_and_move(double);
   template void
   ExplicitIntegrator<2>::g2p_update_stress_and_move();
+  template void
+  ExplicitIntegrator<2>::strain_and_give_force(double);
+  template void
+  ExplicitIntegrator<2>::synchronise();
   template void
   ExplicitIntegrator<3>::p2g();
   template void
@@ -209,6 +267,8 @@ namespace limber
   template void
   ExplicitIntegrator<3>::g2p_and_move();
   template void
+  ExplicitIntegrator<3>::g2p();
+  template void
   ExplicitIntegrator<3>::g2p_and_remap();
   template void
   ExplicitIntegrator<3>::update_stress(double);
@@ -216,4 +276,8 @@ namespace limber
   ExplicitIntegrator<3>::update_stress_and_move(double);
   template void
   ExplicitIntegrator<3>::g2p_update_stress_and_move();
+  template void
+  ExplicitIntegrator<3>::strain_and_give_force(double);
+  template void
+  ExplicitIntegrator<3>::synchronise();
 } // namespace limber

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/interpolation/assumed_deformation.h>
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/convected_transfer.h>
@@ -64,112 +63,6 @@ namespace limber
 
 
 
-    /** In the frame of the initial configuration. */
-    template <bool finite_strain>
-    struct PulledBackForce
-    {
-      static constexpr bool any = true;
-
-      template <int dim>
-      __attribute__((always_inline)) static auto
-      of(const PointView<dim>    &points,
-         const CellBatch         &batch,
-         const CellGeometry<dim> &cell,
-         const GiveToGrid        &what,
-         const CellSums<dim> *)
-      {
-        StressOnNodes<dim> stress(cell);
-        for_each_pack<dim>(
-          batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            const auto V =
-              what.inverse_density * lanes.only_active(lanes.load(points.mass));
-            auto VP = piola_kirchhoff_stress<dim, finite_strain>(
-              points, lanes, deformation_gradient<dim>(points, lanes));
-            for (auto &row : VP)
-              for (auto &entry : row)
-                entry *= V;
-            stress.add(VP, lanes.natural(points, cell));
-          });
-        return stress.forces();
-      }
-    };
-
-
-
-    /** The same with the assumed strain. */
-    template <bool finite_strain>
-    struct AssumedPulledBackForce
-    {
-      static constexpr bool any = true;
-
-      template <int dim>
-      static auto
-      of(const PointView<dim>    &points,
-         const CellBatch         &batch,
-         const CellGeometry<dim> &cell,
-         const GiveToGrid        &what,
-         const CellSums<dim> *)
-      {
-        using Number = PointPack<dim>;
-        AssumedDeformation<dim, finite_strain> assumed(
-          what.initial_frame->projection);
-        for_each_pack<dim>(
-          batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            assumed.add(deformation_gradient<dim>(points, lanes),
-                        lanes.natural(points, cell),
-                        lanes.only_active(lanes.load(points.mass)));
-          });
-        assumed.finish();
-
-        // Points are met twice. The first packs, mostly all there are, are
-        // kept in between.
-        struct KeptPack
-        {
-          SmallMatrix<dim, Number> F, P;
-          std::array<Number, dim>  xi;
-          Number                   V;
-        };
-        constexpr std::size_t        n_kept = 4;
-        std::array<KeptPack, n_kept> kept;
-        KeptPack                     other;
-        const auto stressed = [&](const auto &lanes, KeptPack &pack)
-          __attribute__((always_inline))
-        {
-          pack.xi = lanes.natural(points, cell);
-          pack.F  = deformation_gradient<dim>(points, lanes);
-          pack.P =
-            assumed.turned_back(piola_kirchhoff_stress<dim, finite_strain>(
-              points, lanes, assumed.evaluate(pack.F, pack.xi)));
-          pack.V =
-            what.inverse_density * lanes.only_active(lanes.load(points.mass));
-        };
-
-        AssumedDeformationStress<dim, finite_strain> stress(cell, assumed);
-        std::size_t                                  n = 0;
-        for_each_pack<dim>(
-          batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            KeptPack &pack = n < n_kept ? kept[n] : other;
-            ++n;
-            stressed(lanes, pack);
-            stress.add_to_means(pack.P, pack.xi, pack.V);
-          });
-        stress.finish_means();
-        n = 0;
-        for_each_pack<dim>(
-          batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            const bool is_kept = n < n_kept;
-            KeptPack  &pack    = is_kept ? kept[n] : other;
-            ++n;
-            if (rarely(!is_kept))
-              stressed(lanes, pack);
-            stress.add(pack.P, pack.F, pack.xi, pack.V);
-          });
-        return stress.forces();
-      }
-    };
-
-
-
     template <int dim, bool momentum, bool affine, class Force>
     std::size_t
     sweep(const PointView<dim> &points,
@@ -214,30 +107,6 @@ namespace limber
       return what.affine ?
                sweep<dim, true, true, Force>(points, grid, what, sums) :
                sweep<dim, true, false, Force>(points, grid, what, sums);
-    }
-
-
-
-    template <int dim>
-    std::size_t
-    choose_initial_frame(const PointView<dim> &points,
-                         const GridView<dim>  &grid,
-                         const GiveToGrid     &what)
-    {
-      const bool finite = what.initial_frame->finite_strain;
-      if (what.initial_frame->projection.kind == Projection::assumed_strain)
-        return finite ? choose_sums<dim, AssumedPulledBackForce<true>>(
-                          points, grid, what, nullptr) :
-                        choose_sums<dim, AssumedPulledBackForce<false>>(
-                          points, grid, what, nullptr);
-      return finite ? choose_sums<dim, PulledBackForce<true>>(points,
-                                                              grid,
-                                                              what,
-                                                              nullptr) :
-                      choose_sums<dim, PulledBackForce<false>>(points,
-                                                               grid,
-                                                               what,
-                                                               nullptr);
     }
 
 
@@ -301,8 +170,6 @@ namespace limber
       return what.momentum ?
                choose_sums<dim, NoForce>(points, grid, what, sums) :
                0;
-    if (what.initial_frame)
-      return choose_initial_frame<dim>(points, grid, what);
     return points.deviator[0] != nullptr ?
              choose_projection<dim, true>(points, grid, what, sums) :
              choose_projection<dim, false>(points, grid, what, sums);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/cell_means.h>
 #include <limber/interpolation/nodal_means.h>
-#include <limber/interpolation/pulled_back_stress.h>
 #include <limber/transfer/give_to_splines.h>
 #include <limber/transfer/points_to_splines.h>
 
@@ -75,35 +74,6 @@ namespace limber
           p = V * lanes.load(points.pressure);
         for (int d = 0; d < dim; ++d)
           (mean_pressure ? on_means : result)[d][d] -= p;
-        return result;
-      }
-    };
-
-
-
-    /** In the frame of the initial configuration: V times P. */
-    template <bool finite_strain>
-    struct PulledBackForce
-    {
-      static constexpr bool any       = true;
-      static constexpr bool has_means = false;
-
-      template <int dim, class Lanes>
-      __attribute__((always_inline)) static SmallMatrix<dim, PointPack<dim>>
-      at_points(const PointView<dim> &points,
-                const CellGeometry<dim> &,
-                const Lanes &lanes,
-                const std::array<PointPack<dim>, dim> &,
-                const GiveToGrid &what,
-                StressSums<dim> &)
-      {
-        const auto V =
-          lanes.only_active(what.inverse_density * lanes.load(points.mass));
-        auto result = piola_kirchhoff_stress<dim, finite_strain>(
-          points, lanes, deformation_gradient<dim>(points, lanes));
-        for (auto &row : result)
-          for (auto &entry : row)
-            entry *= V;
         return result;
       }
     };
@@ -279,16 +249,6 @@ namespace limber
       return what.momentum ?
                choose_sums<dim, NoForce>(points, grid, what, sums) :
                0;
-    if (what.initial_frame)
-      return what.initial_frame->finite_strain ?
-               choose_sums<dim, PulledBackForce<true>>(points,
-                                                       grid,
-                                                       what,
-                                                       sums) :
-               choose_sums<dim, PulledBackForce<false>>(points,
-                                                        grid,
-                                                        what,
-                                                        sums);
     return points.deviator[0] != nullptr ?
              choose_projection<dim, true>(points, grid, what, sums) :
              choose_projection<dim, false>(points, grid, what, sums);

@@ -37,6 +37,8 @@ namespace limber
     // Of advanced nodes: change of the velocity in the step, new one, m/s
     static constexpr unsigned int increment = force;
     static constexpr unsigned int velocity  = momentum;
+    // Of the beginning of the step, once the increment has been taken, m/s
+    static constexpr unsigned int former_velocity = force;
     // Of the middle of the step, once the increment has been taken, and that
     // with which points move: the new one or the middle one, m/s
     static constexpr unsigned int middle_velocity = force;

@@ -6,6 +6,7 @@
 #include <limber/base/small_matrix.h>
 #include <limber/grid/record_window.h>
 #include <limber/interpolation/linear.h>
+#include <limber/materials/law.h>
 #include <limber/points/cell_batch.h>
 #include <limber/points/locate.h>
 
@@ -129,17 +130,11 @@ namespace limber
   __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
   stress_deviator(const PointView<dim> &points, const Lanes &lanes)
   {
-    SmallMatrix<dim, PointPack<dim>> s;
-    s[0][0] = lanes.load(points.deviator[0]);
-    s[1][1] = lanes.load(points.deviator[1]);
-    s[1][0] = s[0][1] = lanes.load(points.deviator[2]);
-    if constexpr (dim == 3)
-      {
-        s[2][2] = -(s[0][0] + s[1][1]);
-        s[2][1] = s[1][2] = lanes.load(points.deviator[3]);
-        s[2][0] = s[0][2] = lanes.load(points.deviator[4]);
-      }
-    return s;
+    Deviator<dim, PointPack<dim>> s;
+#pragma GCC unroll 8
+    for (unsigned int k = 0; k < s.size(); ++k)
+      s[k] = lanes.load(points.deviator[k]);
+    return rows_of<dim>(s);
   }
 
 

@@ -38,18 +38,19 @@ namespace limber
 
 
   /**
-   * P (first Piola and Kirchhoff's stress, Pa) of a pack of points whose law
-   * was given F, with their J in it (at finite strain) or as it is.
+   * P (first Piola and Kirchhoff's stress, Pa) of points whose law was given F
+   * and the volume ratio J, from the stress that it gave: the deviator of J
+   * sigma and J p.
    */
-  template <int dim, bool finite_strain, class Lanes>
-  __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
-  piola_kirchhoff_stress(const PointView<dim>                   &points,
-                         const Lanes                            &lanes,
-                         const SmallMatrix<dim, PointPack<dim>> &F)
+  template <int dim, bool finite_strain, class Number>
+  __attribute__((always_inline)) inline SmallMatrix<dim, Number>
+  piola_kirchhoff_stress(const Deviator<dim, Number>    &deviator,
+                         const Number                   &pressure,
+                         const SmallMatrix<dim, Number> &F,
+                         const Number                   &J)
   {
-    using Number               = PointPack<dim>;
-    SmallMatrix<dim, Number> t = stress_deviator<dim>(points, lanes);
-    Number                   p = lanes.load(points.pressure);
+    SmallMatrix<dim, Number> t = rows_of<dim>(deviator);
+    Number                   p = pressure;
     if constexpr (finite_strain)
       {
         // over J_p, as the cofactor is J_p F^-T
@@ -59,7 +60,7 @@ namespace limber
 #pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
             t[d][e] *= inverse;
-        p /= lanes.load(points.volumetric);
+        p /= J;
       }
 #pragma GCC unroll 8
     for (int d = 0; d < dim; ++d)

@@ -145,6 +145,22 @@ namespace limber
 
 
 
+  /** The rows and columns of a deviator that there are in so many dimensions.
+   */
+  template <int dim, class Number>
+  inline SmallMatrix<dim, Number>
+  rows_of(const Deviator<dim, Number> &s)
+  {
+    if constexpr (dim == 2)
+      return {{{{s[0], s[2]}}, {{s[2], s[1]}}}};
+    else
+      return {{{{s[0], s[2], s[4]}},
+               {{s[2], s[1], s[3]}},
+               {{s[4], s[3], -(s[0] + s[1])}}}};
+  }
+
+
+
   /** s : s, with the zz component that is not stored. */
   template <int dim, class Number>
   inline Number

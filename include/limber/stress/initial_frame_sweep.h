@@ -5,6 +5,7 @@
 #include <limber/interpolation/assumed_deformation.h>
 #include <limber/interpolation/basis.h>
 #include <limber/stress/law_on_points.h>
+#include <limber/transfer/pulled_back_force.h>
 
 namespace limber
 {
@@ -12,28 +13,34 @@ namespace limber
    * StressUpdate for an elastic law in the frame of the initial configuration
    * (total Lagrangian): the functions are those of the initial places, F
    * grows by dt grad_X v, and the stress follows from F alone, so that no
-   * error of a step stays in it.
+   * error of a step stays in it. The velocity is the one that strains points
+   * (NodeLayout::strain_velocity), and moves them as well: they stay where
+   * their F says.
    *
    * With the projection 'cell' the volumetric part of the stress follows from
    * the mean of the volume ratio over the points of the cell, with
    * 'assumed_strain', which is that of linear functions, all of it from the F_a
    * of assumed_deformation.h. The points never leave their cell, so they always
-   * are one batch, on one rank.
+   * are one batch, on one rank, and their forces can be given in the same
+   * sweep. Stress that is given so is not stored.
    */
   template <class Basis, class Law, Projection kind>
   class InitialFrameSweep final : public LawOnPoints<Basis::dim, Law>
   {
-    static constexpr int dim = Basis::dim;
-    using Base               = LawOnPoints<dim, Law>;
+    static constexpr int  dim    = Basis::dim;
+    static constexpr bool finite = Law::finite_strain;
+    using Base                   = LawOnPoints<dim, Law>;
+    using Base::inverse_density;
     using Base::law;
     using Base::store_state;
     using Number = PointPack<dim>;
     using Matrix = SmallMatrix<dim, Number>;
+    using Places = std::array<Number, dim>;
 
   public:
     InitialFrameSweep(const Law &law, const StrainProjection &projection)
       : Base(law)
-      , force{Law::finite_strain, projection}
+      , assumption(projection)
     {}
 
     StressSummary
@@ -42,63 +49,8 @@ namespace limber
            const CellSums<dim> *,
            const StressSweep &what) const override
     {
-      using Layout = NodeLayout<dim>;
-      Number waves{};
-      for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim> &cell = grid.cells[batch.cell];
-        // new velocity, then the re-mapped one
-        const NodalCoefficients<Basis, Layout::velocity, 2 * dim> nodal(
-          grid, batch.cell);
-        const auto velocity = nodal.field(what.remapped ? dim : 0);
-        const auto deformed = [&](const auto &lanes) {
-          return deform(points, cell, velocity, what.step, lanes);
-        };
-        if constexpr (kind == Projection::none)
-          for_each_pack<dim>(batch, [&](const auto &lanes) {
-            const Matrix F = deformed(lanes);
-            set_stress(points, F, volume_ratio_of(F), lanes, waves);
-          });
-        else if constexpr (kind == Projection::cell)
-          {
-            Number mass{}, volume{};
-            for_each_pack<dim>(batch, [&](const auto &lanes) {
-              const Matrix F = deformed(lanes);
-              const Number m = lanes.only_active(lanes.load(points.mass));
-              mass += m;
-              volume += m * volume_ratio_of(F);
-            });
-            const Number J = broadcast<Number>(sum(volume) / sum(mass));
-            for_each_pack<dim>(batch, [&](const auto &lanes) {
-              set_stress(points,
-                         deformation_gradient<dim>(points, lanes),
-                         J,
-                         lanes,
-                         waves);
-            });
-          }
-        else
-          {
-            AssumedDeformation<dim, Law::finite_strain> assumed(
-              force.projection);
-            for_each_pack<dim>(batch, [&](const auto &lanes) {
-              assumed.add(deformed(lanes),
-                          lanes.natural(points, cell),
-                          lanes.only_active(lanes.load(points.mass)));
-            });
-            assumed.finish();
-            for_each_pack<dim>(batch, [&](const auto &lanes) {
-              const Matrix F =
-                assumed.evaluate(deformation_gradient<dim>(points, lanes),
-                                 lanes.natural(points, cell));
-              set_stress(points, F, volume_ratio_of(F), lanes, waves);
-            });
-          }
-        if (what.move > 0)
-          for_each_pack<dim>(batch, [&](const auto &lanes) {
-            move(points, cell, nodal, what.move, lanes);
-          });
-      });
-
+      Number        waves = what.give_force ? sweep<true>(points, grid, what) :
+                                              sweep<false>(points, grid, what);
       StressSummary result;
       result.wave_speed_squared = maximum(waves);
       return result;
@@ -126,38 +78,250 @@ namespace limber
       return nothing;
     }
 
-    std::optional<InitialFrameForce>
-    initial_frame() const override
+    bool
+    gives_force() const override
     {
-      return force;
+      return true;
     }
 
   private:
-    /** F + dt grad_X v; it is stored. */
-    template <class Velocity, class Lanes>
-    __attribute__((always_inline)) static Matrix
-    deform(const PointView<dim>    &points,
-           const CellGeometry<dim> &cell,
-           const Velocity          &velocity,
-           const double             step,
-           const Lanes             &lanes)
+    // The work on the points of a cell
+    template <bool give_force>
+    struct Batch
     {
-      const auto xi = lanes.natural(points, cell);
-      Matrix     F;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
+      using Velocity =
+        NodalCoefficients<Basis, NodeLayout<dim>::strain_velocity, dim>;
+      using State = typename Base::template State<Number>;
+
+      const InitialFrameSweep &owner;
+      const PointView<dim>    &points;
+      const GridView<dim>     &grid;
+      const CellBatch         &batch;
+      const CellGeometry<dim> &cell;
+      const Velocity           velocity;
+      const StressSweep       &what;
+      Number                  &waves;
+
+      /** Call work(lanes) for each pack. */
+      template <class Work>
+      __attribute__((always_inline)) void
+      for_each_pack(const Work &work) const
+      {
+        limber::for_each_pack<dim>(batch, work);
+      }
+
+      /** Each point at its own F. */
+      __attribute__((always_inline)) void
+      at_points() const
+      {
+        PulledBackForce<Basis> force(grid, batch.cell);
+        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+          const Places xi = lanes.natural(points, cell);
+          const Matrix F  = deform(lanes, xi);
+          act(F, volume_ratio_of(F), xi, lanes, force);
+        });
+        if constexpr (give_force)
+          force.add_to_nodes();
+      }
+
+      /** With the mean of the volume ratio. */
+      __attribute__((always_inline)) void
+      with_mean_volume() const
+      {
+        Number mass{}, volume{};
+        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+          const Matrix F = deform(lanes, lanes.natural(points, cell));
+          const Number m = lanes.only_active(lanes.load(points.mass));
+          mass += m;
+          volume += m * volume_ratio_of(F);
+        });
+        const Number J = broadcast<Number>(sum(volume) / sum(mass));
+
+        PulledBackForce<Basis> force(grid, batch.cell);
+        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+          act(deformation_gradient<dim>(points, lanes),
+              J,
+              lanes.natural(points, cell),
+              lanes,
+              force);
+        });
+        if constexpr (give_force)
+          force.add_to_nodes();
+      }
+
+      /** At the F_a of the assumed strain. */
+      void
+      with_assumed_strain() const
+      {
+        AssumedDeformation<dim, finite> assumed(owner.assumption);
+        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+          const Places xi = lanes.natural(points, cell);
+          const Matrix F  = deform(lanes, xi);
+          assumed.add(F, xi, lanes.only_active(lanes.load(points.mass)));
+        });
+        assumed.finish();
+
+        // What is met again: the first packs, mostly all there are, are kept.
+        struct KeptPack
         {
-          const auto slope = Basis::template gradient<Number>(velocity(d), xi);
-#pragma GCC unroll 8
-          for (int e = 0; e < dim; ++e)
+          Matrix F, P;
+          Places xi;
+          Number V;
+        };
+        constexpr std::size_t        n_kept = 4;
+        std::array<KeptPack, n_kept> kept;
+        KeptPack                     other;
+        const auto stressed = [&](const auto &lanes, KeptPack &pack)
+          __attribute__((always_inline))
+        {
+          pack.xi            = lanes.natural(points, cell);
+          pack.F             = deformation_gradient<dim>(points, lanes);
+          const Matrix F     = assumed.evaluate(pack.F, pack.xi);
+          const Number J     = volume_ratio_of(F);
+          const State  state = stress_at(F, J, lanes);
+          if constexpr (give_force)
             {
-              double *const array = points.deformation[d * dim + e];
-              F[d][e] =
-                lanes.load(array) + (step * cell.inverse_edge[e]) * slope[e];
-              lanes.store(F[d][e], array);
+              pack.P = assumed.turned_back(piola_kirchhoff_stress<dim, finite>(
+                state.deviator, state.pressure, F, J));
+              pack.V = volume_of(lanes);
             }
-        }
-      return F;
+        };
+
+        AssumedDeformationStress<dim, finite> stress(cell, assumed);
+        std::size_t                           n = 0;
+        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+          KeptPack &pack = n < n_kept ? kept[n] : other;
+          ++n;
+          stressed(lanes, pack);
+          if constexpr (give_force)
+            stress.add_to_means(pack.P, pack.xi, pack.V);
+        });
+        if constexpr (give_force)
+          {
+            stress.finish_means();
+            n = 0;
+            for_each_pack([&](const auto &lanes)
+                            __attribute__((always_inline)) {
+                              const bool is_kept = n < n_kept;
+                              KeptPack  &pack    = is_kept ? kept[n] : other;
+                              ++n;
+                              if (rarely(!is_kept))
+                                stressed(lanes, pack);
+                              stress.add(pack.P, pack.F, pack.xi, pack.V);
+                            });
+            add_to_nodes<dim, NodeLayout<dim>::force>(cell,
+                                                      stress.forces(),
+                                                      grid.nodes);
+          }
+      }
+
+      /** F + dt grad_X v, which is stored, and the points move with v. */
+      template <class Lanes>
+      __attribute__((always_inline)) Matrix
+      deform(const Lanes &lanes, const Places &xi) const
+      {
+        Matrix F;
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          {
+            const auto component = velocity.component(d);
+            const auto slope = Basis::template gradient<Number>(component, xi);
+#pragma GCC unroll 8
+            for (int e = 0; e < dim; ++e)
+              {
+                double *const array = points.deformation[d * dim + e];
+                F[d][e]             = lanes.load(array) +
+                          (what.step * cell.inverse_edge[e]) * slope[e];
+                lanes.store(F[d][e], array);
+              }
+            lanes.store(lanes.load(points.position[d]) +
+                          what.step *
+                            Basis::template value<Number>(component, xi),
+                        points.position[d]);
+          }
+        return F;
+      }
+
+      /** Stress, and the force of it. */
+      template <class Lanes>
+      __attribute__((always_inline)) void
+      act(const Matrix           &F,
+          const Number           &J,
+          const Places           &xi,
+          const Lanes            &lanes,
+          PulledBackForce<Basis> &force) const
+      {
+        const State state = stress_at(F, J, lanes);
+        if constexpr (give_force)
+          {
+            auto VP        = piola_kirchhoff_stress<dim, finite>(state.deviator,
+                                                          state.pressure,
+                                                          F,
+                                                          J);
+            const Number V = volume_of(lanes);
+            for (auto &row : VP)
+              for (Number &entry : row)
+                entry *= V;
+            force.add(VP, xi, lanes);
+          }
+      }
+
+      template <class Lanes>
+      __attribute__((always_inline)) State
+      stress_at(const Matrix &F, const Number &J, const Lanes &lanes) const
+      {
+        const State state = owner.law.template at_deformation<dim>(F, J);
+        if constexpr (!give_force)
+          store_state(points,
+                      state,
+                      [&](const Number &value, double *const array) {
+                        lanes.store(value, array);
+                      });
+        Number speed = owner.law.template wave_speed_squared<dim>(state);
+        if constexpr (finite)
+          speed *= largest_shortening(F);
+        waves = larger(waves, lanes.only_active(speed));
+        return state;
+      }
+
+      /** The initial one, m^dim; zero in idle lanes. */
+      template <class Lanes>
+      __attribute__((always_inline)) Number
+      volume_of(const Lanes &lanes) const
+      {
+        return owner.inverse_density *
+               lanes.only_active(lanes.load(points.mass));
+      }
+    };
+
+
+
+    template <bool give_force>
+    Number
+    sweep(const PointView<dim> &points,
+          const GridView<dim>  &grid,
+          const StressSweep    &what) const
+    {
+      Number waves{};
+      for_each_batch(
+        points,
+        [&](const CellBatch &cell_batch) __attribute__((always_inline)) {
+          const Batch<give_force> batch{*this,
+                                        points,
+                                        grid,
+                                        cell_batch,
+                                        grid.cells[cell_batch.cell],
+                                        {grid, cell_batch.cell},
+                                        what,
+                                        waves};
+          if constexpr (kind == Projection::none)
+            batch.at_points();
+          else if constexpr (kind == Projection::cell)
+            batch.with_mean_volume();
+          else
+            batch.with_assumed_strain();
+        });
+      return waves;
     }
 
     static Number
@@ -169,24 +333,6 @@ namespace limber
       for (int d = 1; d < dim; ++d)
         result += F[d][d] - 1.;
       return result;
-    }
-
-    template <class Lanes>
-    __attribute__((always_inline)) void
-    set_stress(const PointView<dim> &points,
-               const Matrix         &F,
-               const Number         &J,
-               const Lanes          &lanes,
-               Number               &waves) const
-    {
-      const auto state = law.template at_deformation<dim>(F, J);
-      store_state(points, state, [&](const Number &value, double *const array) {
-        lanes.store(value, array);
-      });
-      Number speed = law.template wave_speed_squared<dim>(state);
-      if constexpr (Law::finite_strain)
-        speed *= largest_shortening(F);
-      waves = larger(waves, lanes.only_active(speed));
     }
 
     /**
@@ -215,24 +361,7 @@ namespace limber
       return most / (J * J);
     }
 
-    template <class Nodal, class Lanes>
-    __attribute__((always_inline)) static void
-    move(const PointView<dim>    &points,
-         const CellGeometry<dim> &cell,
-         const Nodal             &nodal,
-         const double             step,
-         const Lanes             &lanes)
-    {
-      const auto xi = lanes.natural(points, cell);
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        lanes.store(lanes.load(points.position[d]) +
-                      step *
-                        Basis::template value<Number>(nodal.component(d), xi),
-                    points.position[d]);
-    }
-
-    const InitialFrameForce force;
+    const StrainProjection assumption; // for the assumed strain
   };
 } // namespace limber
 

@@ -29,6 +29,9 @@ namespace limber
     // With this share of FLIP points take their velocities in the same sweep,
     // where takes_velocity(); empty: they keep them.
     std::optional<double> flip_share;
+    // Give the nodes the forces of the new stress, where gives_force(); the
+    // stress is then not stored.
+    bool give_force = false;
     // Share of the way that the volumetric variable goes to the mean of the
     // cell in this step: 0 keeps the history, 1 replaces it.
     double relaxation = 0;
@@ -112,11 +115,11 @@ namespace limber
       return false;
     }
 
-    /** How forces are formed in the initial frame; empty in the current one. */
-    virtual std::optional<InitialFrameForce>
-    initial_frame() const
+    /** Whether it gives the nodes the internal forces (initial frame). */
+    virtual bool
+    gives_force() const
     {
-      return {};
+      return false;
     }
 
     /** Energies and volume ratios of the present state. */

@@ -54,6 +54,8 @@ namespace limber
     double
     advance(double time, double step) override;
     void
+    synchronise() override;
+    void
     reinit() override;
     IntegratorState<dim>
     state() const override;
@@ -83,6 +85,10 @@ namespace limber
     void
     usavg();
     void
+    leapfrog(double ahead);
+    void
+    usl_in_initial_frame();
+    void
     strain_at_start(double length);
     void
     accelerate_nodes();
@@ -97,6 +103,8 @@ namespace limber
     void
     p2g_force();
     void
+    g2p();
+    void
     g2p_and_remap();
     void
     g2p_and_move();
@@ -106,6 +114,8 @@ namespace limber
     update_stress_and_move(double length);
     void
     g2p_update_stress_and_move();
+    void
+    strain_and_give_force(double length);
 
     // What happens to nodes between the sweeps
     void
@@ -133,6 +143,14 @@ namespace limber
     void
     clear_remapped();
     void
+    clear_momentum();
+    void
+    keep_momentum();
+    void
+    strain_by_new_velocity();
+    void
+    show_velocity();
+    void
     centre_velocity();
     void
     move_domains_as_strained();
@@ -140,6 +158,8 @@ namespace limber
     filter_velocity();
 
     // Parts of these
+    bool
+    leapfrogs() const;
     void
     find_speeds();
     void
@@ -161,6 +181,7 @@ namespace limber
 
     const RunParts<dim>                parts;
     const bool                         parallel;
+    const bool                         in_initial_frame; // all bodies
     BoundaryConditions<dim>            boundaries;
     ExternalLoads<dim>                 loads;
     BodySweeps<dim>                    sweeps;
@@ -173,6 +194,12 @@ namespace limber
     std::array<double, std::size_t(Verb::n_verbs)> seconds{};
 
     double time = 0, step = 0; // of the step that is being done, s
+
+    // In the initial frame: how far strain and stress are behind, s. While this
+    // is positive, nodes know what is going to strain the points, and with a
+    // leapfrog the momentum that they bring to the next step.
+    double unstrained       = 0;
+    bool   stress_is_behind = false;
 
     // Of the present state, over all ranks
     double wave_speed  = 0; // m/s

@@ -47,9 +47,9 @@ namespace limber
 
 
   /**
-   * Takes a run from step to step. The points are the state, and between two
-   * calls it is complete: pictures, rows and checkpoints are made of it. All
-   * functions but those that only tell something are collective.
+   * Takes a run from step to step. The points are the state: after
+   * synchronise() it is complete, and pictures, rows and checkpoints are made
+   * of it. All functions but those that only tell something are collective.
    *
    * How often a step has to be tried is the integrator's own affair. An
    * explicit step is done once and stands. One that iterates may find no
@@ -88,6 +88,14 @@ namespace limber
      */
     virtual double
     advance(double time, double step) = 0;
+
+    /**
+     * Bring strain and stress to the time that advance() has come to; a scheme
+     * may leave them behind until somebody looks. What follows does not depend
+     * on whether this was called, but for round-off.
+     */
+    virtual void
+    synchronise() = 0;
 
     /** Adopt a mesh that has changed, and points that have moved with it. */
     virtual void

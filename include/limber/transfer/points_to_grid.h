@@ -2,10 +2,8 @@
 #ifndef limber_transfer_points_to_grid_h
 #define limber_transfer_points_to_grid_h
 
-#include <limber/materials/frame.h>
+#include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
-
-#include <optional>
 
 namespace limber
 {
@@ -17,7 +15,6 @@ namespace limber
     bool             affine          = false; // momentum with the affine part
     double           inverse_density = 0;     // 1 / rho_0, m^3/kg
     StrainProjection projection; // of the strain that the force works with
-    std::optional<InitialFrameForce> initial_frame; // of bodies in it
     // The pressure projected on nodes (nodal_means.h), where that is asked
     const double *nodal_pressure = nullptr;
   };
@@ -31,8 +28,9 @@ namespace limber
    *   m_i = sum m N_i,  p_i = sum m N_i (v + C (x_i - x)),
    *   f_i = - sum (m/rho_0) B_i^T (J sigma)
    *
-   * (Mast et al. 2012, mass-specific form). @p sums may be null where nothing
-   * is projected. Returns the number of batches.
+   * (Mast et al. 2012, mass-specific form); forces in the initial frame come
+   * from the StressUpdate of the body. @p sums may be null where nothing is
+   * projected. Returns the number of batches.
    */
   template <int dim>
   std::size_t

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/stress/initial_frame_sweep.h>
-#include <limber/transfer/points_to_grid.h>
 
 #include <gtest/gtest.h>
 #include <support/projections.h>
@@ -86,10 +85,10 @@ namespace
     {
       for (std::size_t n = 0; n < grid.n_nodes; ++n)
         for (int d = 0; d < dim; ++d)
-          grid.nodes[n * Layout::stride + Layout::velocity + d] =
+          grid.nodes[n * Layout::stride + Layout::strain_velocity + d] =
             velocity(n)[d];
       StressSweep what;
-      what.step = what.move = step;
+      what.step = step;
       sweep.update(view(), grid.view(), nullptr, what);
     }
 
@@ -111,13 +110,18 @@ namespace
     std::vector<double>
     forces()
     {
-      GiveToGrid what;
-      what.momentum        = false;
-      what.inverse_density = 1 / law.density;
-      what.projection      = sweep.projection();
-      what.initial_frame   = sweep.initial_frame();
       grid.clear();
-      points_to_grid<dim>(view(), grid.view(), what, nullptr);
+      return forces_after(0);
+    }
+
+    /** The same when points have followed the nodes for a time before. */
+    std::vector<double>
+    forces_after(const double step)
+    {
+      StressSweep what;
+      what.step       = step;
+      what.give_force = true;
+      sweep.update(view(), grid.view(), nullptr, what);
       std::vector<double> result;
       for (std::size_t n = 0; n < grid.n_nodes; ++n)
         for (int d = 0; d < dim; ++d)
@@ -220,6 +224,32 @@ TYPED_TEST(InitialFrame, ForcesAreTheDerivativeOfTheEnergy)
   const double later = energy_after(h), earlier = energy_after(-2 * h);
   ASSERT_GT(scale, 0);
   EXPECT_NEAR((later - earlier) / (2 * h), power, 1e-7 * scale);
+}
+
+
+
+// One sweep strains and gives the forces of what it has come to.
+TYPED_TEST(InitialFrame, ForcesAreThoseOfTheNewStress)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  std::vector<Vector<dim>> there(this->grid.n_nodes);
+  for (auto &v : there)
+    for (double &x : v)
+      x = this->random();
+  const double size = this->amplitude;
+  this->move([&](const std::size_t n) { return there[n]; }, size);
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    for (int d = 0; d < dim; ++d)
+      this->grid.nodes[n * Layout::stride + Layout::force + d] = 0;
+  const auto at_once   = this->forces_after(size);
+  const auto afterward = this->forces();
+  double     largest   = 0;
+  for (const double force : afterward)
+    largest = std::max(largest, std::abs(force));
+  ASSERT_GT(largest, 0);
+  for (std::size_t i = 0; i < at_once.size(); ++i)
+    ASSERT_NEAR(at_once[i], afterward[i], 1e-14 * largest);
 }
 
 

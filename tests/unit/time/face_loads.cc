@@ -207,7 +207,10 @@ TYPED_TEST(FaceLoads, PressureFollowsTheFaceAndTractionDoesNot)
       Tensor<2, dim>       F = one;
       for (const bool remapped : {false, true})
         {
-          loads.deform(run.nodes, remapped, dt);
+          StressSweep motion;
+          motion.step     = dt;
+          motion.remapped = remapped;
+          loads.deform(run.nodes, motion);
           F                = (one + (remapped ? 2 : 1) * dt * gradient) * F;
           const auto after = Resultant<dim>(run, loads).force;
           const auto wanted =

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_transfer_pulled_back_force_h
+#define limber_transfer_pulled_back_force_h
+
+#include <limber/interpolation/pulled_back_stress.h>
+#include <limber/transfer/add_to_nodes.h>
+#include <limber/transfer/give_to_splines.h>
+
+namespace limber
+{
+  /**
+   * The forces f_i = - sum V P grad_X N_i that the points of a batch give to
+   * the nodes of their cell, a pack of points at a time.
+   */
+  template <class Basis>
+  class PulledBackForce;
+
+
+
+  template <int dim>
+  class PulledBackForce<Linear<dim>>
+  {
+  public:
+    __attribute__((always_inline))
+    PulledBackForce(const GridView<dim> &grid, const std::uint32_t cell)
+      : grid(grid)
+      , cell(grid.cells[cell])
+      , stress(this->cell)
+    {}
+
+    /** V P (J, zero in idle lanes) at natural places xi. */
+    template <class Lanes>
+    __attribute__((always_inline)) void
+    add(const SmallMatrix<dim, PointPack<dim>> &VP,
+        const std::array<PointPack<dim>, dim>  &xi,
+        const Lanes &)
+    {
+      stress.add(VP, xi);
+    }
+
+    __attribute__((always_inline)) void
+    add_to_nodes() const
+    {
+      limber::add_to_nodes<dim, NodeLayout<dim>::force>(cell,
+                                                        stress.forces(),
+                                                        grid.nodes);
+    }
+
+  private:
+    const GridView<dim>     &grid;
+    const CellGeometry<dim> &cell;
+    StressOnNodes<dim>       stress;
+  };
+
+
+
+  template <int dim>
+  class PulledBackForce<Quadratic<dim>>
+  {
+  public:
+    __attribute__((always_inline))
+    PulledBackForce(const GridView<dim> &grid, const std::uint32_t cell)
+      : grid(grid)
+      , cell(grid.cells[cell])
+      , nodes(grid.splines[cell])
+    {
+      of_batch.clear();
+    }
+
+    template <class Lanes>
+    __attribute__((always_inline)) void
+    add(const SmallMatrix<dim, PointPack<dim>> &VP,
+        const std::array<PointPack<dim>, dim>  &xi,
+        const Lanes                            &lanes)
+    {
+      const SplineWeights<dim, true> weights(cell, nodes, xi);
+      Sums                           sums;
+      sums.clear();
+#pragma GCC unroll 3
+      for (int e = 0; e < dim; ++e)
+        {
+          std::array<PointPack<dim>, Sums::width> slots;
+          set_zero(slots);
+#pragma GCC unroll 3
+          for (int d = 0; d < dim; ++d)
+            slots[Sums::lane_of(NodeLayout<dim>::force + d)] = -VP[d][e];
+          const auto records = records_of<typename Sums::Record>(slots);
+          for (int p = 0; p < lanes.n; ++p)
+            sums.add(weights.gradient[e], p, records[p]);
+        }
+      of_batch.take(sums, false);
+    }
+
+    __attribute__((always_inline)) void
+    add_to_nodes() const
+    {
+      of_batch.add_to_nodes(nodes, grid.nodes);
+    }
+
+  private:
+    using Sums = SplineSums<dim, NodeLayout<dim>::force, dim>;
+
+    const GridView<dim>     &grid;
+    const CellGeometry<dim> &cell;
+    const SplineCell<dim>   &nodes;
+    Sums                     of_batch;
+  };
+} // namespace limber
+
+#endif
