@@ -44,6 +44,14 @@ namespace limber
                        return !body.is_liquid && body.frame == Frame::current;
                      });
       const bool any_solid = solid != problem.bodies.end();
+      if (any_solid && problem.grid.kernel == KernelKind::quadratic)
+        {
+          problem.method.order = StressUpdateOrder::musl;
+          problem.notes.push_back(
+            "Stress update 'auto' is 'musl', which with splines keeps the "
+            "energy of solids as 'usavg' does, in two thirds of the time.");
+          return;
+        }
       problem.method.order =
         any_solid ? StressUpdateOrder::usavg : StressUpdateOrder::musl;
       problem.notes.push_back(

@@ -63,7 +63,8 @@ namespace limber
     static const Words<StressUpdateOrder> words = {
       {"auto",
        StressUpdateOrder::automatic,
-       "'usavg' with solids whose points cross cells, but for CPDI; or else 'musl'; the log says which"},
+       "'usavg' with linear functions and solids whose points cross cells, 'usl' with the transfers "
+       "'fmpm' and 'xpic', else 'musl'; the log says which"},
       {"usf", StressUpdateOrder::usf, "before the forces", "first"},
       {"usl", StressUpdateOrder::usl, "with the moved nodes", "last"},
       {"musl",

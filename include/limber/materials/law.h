@@ -38,10 +38,21 @@ namespace limber
       return result;
     }
 
-    /** f, by which the motion deforms: no average acts on it. */
+    /**
+     * f, by which the motion deforms: no average acts on it. A cell that is
+     * hardly touched may strain by more than one in a step; points are then
+     * flattened, but not turned inside out.
+     */
     SmallMatrix<dim, Number>
     deformation() const
     {
+      Number size{}; // |a|^2
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          size += gradient[i][j] * gradient[i][j];
+      // 1 + x + (c + k) x^2 > 0 for all x and any c from -1/2 on
+      const Number curvature =
+        square + 0.7 * larger(size - 0.04, broadcast<Number>(0.));
       SmallMatrix<dim, Number> f;
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
@@ -49,14 +60,17 @@ namespace limber
             f[i][j] = gradient[i][0] * gradient[0][j];
             for (int k = 1; k < dim; ++k)
               f[i][j] += gradient[i][k] * gradient[k][j];
-            f[i][j] = gradient[i][j] + square * f[i][j];
+            f[i][j] = gradient[i][j] + curvature * f[i][j];
           }
       for (int d = 0; d < dim; ++d)
         f[d][d] += 1.;
       return f;
     }
 
-    /** det(f) to second order in a, with the averaged trace in the first. */
+    /**
+     * det(f) to second order in a, with the averaged trace in the first. The
+     * second takes no more than a quarter of the volume away.
+     */
     Number
     volume_ratio() const
     {
@@ -68,7 +82,9 @@ namespace limber
           for (int j = 0; j < i; ++j)
             tr_square += 2. * (gradient[i][j] * gradient[j][i]);
         }
-      return 1. + volumetric + 0.5 * tr * tr + (square - 0.5) * tr_square;
+      return 1. + volumetric +
+             larger(0.5 * tr * tr + (square - 0.5) * tr_square,
+                    broadcast<Number>(-0.25));
     }
   };
 
