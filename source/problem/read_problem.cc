@@ -40,29 +40,35 @@ namespace limber
       const auto solid =
         std::find_if(problem.bodies.begin(),
                      problem.bodies.end(),
-                     [](const auto &body) {
-                       return !body.is_liquid && body.frame == Frame::current;
-                     });
-      const bool any_solid = solid != problem.bodies.end();
-      if (any_solid && problem.grid.kernel == KernelKind::quadratic)
+                     [](const auto &body) { return !body.is_liquid; });
+      if (solid == problem.bodies.end())
+        {
+          problem.method.order = StressUpdateOrder::musl;
+          problem.notes.push_back("Stress update 'auto' is 'musl', as liquids "
+                                  "gain nothing from 'usavg'.");
+        }
+      else if (solid->frame == Frame::initial)
+        {
+          problem.method.order = StressUpdateOrder::usavg;
+          problem.notes.push_back(
+            "Stress update 'auto' is 'usavg', which is of second order and in "
+            "the initial frame costs no more than 'musl'.");
+        }
+      else if (problem.grid.kernel == KernelKind::quadratic)
         {
           problem.method.order = StressUpdateOrder::musl;
           problem.notes.push_back(
             "Stress update 'auto' is 'musl', which with splines keeps the "
             "energy of solids as 'usavg' does, in two thirds of the time.");
-          return;
         }
-      problem.method.order =
-        any_solid ? StressUpdateOrder::usavg : StressUpdateOrder::musl;
-      problem.notes.push_back(
-        any_solid ?
-          "Stress update 'auto' is 'usavg', which keeps the energy of "
-          "solids like body " +
-            in_quotes(solid->name) +
-            "; 'musl' takes two thirds of "
-            "the time." :
-          "Stress update 'auto' is 'musl', as nothing gains from "
-          "'usavg' but solids whose points cross cells.");
+      else
+        {
+          problem.method.order = StressUpdateOrder::usavg;
+          problem.notes.push_back(
+            "Stress update 'auto' is 'usavg', which keeps the energy of solids "
+            "like body " +
+            in_quotes(solid->name) + "; 'musl' takes two thirds of the time.");
+        }
     }
   } // namespace
 

@@ -63,8 +63,9 @@ namespace limber
     static const Words<StressUpdateOrder> words = {
       {"auto",
        StressUpdateOrder::automatic,
-       "'usavg' with linear functions and solids whose points cross cells, 'usl' with the transfers "
-       "'fmpm' and 'xpic', else 'musl'; the log says which"},
+       "'usavg' for solids with linear functions or in their initial frame, "
+       "'usl' with the transfers 'fmpm' and 'xpic', else 'musl'; the log says "
+       "which"},
       {"usf", StressUpdateOrder::usf, "before the forces", "first"},
       {"usl", StressUpdateOrder::usl, "with the moved nodes", "last"},
       {"musl",

@@ -16,6 +16,12 @@ namespace limber
                                    [](const auto &body) {
                                      return body->stress->gives_force();
                                    }))
+    , moves_as_strained(parts.problem.grid.kernel != KernelKind::linear &&
+                        std::any_of(parts.bodies.begin(),
+                                    parts.bodies.end(),
+                                    [](const auto &body) {
+                                      return !body->description.is_liquid;
+                                    }))
     , boundaries(parts.problem.sides)
     , loads(parts.problem, parts.grid, parts.bodies)
     , sweeps(parts)

@@ -330,23 +330,21 @@ namespace limber
 
 
   // From the new velocity to that of the middle of the step, with which points
-  // move to second order in time. Domains creep unless they move as they are
-  // strained: with the mean of the two velocities that do so.
+  // move to second order in time; or the mean of the two that strain them.
   template <int dim>
   void
   ExplicitIntegrator<dim>::centre_velocity()
   {
-    const bool as_strained = parts.problem.grid.kernel == KernelKind::cpdi;
     for (const std::uint32_t node : parts.nodes.active_nodes())
       {
         double *const record = parts.nodes.record(node);
         for (int d = 0; d < dim; ++d)
           record[Layout::middle_velocity + d] =
-            as_strained ? 0.5 * (record[Layout::velocity + d] -
-                                 record[Layout::increment + d] +
-                                 record[Layout::strain_velocity + d]) :
-                          record[Layout::velocity + d] -
-                            0.5 * record[Layout::increment + d];
+            moves_as_strained ? 0.5 * (record[Layout::velocity + d] -
+                                       record[Layout::increment + d] +
+                                       record[Layout::strain_velocity + d]) :
+                                record[Layout::velocity + d] -
+                                  0.5 * record[Layout::increment + d];
       }
     lap(Verb::advance_nodes);
     boundaries.apply_trial(parts.nodes,
@@ -365,12 +363,12 @@ namespace limber
 
 
 
-  // The velocity that strains points also moves those with domains.
+  // Solids creep less if the velocity that strains points moves them as well.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::move_domains_as_strained()
+  ExplicitIntegrator<dim>::move_as_strained()
   {
-    if (parts.problem.grid.kernel != KernelKind::cpdi)
+    if (!moves_as_strained)
       return;
     for (const std::uint32_t node : parts.nodes.active_nodes())
       {
@@ -453,7 +451,7 @@ namespace limber
   template void
   ExplicitIntegrator<2>::centre_velocity();
   template void
-  ExplicitIntegrator<2>::move_domains_as_strained();
+  ExplicitIntegrator<2>::move_as_strained();
   template void
   ExplicitIntegrator<2>::filter_velocity();
   template void
@@ -491,7 +489,7 @@ namespace limber
   template void
   ExplicitIntegrator<3>::centre_velocity();
   template void
-  ExplicitIntegrator<3>::move_domains_as_strained();
+  ExplicitIntegrator<3>::move_as_strained();
   template void
   ExplicitIntegrator<3>::filter_velocity();
   template void

@@ -67,7 +67,7 @@ namespace limber
     accelerate_nodes();
     g2p_and_remap();
     account_loads(Layout::strain_velocity);
-    move_domains_as_strained();
+    move_as_strained();
     interpolate_hanging();
     update_stress_and_move(step);
   }

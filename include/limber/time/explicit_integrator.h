@@ -153,7 +153,7 @@ namespace limber
     void
     centre_velocity();
     void
-    move_domains_as_strained();
+    move_as_strained();
     void
     filter_velocity();
 
@@ -179,9 +179,11 @@ namespace limber
       stopwatch.lap(seconds[std::size_t(verb)]);
     }
 
-    const RunParts<dim>                parts;
-    const bool                         parallel;
-    const bool                         in_initial_frame; // all bodies
+    const RunParts<dim> parts;
+    const bool          parallel;
+    const bool          in_initial_frame; // all bodies
+    // Points by the velocity that strains them, with MUSL and USAVG
+    const bool                         moves_as_strained;
     BoundaryConditions<dim>            boundaries;
     ExternalLoads<dim>                 loads;
     BodySweeps<dim>                    sweeps;

@@ -238,7 +238,7 @@ TYPED_TEST(ClosedForms, NeoHookeanFollowsTheDeformationGradient)
 
       std::vector<Matrix<dim>> steps;
       for (int k = 0; k < 20; ++k)
-        steps.push_back(this->random.template matrix<dim>(0.05));
+        steps.push_back(this->random.template matrix<dim>(0.015));
       this->follow(law, steps, 1e-12);
     }
 }
