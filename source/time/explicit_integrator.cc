@@ -17,6 +17,7 @@ namespace limber
                                      return body->stress->gives_force();
                                    }))
     , moves_as_strained(parts.problem.grid.kernel != KernelKind::linear &&
+                        parts.problem.method.transfer != Transfer::apic &&
                         std::any_of(parts.bodies.begin(),
                                     parts.bodies.end(),
                                     [](const auto &body) {

@@ -39,10 +39,9 @@ namespace limber
     }
 
     /**
-     * f, by which the motion deforms: no average acts on it. Cells that are
-     * hardly touched may shake points by much of a cell in a step. There f
-     * tends to 1 + a + a^2/2, which turns no point inside out and leaves
-     * nothing of a motion there and back, which 1 + a would compress.
+     * f, by which the motion deforms: no average acts on it. A cell that is
+     * hardly touched may strain by more than one in a step; points are then
+     * flattened, but not turned inside out.
      */
     SmallMatrix<dim, Number>
     deformation() const
@@ -51,9 +50,9 @@ namespace limber
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
           size += gradient[i][j] * gradient[i][j];
-      const Number excess = larger(size - 0.01, broadcast<Number>(0.));
+      // 1 + x + (c + k) x^2 > 0 for all x and any c from -1/2 on
       const Number curvature =
-        square + (0.5 - square) * excess / (excess + 0.02);
+        square + 0.7 * larger(size - 0.04, broadcast<Number>(0.));
       SmallMatrix<dim, Number> f;
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)

@@ -182,7 +182,8 @@ namespace limber
     const RunParts<dim> parts;
     const bool          parallel;
     const bool          in_initial_frame; // all bodies
-    // Points by the velocity that strains them, with MUSL and USAVG
+    // Points by the velocity that strains them, with MUSL and USAVG; APIC
+    // would lose angular momentum.
     const bool                         moves_as_strained;
     BoundaryConditions<dim>            boundaries;
     ExternalLoads<dim>                 loads;

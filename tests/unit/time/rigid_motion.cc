@@ -103,7 +103,8 @@ namespace
       {
         result = std::max(result, std::abs(points.pressure[p]));
         for (const double *const component : points.deviator)
-          result = std::max(result, std::abs(component[p]));
+          if (component != nullptr) // of an inviscid fluid
+            result = std::max(result, std::abs(component[p]));
       }
     return result;
   }
