@@ -90,48 +90,93 @@ namespace limber
 
 
 
+  // An impulse does work with the velocity that the side leaves. Where the
+  // stress bears against the side, it does no work; what it takes from what the
+  // points bring is lost. With points that it keeps, the stress works with the
+  // mean velocity of the step, and so does the side; where it accelerates, its
+  // points do so from a velocity of their own.
+  template <int dim>
+  typename BoundaryConditions<dim>::Action
+  BoundaryConditions<dim>::action(const Velocity &change,
+                                  const Velocity &former_change,
+                                  const Velocity &velocity,
+                                  const Velocity &increment,
+                                  const double    mass,
+                                  const double    flip_share)
+  {
+    Action result;
+    result.impulse = mass * (change - flip_share * former_change);
+    for (int d = 0; d < dim; ++d)
+      {
+        if (former_change[d] != 0)
+          result.work += mass * ((change[d] - former_change[d]) *
+                                   (velocity[d] - 0.5 * increment[d]) -
+                                 former_change[d] * increment[d]);
+        else if (change[d] != 0)
+          result.work += mass * (change[d] * velocity[d] -
+                                 0.5 * increment[d] * increment[d]);
+        result.transfer_work +=
+          mass * (1 - flip_share) * former_change[d] * velocity[d];
+      }
+    return result;
+  }
+
+
+
   template <int dim>
   void
   BoundaryConditions<dim>::apply(NodalFields<dim> &nodes,
-                                 const double      time,
+                                 const Step       &step,
                                  const Account    &account)
   {
     using Layout = NodeLayout<dim>;
+    std::vector<double> former_values;
+    if (step.keeps_points)
+      for (const Constraint &constraint : constraints.at(nodes, step.begin))
+        former_values.push_back(constraint.value);
+    const Constraint *const list = constraints.at(nodes, step.end).data();
+
     for_each_node(
       nodes,
-      time,
+      step.end,
       [&](const std::uint32_t node, const auto first, const auto last) {
         double *const  record        = nodes.record(node);
         const double   mass          = record[Layout::mass];
         const Velocity free_velocity = read<dim>(record + Layout::velocity);
-        const Velocity old_velocity =
+        const Velocity brought =
           free_velocity - read<dim>(record + Layout::increment);
         Velocity                      velocity = free_velocity;
-        std::array<Velocity, 2 * dim> change;
+        Velocity                      former   = brought;
+        std::array<Velocity, 2 * dim> change, former_change;
         for (auto c = first; c != last; ++c)
           {
             const Velocity before = velocity;
             act(*c, velocity, nullptr);
             change[c->side] += velocity - before;
+            if (step.keeps_points && !c->one_sided)
+              {
+                const double value = former_values[&*c - list];
+                former_change[c->side][c->component] +=
+                  value - former[c->component];
+                former[c->component] = value;
+              }
           }
 
-        // An impulse does work with the velocity that the side leaves. Where
-        // the stress bears against the side, it does no work; what the points
-        // bring to the node against the side is lost, as in an impact.
-        const Velocity step_change = velocity - old_velocity;
+        const Velocity increment = velocity - former;
         for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (nodes.owns(node) && change[side] != Velocity())
-            {
-              double work = change[side] * velocity;
-              for (int d = 0; d < dim; ++d)
-                if (change[side][d] != 0)
-                  work -= 0.5 * step_change[d] * step_change[d];
-              account(side, mass * change[side], mass * work);
-            }
+          if (nodes.owns(node) &&
+              (change[side] != Velocity() || former_change[side] != Velocity()))
+            account(side,
+                    action(change[side],
+                           former_change[side],
+                           velocity,
+                           increment,
+                           mass,
+                           step.flip_share));
         for (int d = 0; d < dim; ++d)
           {
-            record[Layout::increment + d] += velocity[d] - free_velocity[d];
-            record[Layout::velocity + d] = velocity[d];
+            record[Layout::increment + d] = increment[d];
+            record[Layout::velocity + d]  = velocity[d];
           }
       });
   }

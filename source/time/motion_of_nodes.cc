@@ -24,6 +24,9 @@ namespace limber
       parts.nodes.clear();
     extremes.speed_squared = extremes.wave_squared = extremes.displacement = 0;
     history_time = step;
+    if (full_mass)
+      steps_since_filter =
+        (steps_since_filter + 1) % parts.problem.method.transfer_period;
     relocation.begin_step();
     lap(Verb::advance_nodes);
   }
@@ -209,17 +212,20 @@ namespace limber
 
 
 
+  // In the initial frame all points stay with the nodes that they had at the
+  // start; else they may land on a side at any time.
   template <int dim>
   void
   ExplicitIntegrator<dim>::apply_boundaries()
   {
     boundaries.apply(parts.nodes,
-                     time + step,
-                     [this](const unsigned int            side,
-                            const dealii::Tensor<1, dim> &impulse,
-                            const double                  work) {
-                       parts.ledger.side_impulse[side] += impulse;
-                       parts.ledger.boundary_work += work;
+                     {time, time + step, flip_share(), in_initial_frame},
+                     [this](const unsigned int side, const auto &action) {
+                       parts.ledger.side_impulse[side] += action.impulse;
+                       parts.ledger.boundary_work +=
+                         action.work + action.transfer_work;
+                       // What points lose to the transfer contains it.
+                       parts.ledger.transfer += action.transfer_work;
                      });
     lap(Verb::apply_boundaries);
   }
@@ -390,7 +396,6 @@ namespace limber
     if (!full_mass)
       return;
     const Method &method = parts.problem.method;
-    steps_since_filter   = (steps_since_filter + 1) % method.transfer_period;
     if (steps_since_filter == 0)
       {
         const auto action = full_mass->apply(parts.nodes,

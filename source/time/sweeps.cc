@@ -118,7 +118,7 @@ namespace limber
   ExplicitIntegrator<dim>::flip_share() const
   {
     const Method &method = parts.problem.method;
-    if (method.transfer == Transfer::pic ||
+    if (method.transfer == Transfer::pic || method.transfer == Transfer::apic ||
         (full_mass && steps_since_filter == 0))
       return 0;
     return method.damping_time > 0 ?

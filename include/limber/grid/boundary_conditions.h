@@ -18,9 +18,25 @@ namespace limber
   class BoundaryConditions
   {
   public:
-    /** Impulse of a side on a node (kg m/s) and its work (J). */
-    using Account = std::function<
-      void(unsigned int side, const dealii::Tensor<1, dim> &, double work)>;
+    /** What a side does to a node. */
+    struct Action
+    {
+      dealii::Tensor<1, dim> impulse;           // on the points, kg m/s
+      double                 work          = 0; // J, as if they were FLIP's
+      double                 transfer_work = 0; // J, what it does beyond that
+    };
+
+    using Account = std::function<void(unsigned int side, const Action &)>;
+
+    /** What sides have to know of a step. */
+    struct Step
+    {
+      double begin, end; // time, s
+      // Of the change of velocity that points take; the rest is new velocity
+      double flip_share = 1;
+      // Whether points stay with the sides that always hold them: see apply()
+      bool keeps_points = false;
+    };
 
     explicit BoundaryConditions(const Sides<dim> &sides);
 
@@ -28,9 +44,14 @@ namespace limber
      * Change the new velocity of the nodes, and their increment with it, so
      * that points near a side receive its impulse. Owned nodes are accounted
      * for.
+     *
+     * What points bring to the node against a side is taken from them, as in an
+     * impact. In every step that costs energy, as the nodes next to it bring it
+     * anew. Points that a side keeps, since they stay with it, are let alone:
+     * their increment is that of the velocity of the side.
      */
     void
-    apply(NodalFields<dim> &nodes, double time, const Account &account);
+    apply(NodalFields<dim> &nodes, const Step &step, const Account &account);
 
     /**
      * Change the velocity that begins at @p slot of the records
@@ -63,6 +84,14 @@ namespace limber
     act_one_sided(const Constraint &constraint,
                   Velocity         &velocity,
                   const Velocity   *new_velocity) const;
+
+    static Action
+    action(const Velocity &change,
+           const Velocity &former_change,
+           const Velocity &velocity,
+           const Velocity &increment,
+           double          mass,
+           double          flip_share);
 
     const Sides<dim>    &sides;
     SideConstraints<dim> constraints;

@@ -167,10 +167,10 @@ namespace limber
       std::array<dealii::Tensor<1, 2>, 4> impulse;
       const double                        time = 2;
       boundaries.apply(nodes,
-                       time,
-                       [&](const unsigned int          side,
-                           const dealii::Tensor<1, 2> &given,
-                           double) { impulse[side] += given; });
+                       {time - 1, time},
+                       [&](const unsigned int side, const auto &action) {
+                         impulse[side] += action.impulse;
+                       });
       for (auto &of_side : impulse)
         of_side = dealii::Utilities::MPI::sum(of_side, MPI_COMM_WORLD);
 
@@ -206,6 +206,58 @@ namespace limber
       EXPECT_NEAR(impulse[bottom][1], 2 * (4 * 3. + 4), 1e-12);
       EXPECT_NEAR(impulse[top][0], 3 * 2 * -0.5, 1e-12);
       EXPECT_NEAR(impulse[top][1], 4 * 2 * -1., 1e-12);
+    }
+
+
+
+    /** Points there take the change of velocity of their side, and no other. */
+    TEST_F(SideConstraintsTest, SidesThatKeepTheirPointsLeaveThemWhatTheyBring)
+    {
+      BoundaryConditions<2> boundaries(sides);
+      const auto            set = [this]() {
+        for (const std::uint32_t node : nodes.active_nodes())
+          {
+            double *const record          = nodes.record(node);
+            record[Layout::mass]          = 2;
+            record[Layout::velocity]      = 3;
+            record[Layout::velocity + 1]  = 1;
+            record[Layout::increment]     = 0.5;
+            record[Layout::increment + 1] = 0.25;
+          }
+      };
+      const auto apply = [&](const bool keeps, const double share) {
+        set();
+        dealii::Tensor<1, 2> impulse;
+        boundaries.apply(nodes,
+                         {1, 2, share, keeps},
+                         [&](const unsigned int side, const auto &action) {
+                           if (side == left)
+                             impulse += action.impulse;
+                         });
+        return dealii::Utilities::MPI::sum(impulse, MPI_COMM_WORLD);
+      };
+      const auto increments = [&](const unsigned int side, const int d) {
+        std::set<double> result;
+        for (const std::uint32_t node : nodes.active_boundary_nodes())
+          if (nodes.table.sides[node] == 1 << side)
+            result.insert(nodes.record(node)[Layout::increment + d]);
+        return result;
+      };
+      // left: slip; bottom: velocity x + t, 2 t; top: friction
+      const auto of_flip = apply(true, 1);
+      for (const double value : increments(left, 0))
+        EXPECT_EQ(value, 0);
+      for (const double value : increments(bottom, 0))
+        EXPECT_NEAR(value, 1, 1e-14);
+      for (const double value : increments(bottom, 1))
+        EXPECT_NEAR(value, 2, 1e-14);
+      for (const double value : increments(top, 1))
+        EXPECT_NEAR(value, -0.75, 1e-14);
+      EXPECT_NEAR(of_flip[0], 4 * 2 * -0.5, 1e-12);
+      EXPECT_NEAR(apply(true, 0)[0], 4 * 2 * -3., 1e-12);
+      EXPECT_NEAR(apply(false, 1)[0], 4 * 2 * -3., 1e-12);
+      for (const double value : increments(left, 0))
+        EXPECT_NEAR(value, -2.5, 1e-14);
     }
   } // namespace
 } // namespace limber

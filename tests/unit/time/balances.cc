@@ -220,6 +220,36 @@ TEST(Balances, MovingAndStickingFloorsTakeTheBlockAlong)
 
 
 
+// Struck sideways, with points at the floor that shall not move at all. What
+// they bring there is not taken from them in every step.
+TEST(Balances, AFloorTakesNoEnergyInTheInitialFrame)
+{
+  for (const std::string order : {"musl", "usavg"})
+    for (const std::string kernel : {"linear", "quadratic"})
+      {
+        SCOPED_TRACE(order + ", " + kernel);
+        SceneRun<2>  run(block_on_floor,
+                        {"Body block/Initial velocity=0.2; 0",
+                          "Body block/Frame=initial",
+                          "Method/Courant number=0.2",
+                          "Method/Kernel=" + kernel,
+                          "Boundaries/bottom=no slip",
+                          "Method/Stress update=" + order});
+        const double before = run.totals().all.kinetic_energy;
+        run.advance_to(2);
+        run.integrator.synchronise();
+        const auto totals = run.totals();
+        EXPECT_NEAR(totals.all.kinetic_energy + totals.all.strain_energy,
+                    before,
+                    0.01 * before);
+        EXPECT_EQ(totals.boundary_work, 0);
+        EXPECT_GT(std::abs(totals.side_impulse[2][0]), 0.1 * mass * 0.2);
+        EXPECT_LT(totals.momentum_error, 1e-12);
+      }
+}
+
+
+
 TEST(Balances, ReactionOfARestingBlockIsItsWeight)
 {
   for (const std::string &order : stress_update_orders)
