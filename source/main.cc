@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <limber/base/console.h>
+#include <limber/base/open_mpi.h>
 #include <limber/base/run_info.h>
 #include <limber/base/unforeseen.h>
 #include <limber/output/run_folder.h>
@@ -105,21 +106,6 @@ namespace
     return int(ExitCode::success);
   }
 
-
-
-  // Before MPI starts; who sets these in the environment is obeyed.
-  void
-  tune_open_mpi()
-  {
-    // Ranks wait for many small messages. What is larger than 4 kB Open MPI
-    // lets the receiver fetch by a system call, which takes longer than two
-    // copies through shared memory (doc/developer/speed.md).
-    setenv("OMPI_MCA_btl_vader_single_copy_mechanism", "none", 0);
-    // Programs that are started without mpirun share a folder for files in
-    // shared memory, and the first to end removes it: others then could not
-    // open a file. Nothing here has file pointers that are shared.
-    setenv("OMPI_MCA_sharedfp", "^sm", 0);
-  }
 } // namespace
 
 

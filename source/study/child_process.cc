@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/base/open_mpi.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
 #include <limber/simulation/signals.h>
@@ -26,9 +27,7 @@ namespace limber
     pid_t
     spawn(const std::vector<std::string> &command, const std::string &log)
     {
-      // One process alone starts ten times faster so. It must not be taken
-      // for part of somebody else's parallel job either.
-      setenv("OMPI_MCA_ess_singleton_isolated", "1", /*overwrite=*/0);
+      isolate_from_jobs();
 
       std::vector<char *> words;
       for (const std::string &word : command)
