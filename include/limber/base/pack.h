@@ -286,20 +286,26 @@ namespace limber
 
 
   /**
-   * 1 / a^(1/3) for positive a by Newton's iteration x <- x (4 - a x^3) / 3,
-   * from a start that divides the binary exponent by minus three (within 4 %,
-   * so that four quadratic steps reach round-off). Not defined for a <= 0.
+   * 1 / a^(1/3) for positive a, to round-off. The start divides the binary
+   * exponent by minus three (within 4 %); two steps then multiply by the series
+   * of (1 - e)^(-1/3), e = 1 - a x^3, which is a shorter chain of dependent
+   * operations than steps of Newton. Not defined for a <= 0.
    */
   template <class Number>
   inline Number
   inverse_cube_root(const Number &a)
   {
     using Bits = internal::Bits<Number>;
-    Number x   = internal::same_bits<Number>(0x553ef0ff289dd796LL -
-                                           internal::same_bits<Bits>(a) / 3);
-    for (unsigned int i = 0; i < 5; ++i)
-      x *= (4. - a * x * x * x) * (1. / 3.);
-    return x;
+    // 2^20 / 3 times, as packs of integers cannot be divided
+    Number x = internal::same_bits<Number>(
+      0x553ef0ff289dd796LL - (internal::same_bits<Bits>(a) >> 20) * 349525);
+    Number e = 1. - a * (x * (x * x));
+    x *=
+      1. +
+      e * (1. / 3 +
+           e * (2. / 9 + e * (14. / 81 + e * (35. / 243 + e * (91. / 729)))));
+    e = 1. - a * (x * (x * x));
+    return x + x * (e * (1. / 3 + e * (2. / 9)));
   }
 
 

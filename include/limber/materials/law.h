@@ -2,6 +2,7 @@
 #ifndef limber_materials_law_h
 #define limber_materials_law_h
 
+#include <limber/base/expected.h>
 #include <limber/base/pack.h>
 #include <limber/base/small_matrix.h>
 
@@ -50,9 +51,10 @@ namespace limber
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
           size += gradient[i][j] * gradient[i][j];
-      // 1 + x + (c + k) x^2 > 0 for all x and any c from -1/2 on
-      const Number curvature =
-        square + 0.7 * larger(size - 0.04, broadcast<Number>(0.));
+      Number curvature = broadcast<Number>(square);
+      if (rarely(!all(size < 0.04)))
+        // 1 + x + (c + k) x^2 > 0 for all x and any c from -1/2 on
+        curvature += 0.7 * larger(size - 0.04, broadcast<Number>(0.));
       SmallMatrix<dim, Number> f;
       for (int i = 0; i < dim; ++i)
         for (int j = 0; j < dim; ++j)
