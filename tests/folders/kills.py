@@ -25,8 +25,7 @@ for folder in "restart", "mpi":
 from compare_parts import read_series, read_table  # noqa: E402
 from compare_ranks import differences  # noqa: E402
 
-SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
-             "OMPI_MCA_pml": "ob1",
+SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 CHANGES = ["End time=0.08", "Output/Time interval=0.004",
            "Output/Point arrays=true", "Checkpoint/Steps=4"]

@@ -23,8 +23,7 @@ SCENE = TOP / "tests/folders/block.prm"
 EXACT = TOP / "prm/verification/manufactured_solution.prm"
 LONG = TOP / "tests/restart/two_dimensions.prm"
 BEAM = TOP / "prm/verification/free_soft_beam.prm"
-ENVIRONMENT = {"OMPI_MCA_ess_singleton_isolated": "1",
-               "OMPI_MCA_pml": "ob1",
+ENVIRONMENT = {"OMPI_MCA_pml": "ob1",
                "OMPI_MCA_btl": "self,vader",
                "OMPI_ALLOW_RUN_AS_ROOT": "1",
                "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",

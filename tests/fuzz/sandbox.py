@@ -8,8 +8,7 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
-             "OMPI_MCA_pml": "ob1",
+SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader",
              "OMPI_ALLOW_RUN_AS_ROOT": "1",
              "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}

@@ -15,8 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
-             "OMPI_MCA_pml": "ob1",
+SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 
 

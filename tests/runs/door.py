@@ -15,8 +15,7 @@ import xml.etree.ElementTree
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
-             "OMPI_MCA_pml": "ob1",
+SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 SEVERAL_RANKS = {"OMPI_ALLOW_RUN_AS_ROOT": "1",
                  "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",

@@ -13,8 +13,7 @@ import tempfile
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
-             "OMPI_MCA_pml": "ob1",
+SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 CANTILEVER = TOP / "prm/cantilever.prm"
 FREE_BEAM = TOP / "prm/verification/free_soft_beam.prm"

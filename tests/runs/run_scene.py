@@ -24,8 +24,7 @@ from pathlib import Path
 OPERATORS = {"==": operator.eq, "!=": operator.ne, "<=": operator.le,
              ">=": operator.ge, "<": operator.lt, ">": operator.gt}
 
-SINGLETON = {"OMPI_MCA_ess_singleton_isolated": "1",
-             "OMPI_MCA_pml": "ob1",
+SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 MPIRUN = {"OMPI_ALLOW_RUN_AS_ROOT": "1",
           "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
