@@ -308,8 +308,9 @@ namespace limber
     forces()
     {
       if constexpr (finite_strain)
-        stress.add_uniform(turn_of_frame(), monomials.total());
-      return stress.forces();
+        return stress.forces(turn_of_frame(), monomials.total());
+      else
+        return stress.forces();
     }
 
   private:

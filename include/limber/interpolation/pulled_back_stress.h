@@ -156,21 +156,38 @@ namespace limber
         }
     }
 
-    /** The same P (Pa) at all points, of which the monomials are summed up. */
-    void
-    add_uniform(const SmallMatrix<dim, double>     &P,
-                const std::array<double, 1 << dim> &monomials)
+    /**
+     * The forces on the nodes, one lane each, for each direction; with those
+     * of the same P (Pa) at all points besides, of which the monomials have
+     * been summed up.
+     */
+    __attribute__((always_inline)) std::array<Nodes, dim>
+    forces(const SmallMatrix<dim, double>     &P,
+           const std::array<double, 1 << dim> &monomials) const
     {
-      // into one lane, as all will be added up
+      std::array<Nodes, dim> result;
+#pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
-        for (int e = 0; e < dim; ++e)
-          for (int k = 0; k < 1 << dim; ++k)
-            if (k >> e & 1)
-              on_coefficients[d][k][0] +=
-                P[d][e] * cell.inverse_edge[e] * monomials[k ^ (1 << e)];
+        {
+          Nodes uniform{}; // lane k meets c_k
+#pragma GCC unroll 8
+          for (int k = 1; k < 1 << dim; ++k)
+            {
+              double total = 0;
+#pragma GCC unroll 8
+              for (int e = 0; e < dim; ++e)
+                if (k >> e & 1)
+                  total +=
+                    P[d][e] * cell.inverse_edge[e] * monomials[k ^ (1 << e)];
+              uniform[k] = total;
+            }
+          result[d] = -Linear<dim>::to_nodes(
+            sums_over_lanes(on_coefficients[d]) + uniform);
+        }
+      return result;
     }
 
-    /** The forces on the nodes, one lane each, for each direction. */
+    /** The same without. */
     __attribute__((always_inline)) std::array<Nodes, dim>
     forces() const
     {
