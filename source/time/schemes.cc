@@ -179,9 +179,11 @@ namespace limber
 
   // What makes f = 1 + a + c a^2 that by which points move, a being the part of
   // the step that is strained at a time. With the new velocity x' = (1 + a) x;
-  // the velocity that points bring has moved them by (1 - a)^-1 before; and the
-  // two halves of USAVG follow each other, (1 + a)(1 + b), where points move by
-  // 1 + a + b.
+  // the velocity that points bring has moved them by (1 - a)^-1 before. The
+  // forces of USAVG are those of the middle of the step at the places of its
+  // beginning: strained as they move, 1 + a + b (c = -1/2 in each half), bodies
+  // that turn by w would gain w^2 dt t of their energy; strained by exp(a)
+  // exp(b) they keep it and grow by half of that.
   template <int dim>
   double
   ExplicitIntegrator<dim>::square_of_strain() const
@@ -195,7 +197,7 @@ namespace limber
           return 0;
         case StressUpdateOrder::automatic: // has been chosen long before
         case StressUpdateOrder::usavg:
-          return -0.5;
+          return 0.5;
       }
     return 0;
   }

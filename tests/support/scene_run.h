@@ -74,6 +74,7 @@ namespace limber
           integrator.advance(time, step);
           time += step;
         }
+      integrator.synchronise();
     }
 
     /** With steps of the scene's own choice; @p watch is called after each. */

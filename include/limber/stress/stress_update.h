@@ -20,7 +20,8 @@ namespace limber
     double step     = 0;     // over which they are strained, s
     bool   remapped = false; // grad v of the re-mapped velocity, not the new
     // Points are strained by the f by which they move: f = 1 + a + c a^2 with
-    // a = step grad v and this c. A body that turns would grow or shrink by
+    // a = step grad v and this c (but with USAVG, which keeps the energy of
+    // bodies that turn instead of their size). A body that turns would grow by
     // w^2 dt/2 of its radius per second otherwise. No matter in the initial
     // frame, where F gets step grad_X v.
     double square = 0;
