@@ -4,33 +4,34 @@
     plot_beam.py <run folder> <run folder of the locked beam> <observable>
 
 The observable is a displacement, 'tip' for instance. The runs need pictures
-with the fields 'displacement' and 'pressure'. Above: both beams near their
-first largest deflection, displacements enlarged. Below: the observable over
+with the fields 'displacement' and 'pressure'. Above: both beams at the time of
+the first one's first largest deflection, displacements enlarged. Below: the observable over
 time. The picture goes into the first folder: beam.png.
 """
 
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
+import charts
 import run_folder
+from charts import np, plt
 
 LARGEST_DRAWN = 0.12  # displacement as a share of the length
 
 
 def largest_deflection(folder, observable):
-    """The picture nearest to the first extreme of the observable."""
+    """Time of the first extreme of the observable."""
     table, _ = run_folder.statistics(folder)
     value = table[observable]
     crossings = np.flatnonzero(value[1:-1] * value[2:] < 0) + 1
     end = crossings[0] if len(crossings) else len(value)
-    extreme = table["time"][np.argmax(abs(value[:end]))]
+    return table["time"][np.argmax(abs(value[:end]))]
+
+
+def state_at(folder, wanted):
+    """Time and points of the picture nearest to a time."""
     times, files = run_folder.series(folder)
-    nearest = np.argmin(abs(times - extreme))
+    nearest = np.argmin(abs(times - wanted))
     return times[nearest], run_folder.points(files[nearest])
 
 
@@ -39,7 +40,7 @@ def draw_beam(axis, name, time, cloud, factor, largest_pressure):
              (factor - 1) * cloud["displacement"][:, :2])
     dots = axis.scatter(place[:, 0], place[:, 1], c=cloud["pressure"], s=9,
                         linewidths=0, vmin=-largest_pressure,
-                        vmax=largest_pressure, cmap="coolwarm")
+                        vmax=largest_pressure, cmap="RdBu_r")
     axis.set_title(f"{name}, t = {time:.3g} s, displacements x {factor:.0f}",
                    fontsize=10)
     axis.set_aspect("equal")
@@ -52,7 +53,8 @@ def main():
         sys.exit(__doc__)
     folders = {"cell": Path(sys.argv[1]), "none": Path(sys.argv[2])}
     observable = sys.argv[3]
-    states = {name: largest_deflection(folder, observable)
+    extreme = largest_deflection(folders["cell"], observable)
+    states = {name: state_at(folder, extreme)
               for name, folder in folders.items()}
 
     treated = states["cell"][1]
@@ -71,15 +73,15 @@ def main():
     axis = below.subplots()
     for name, folder in folders.items():
         table, units = run_folder.statistics(folder)
-        axis.plot(table["time"], table[observable], label=name)
+        axis.plot(table["time"], table[observable], label=name,
+                  **charts.line_of(name))
     axis.set_xlabel("time [s]")
     axis.set_ylabel(f"{observable} [{units[observable]}]")
     axis.grid(alpha=0.3)
-    axis.legend(loc="upper right")
+    charts.legend_outside(axis)
 
     path = folders["cell"] / "beam.png"
-    figure.savefig(path, dpi=90)
-    print(path)
+    charts.save(figure, path)
 
 
 if __name__ == "__main__":

@@ -12,12 +12,9 @@ goes into the last folder: pressure.png.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
+import charts
 import run_folder
+from charts import np, plt
 
 LARGEST = 3  # MPa, end of the colours
 
@@ -71,7 +68,7 @@ def main():
         title, place, pressure, size = read(folder, wanted)
         dots = axis.scatter(place[:, 0], place[:, 1], c=pressure, s=size,
                             linewidths=0, vmin=-LARGEST, vmax=LARGEST,
-                            cmap="coolwarm")
+                            cmap="RdBu_r")
         axis.set_title(title)
         axis.set_aspect("equal")
         axis.set_xlabel("x [m]")
@@ -79,8 +76,7 @@ def main():
     figure.colorbar(dots, ax=axes, label="pressure [MPa]", extend="both")
 
     path = folders[-1] / "pressure.png"
-    figure.savefig(path, dpi=80)
-    print(path)
+    charts.save(figure, path)
 
 
 if __name__ == "__main__":

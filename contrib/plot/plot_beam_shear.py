@@ -15,12 +15,9 @@ into the first folder: shear.png.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
+import charts
 import run_folder
+from charts import np, plt
 
 
 def largest_deflection(folder):
@@ -70,7 +67,7 @@ def main():
 
         share = 100 * shear / root
         dots = row[0].scatter(start[:, 0], start[:, 1], c=share, s=14, marker="s",
-                              linewidths=0, vmin=-12, vmax=12, cmap="coolwarm")
+                              linewidths=0, vmin=-12, vmax=12, cmap="RdBu_r")
         row[0].set_aspect("equal")
         row[0].set_ylabel(treatment)
         row[0].set_yticks([])
@@ -94,8 +91,7 @@ def main():
                     orientation="horizontal", shrink=0.6, aspect=40)
 
     path = folders[0] / "shear.png"
-    figure.savefig(path, dpi=80)
-    print(path)
+    charts.save(figure, path)
 
 
 if __name__ == "__main__":

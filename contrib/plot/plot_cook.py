@@ -13,12 +13,9 @@ The picture goes into the last folder: pressure.png.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
+import charts
 import run_folder
+from charts import np, plt
 
 ENLARGED = 20
 
@@ -66,17 +63,16 @@ def main():
         drawn = cloud["position"] + (ENLARGED - 1) * cloud["displacement"]
         dots = axis.scatter(drawn[:, 0], drawn[:, 1], c=pressure, s=3,
                             linewidths=0, vmin=-largest, vmax=largest,
-                            cmap="coolwarm")
+                            cmap="RdBu_r")
         axis.plot([0, 48, 48, 0, 0], [0, 44, 60, 44, 0], color="0.6", lw=0.6)
-        axis.set_title(treatment)
+        axis.set_title(f"{treatment}, displacements x {ENLARGED}")
         axis.set_aspect("equal")
         axis.set_xlabel("x [m]")
     axes[0, 0].set_ylabel("y [m]")
     figure.colorbar(dots, ax=axes, label="pressure [Pa]", extend="both")
 
     path = folders[-1] / "pressure.png"
-    figure.savefig(path, dpi=80)
-    print(path)
+    charts.save(figure, path)
 
 
 if __name__ == "__main__":

@@ -13,12 +13,9 @@ Mast et al. (2012): read off the snapshots, to within 0.02.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
+import charts
 import run_folder
+from charts import np, plt
 
 WIDTH, HEIGHT = 1, 2  # of the column, m
 SNAPSHOTS = (1, 2, 3)  # T
@@ -52,11 +49,13 @@ def draw_snapshots(axes, folder, parameters, largest_pressure):
         x, y = cloud["position"][:, 0], cloud["position"][:, 1]
         dots = axis.scatter(x, y, c=cloud["pressure"] / 1e3, s=3, linewidths=0,
                             vmin=-largest_pressure / 1e3,
-                            vmax=largest_pressure / 1e3, cmap="coolwarm")
-        axis.set_title(f"T = {scaled[nearest]:.2f}")
+                            vmax=largest_pressure / 1e3, cmap="RdBu_r")
+        axis.set_title(f"T = {scaled[nearest]:.2f}, "
+                       f"t = {times[nearest]:.2f} s")
         axis.set_aspect("equal")
         axis.set_xlim(0, 4.5)
         axis.set_ylim(0, 2.1)
+        axis.set_xlabel("x [m]")
     return dots
 
 
@@ -64,15 +63,15 @@ def draw_curve(axis, folders, column, scale, experiment, mast, label):
     for name, folder in folders.items():
         parameters = run_folder.parameters(folder)
         table, _ = run_folder.statistics(folder)
+        treatment = parameters["Body water/Locking treatment"]
         axis.plot(scaled_time(table["time"], parameters), table[column] / scale,
-                  label=name)
+                  label=name, **charts.line_of(treatment))
     axis.plot(*experiment, "k^", markersize=4, label="Martin and Moyce (1952)")
-    axis.plot(*mast, "ro", label="Mast et al. (2012)")
+    axis.plot(*mast, "kx", label="Mast et al. (2012)")
     axis.set_xlabel(r"$T = t\sqrt{2g/l_0}$")
     axis.set_ylabel(label)
     axis.set_xlim(0, 3.2)
     axis.grid(alpha=0.3)
-    axis.legend(fontsize=9)
 
 
 def main():
@@ -91,7 +90,7 @@ def main():
         gravity = -run_folder.numbers(parameters["Loads/Gravity"])[1]
         # The colours end at the weight of the column upon the floor.
         dots = draw_snapshots(axes, folder, parameters, 1000 * gravity * HEIGHT)
-        axes[0].set_ylabel(name)
+        axes[0].set_ylabel(f"{name}\ny [m]")
     above.colorbar(dots, ax=grid, label="pressure [kPa]", extend="both")
 
     left, right = below.subplots(1, 2)
@@ -100,9 +99,10 @@ def main():
     draw_curve(right, folders, "height", HEIGHT, MARTIN_MOYCE_HEIGHT,
                MAST_HEIGHT, "height at the wall $y/h_0$")
 
+    charts.legend_outside(right)
+
     path = folders["Limber"] / "dam_break.png"
-    figure.savefig(path, dpi=80)
-    print(path)
+    charts.save(figure, path)
 
 
 if __name__ == "__main__":

@@ -13,12 +13,9 @@ the first folder: sloshing.png.
 import sys
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
+import charts
 import run_folder
+from charts import np, plt
 
 GRAVITY, LENGTH, DEPTH = 9.81, 1, 0.5
 PERIODS = (0, 0.5, 2, 2.5)  # of the pictures
@@ -32,6 +29,16 @@ def name_of(parameters):
     if parameters["Body water/Hourglass control"] == "0":
         name += ", no hourglass control"
     return name
+
+
+def style_name(parameters):
+    """What the palette calls this method."""
+    treatment = parameters["Body water/Locking treatment"]
+    if parameters["Body water/Hourglass control"] == "0":
+        return treatment + " without control"
+    if parameters["Body water/History"] == "replace":
+        return treatment + " replaced"
+    return treatment
 
 
 def main():
@@ -54,7 +61,9 @@ def main():
                             cmap="viridis")
         axis.set_title(f"t = {times[nearest]:.2f} s", fontsize=10)
         axis.set_aspect("equal")
+        axis.set_xlabel("x [m]")
         axis.set_ylim(0, 0.56)
+    axes[0].set_ylabel("y [m]")
     above.colorbar(dots, ax=axes, label="pressure [kPa]", extend="both")
 
     axis = below.subplots()
@@ -63,7 +72,8 @@ def main():
         table, _ = run_folder.statistics(folder)
         centre = table["centre"]
         start = abs(centre[0])
-        axis.plot(table["time"], centre / start, label=name)
+        style = charts.line_of(style_name(run_folder.parameters(folder)))
+        axis.plot(table["time"], centre / start, label=name, **style)
         frequency = table["frequency"][-1]
         crossings = np.flatnonzero(centre[:-1] * centre[1:] < 0)
         swing = abs(centre[crossings[-1]:]).max() / start
@@ -73,15 +83,12 @@ def main():
     axis.plot(table["time"], -np.cos(angular * table["time"]), "k--",
               linewidth=1, label="linear theory")
     axis.set_xlabel("time [s]")
-    axis.set_ylabel("centre of mass / start")
-    axis.set_ylim(-1.15, 1.9)
+    axis.set_ylabel("height of the centre of mass / start")
     axis.grid(alpha=0.3)
-    axis.legend(loc="upper center", fontsize=8, ncols=2,
-                bbox_to_anchor=(0.5, 0.98))
+    charts.legend_outside(axis)
 
     path = folders[0] / "sloshing.png"
-    figure.savefig(path, dpi=80)
-    print(path)
+    charts.save(figure, path)
 
 
 if __name__ == "__main__":

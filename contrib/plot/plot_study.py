@@ -1,14 +1,16 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the chart of a study: study.svg and study.png.
 
     plot_study.py <folder of the study>
 
-Reads study.csv and study.json, as `limber study` and `limber stability` write
-them. One panel for each measure and one line for each method, where the axis is a
-variation and there are others also one panel for each of their values; on charts of
-error against cost the Pareto front is ringed, variants that have failed stand
-as crosses at the upper edge, each with what went wrong. On maps of stability an
-open triangle means that no limit was found below it.
+Reads study.csv and study.json, as `limber study`, `limber stability` and `limber
+inf-sup` write them. One panel for each measure and one line for each method;
+where the axis is a variation and there are others, also one panel for each of
+their values. On charts of error against cost the Pareto front is ringed, and
+the ends of lines say which variant they are. Variants that have failed stand
+as crosses at the upper edge, each with what went wrong; open triangles at the
+lower edge are values too small for the axis, with the value beside. On maps of
+stability an open triangle means that no limit was found below it.
 """
 
 import argparse
@@ -18,18 +20,18 @@ import math
 import textwrap
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
+import charts
+from charts import np, plt
+from matplotlib.ticker import LogFormatterSciNotation, NullLocator
 
-COLOURS = plt.rcParams["axes.prop_cycle"].by_key()["color"]
-LINES = ["-", "--", ":"]  # one for each round of colours
-MARKERS = "osD^v<>pPXh8"
+DECADES = 10  # of a logarithmic axis at most
 
 
 def number(text):
-    return float(text) if text not in ("", "nan") else math.nan
+    try:
+        return float(text)
+    except ValueError:  # empty, or the reason why there is none
+        return math.nan
 
 
 def methods_of(rows):
@@ -40,99 +42,186 @@ def label_of(row, variations):
     return ", ".join(row[name] for name in variations)
 
 
-def draw_line(axis, rows, measure, meta, style):
+def is_error(rows, measure):
+    """Whether the column of errors says something else than that of values."""
+    return any(number(row[measure + " value"]) != number(row[measure + " error"])
+               for row in rows
+               if np.isfinite(number(row[measure + " error"])))
+
+
+def points_of(rows, measure, meta):
+    points = [(number(row[meta["horizontal"]]), number(row[measure + " error"]),
+               row) for row in rows if row["outcome"] == "finished"]
+    points = [p for p in points if np.isfinite(p[0]) and np.isfinite(p[1])]
+    return sorted(points, key=lambda p: p[0])
+
+
+def is_logarithmic(meta, direction):
+    return meta["logarithmic"] in ("both", direction)
+
+
+def floor_of(rows, measure, meta):
+    """The smallest value that a logarithmic axis reaches; nothing: any."""
+    values = [y for _, y, _ in points_of(rows, measure, meta)]
+    if not is_logarithmic(meta, "vertical") or not values:
+        return None
+    lowest, largest = min(values), max(values)
+    if lowest >= largest * 10.**-DECADES:
+        return None
+    return 0.3 * min((y for y in values if y > largest * 10.**-DECADES))
+
+
+def draw_line(axis, rows, measure, meta, style, floor, marks):
     """One method: its points, joined in the order of the horizontal axis. Of
     several variations against cost only the last one goes along a line."""
-    vertical = measure + " error"
-    points = [(number(row[meta["horizontal"]]), number(row[vertical]), row)
-              for row in rows if row["outcome"] == "finished"]
-    points = [p for p in points if np.isfinite(p[0]) and np.isfinite(p[1])]
-    points.sort(key=lambda p: p[0])
+    points = points_of(rows, measure, meta)
     joined = {}
     for x, y, row in points:
         others = meta["variations"][:-1] if meta["against cost"] else []
-        joined.setdefault(tuple(row[name] for name in others), []).append((x, y))
+        key = tuple(row[name] for name in others)
+        joined.setdefault(key, []).append((x, y, row))
     label = rows[0]["method"]
     for line in joined.values():
-        axis.plot(*zip(*line), label=label, **style)
+        seen = [p for p in line if floor is None or p[1] >= floor]
+        axis.plot([p[0] for p in seen], [p[1] for p in seen], label=label,
+                  markersize=7 if style["marker"] == "*" else 4.5,
+                  linewidth=1, **style)
         label = None
+        for p in line:
+            if p not in seen:
+                axis.plot(p[0], floor, "v", color=style["color"], markersize=7,
+                          fillstyle="none")
+                marks.append((2, p[0], floor, f"{p[1]:.0e}" if p[1] else "0",
+                              style["color"]))
+        if meta["against cost"]:
+            for k, (x, y, row) in enumerate(seen):
+                if k in (0, len(seen) - 1):
+                    marks.append((1, x, y, label_of(row, meta["variations"]),
+                                  style["color"]))
     for x, y, row in points:
         if row["beyond"].startswith("stable up to"):  # no limit was found
             axis.plot(x, y, "^", markersize=9, fillstyle="none",
                       color=style["color"])
-        if meta["against cost"]:
-            axis.annotate(label_of(row, meta["variations"]), (x, y), fontsize=6,
-                          textcoords="offset points", xytext=(4, 3),
-                          color=style["color"])
-            if row[measure + " Pareto"] == "1":
-                axis.plot(x, y, "o", markersize=11, fillstyle="none",
-                          color="black", markeredgewidth=0.8)
+        if (meta["against cost"] and row[measure + " Pareto"] == "1" and
+                (floor is None or y >= floor)):
+            axis.plot(x, y, "o", markersize=11, fillstyle="none",
+                      color="black", markeredgewidth=0.8)
     return bool(points)
 
 
 def draw_failed(axis, rows, meta, colour):
     """Crosses at the upper edge; a failed run may have no cost at all."""
     transform = axis.get_xaxis_transform()
+    reasons = {}
     for row in rows:
-        if row["outcome"] == "finished":
-            continue
         x = number(row[meta["horizontal"]])
-        if np.isfinite(x):
-            axis.plot(x, 0.97, "x", color=colour, transform=transform,
+        if row["outcome"] != "finished" and np.isfinite(x):
+            axis.plot(x, 0.98, "x", color=colour, transform=transform,
                       clip_on=False)
-            axis.annotate(f"{label_of(row, meta['variations'])}: "
-                          f"{row['outcome']}", (x, 0.97), fontsize=6,
-                          xycoords=transform, rotation=90, color=colour,
-                          textcoords="offset points", xytext=(3, -3),
-                          verticalalignment="top")
+            reasons.setdefault(row["outcome"], []).append(
+                (x, label_of(row, meta["variations"])))
+    for reason, places in reasons.items():
+        x = np.mean([x for x, _ in places])
+        which = " / ".join(label for _, label in places[:3]) + (
+            " ..." if len(places) > 3 else "")
+        axis.annotate(f"{which}: {reason}" if meta["against cost"] else reason,
+                      (places[0][0] if len(places) < 3 else x, 0.98),
+                      fontsize=6, xycoords=transform, rotation=90, color=colour,
+                      textcoords="offset points", xytext=(0, -5),
+                      horizontalalignment="center", verticalalignment="top")
 
 
 def draw_closed_forms(axis, methods, meta):
-    for index, method in enumerate(methods):
+    label = "formula"
+    for method in methods:
         line = meta["closed forms"].get(method)
         if line:
             y = [math.nan if v is None else v for v in line["y"]]
-            axis.plot(line["x"], y, "--", linewidth=1,
-                      color=COLOURS[index % len(COLOURS)])
+            axis.plot(line["x"], y, "--", linewidth=1, zorder=1,
+                      color=charts.style_of(method)["color"],
+                      label=f"{method}: {label}", scalex=False, scaley=False)
+
+
+def place_marks(axis, marks):
+    """Small texts beside points, as many as there is room for: those that would
+    cover another one move to another side or are left out."""
+    axis.figure.canvas.draw()
+    taken = []
+    inside = axis.get_window_extent()
+    for _, x, y, text, colour in sorted(marks, key=lambda m: -m[0]):
+        px, py = axis.transData.transform((x, y))
+        width, height = 4.2 * len(text) + 2, 8
+        for dx, dy in ((5, 3), (5, -9), (-width - 3, 3), (-width - 3, -9)):
+            box = (px + dx, py + dy, px + dx + width, py + dy + height)
+            if (box[2] < inside.x1 and box[0] > inside.x0 and
+                    box[1] > inside.y0 and all(
+                        box[0] > o[2] or box[2] < o[0] or box[1] > o[3] or
+                        box[3] < o[1] for o in taken)):
+                taken.append(box)
+                scale = 72 / axis.figure.dpi
+                axis.annotate(text, (x, y), fontsize=6, color=colour,
+                              textcoords="offset points",
+                              xytext=(dx * scale, dy * scale))
+                break
 
 
 def draw_panel(axis, rows, measure, meta):
+    """Returns the small texts that are still to be placed."""
     methods = methods_of(rows)
     if not meta["against cost"]:
         values = sorted({number(row[meta["horizontal"]]) for row in rows})
-        if len(values) <= 4:
+        if len(values) <= 5:
             axis.set_xticks(values, [f"{value:g}" for value in values])
             axis.set_xmargin(0.2)
+            axis.xaxis.set_minor_locator(NullLocator())
+    floor, marks = floor_of(rows, measure, meta), []
+    counts = not meta["against cost"] and all(
+        y == round(y) and y < 100 for _, y, _ in points_of(rows, measure, meta))
+    if counts:  # zeros among them
+        floor = None
     for index, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
-        style = {"color": COLOURS[index % len(COLOURS)],
-                 "linestyle": LINES[index // len(COLOURS) % len(LINES)],
-                 "marker": MARKERS[index % len(MARKERS)], "markersize": 4,
-                 "linewidth": 1}
+        style = charts.style_of(method)
         # where formulas are drawn, measured values stand alone, and can be
         # told apart where they coincide
         if meta["closed forms"]:
             style.update(linestyle="none", fillstyle="none",
-                         markersize=4 + 2 * index)
-        if not draw_line(axis, own, measure, meta, style) and any(
+                         markeredgewidth=1.2)
+        if not draw_line(axis, own, measure, meta, style, floor, marks) and any(
                 row["outcome"] != "finished" for row in own):
             axis.plot([], [], "x", color=style["color"], label=method)
         draw_failed(axis, own, meta, style["color"])
-    draw_closed_forms(axis, methods, meta)
-    if meta["logarithmic"] in ("both", "horizontal"):
+    if is_logarithmic(meta, "horizontal"):
         axis.set_xscale("log")
-    if meta["logarithmic"] in ("both", "vertical"):
+    if is_logarithmic(meta, "vertical") and not counts:
         axis.set_yscale("log")
+        axis.yaxis.set_minor_formatter(
+            LogFormatterSciNotation(minor_thresholds=(1.5, 0.5)))
+    if len(axis.get_xticks()) <= 5 and not meta["against cost"]:
+        values = sorted({number(row[meta["horizontal"]]) for row in rows})
+        if len(values) <= 5:
+            axis.set_xticks(values, [f"{value:g}" for value in values])
+            axis.xaxis.set_minor_locator(NullLocator())
+    if floor is not None:
+        axis.set_ylim(bottom=0.6 * floor)
+    # of what was measured and a little more; formulas may leave the panel
+    low, high = axis.get_ylim()
+    if meta["closed forms"] and axis.get_yscale() == "linear":
+        high += 0.15 * (high - low)
+    draw_closed_forms(axis, methods, meta)
+    axis.set_ylim(low, high)
     if meta["against cost"]:
         for level in meta["error levels"]:
             axis.axhline(level, color="grey", linewidth=0.5, linestyle=":")
+        axis.set_ylim(low, high)
     axis.set_xlabel(meta["horizontal label"])
-    axis.set_ylabel(meta["vertical label"] or
-                    ("error: " + measure if meta["against cost"] else measure))
-    lower, upper = axis.get_ylim()
-    if axis.get_yscale() == "log" and lower < 1e-10 * upper:
-        axis.set_ylim(bottom=1e-10 * upper)  # what is zero up to round-off
+    one = len(meta["measures"]) == 1  # else the label fits one of them at most
+    axis.set_ylabel(meta["vertical label"] if one and meta["vertical label"]
+                    else "error of the " + measure
+                    if meta["against cost"] or is_error(rows, measure)
+                    else measure)
     axis.grid(alpha=0.25)
+    return marks
 
 
 def panels_of(rows, meta):
@@ -148,46 +237,79 @@ def panels_of(rows, meta):
     return panels
 
 
+def draw_measure(row_of_axes, panels, measure, meta):
+    todo = []
+    for axis, (title, own) in zip(row_of_axes, panels.items()):
+        todo.append((axis, draw_panel(axis, own, measure, meta)))
+        title = ", ".join(([measure] if len(meta["measures"]) > 1 else []) +
+                          ([title] if title else []))
+        if title:
+            axis.set_title(title, fontsize=9)
+        if axis is not row_of_axes[0]:
+            axis.set_ylabel("")
+    limits = [axis.get_ylim() for axis in row_of_axes]
+    for axis in row_of_axes:
+        axis.set_ylim(min(low for low, _ in limits),
+                      max(high for _, high in limits))
+    return todo
+
+
+def draw(rows, meta):
+    """The chart of a study as a figure: rows of study.csv, study.json."""
+    measures = meta["measures"]
+    panels = panels_of(rows, meta)
+    # many panels make a second row
+    per_row = len(panels) * len(measures)
+    lines = 1
+    if len(measures) > 1 and len(panels) > 1:
+        per_row, lines = len(panels), len(measures)
+    width = 6 if len(panels) == 1 else 3
+    total = 2.5 + width * per_row
+    caption = "\n".join(textwrap.wrap(meta["caption"], int(15 * total)))
+    figure, axes = plt.subplots(
+        lines, per_row, squeeze=False, layout="constrained",
+        figsize=(total, 0.7 + 4.5 * lines))
+    flat, marks = list(axes.flat), []
+    for index, measure in enumerate(measures):
+        marks += draw_measure(
+            flat[index * len(panels):(index + 1) * len(panels)], panels,
+            measure, meta)
+    entries = {}
+    for axis in flat:
+        for handle, label in zip(*axis.get_legend_handles_labels()):
+            entries.setdefault(label, handle)
+    if entries:
+        axes[0][-1].legend(entries.values(), entries.keys(), fontsize=7,
+                           loc="upper left", bbox_to_anchor=(1.01, 1))
+    figure.suptitle(meta["title"])
+    figure.supxlabel(caption, fontsize=6, color="grey")
+    for axis, texts in marks:
+        place_marks(axis, texts)
+    return figure
+
+
+def draw_folder(folder, output=None):
+    """The chart of a study's folder: study.svg and study.png, or @p output."""
+    try:
+        with open(folder / "study.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        meta = json.loads((folder / "study.json").read_text())
+    except FileNotFoundError as error:
+        charts.fail(f"The folder '{folder}' is not that of a study: there is no "
+                    f"'{error.filename}'. 'limber study' writes it.")
+    figure = draw(rows, meta)
+    if output:
+        charts.save(figure, charts.check_ending(output))
+    else:
+        charts.save(figure, folder / "study.svg", close=False)
+        charts.save(figure, folder / "study.png")
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", type=Path)
-    folder = parser.parse_args().folder
-    with open(folder / "study.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    meta = json.loads((folder / "study.json").read_text())
-
-    measures = meta["measures"]
-    panels = panels_of(rows, meta)
-    width = 6 if len(panels) == 1 else 3
-    figure, axes = plt.subplots(
-        1, len(measures) * len(panels), squeeze=False, layout="constrained",
-        figsize=(2.5 + width * len(measures) * len(panels), 5.2))
-    for index, measure in enumerate(measures):
-        row_of_axes = axes[0][index * len(panels):(index + 1) * len(panels)]
-        for axis, (title, own) in zip(row_of_axes, panels.items()):
-            draw_panel(axis, own, measure, meta)
-            title = ", ".join(([measure] if len(measures) > 1 else []) +
-                              ([title] if title else []))
-            if title:
-                axis.set_title(title, fontsize=9)
-            if axis is not row_of_axes[0]:
-                axis.set_ylabel("")
-        limits = [axis.get_ylim() for axis in row_of_axes]
-        for axis in row_of_axes:
-            axis.set_ylim(min(low for low, _ in limits),
-                          max(high for _, high in limits))
-    handles, labels = max((axis.get_legend_handles_labels() for axis in axes[0]),
-                          key=lambda found: len(found[1]))
-    if handles:
-        axes[0][-1].legend(handles, labels, fontsize=7, loc="upper left",
-                           bbox_to_anchor=(1.01, 1))
-    figure.suptitle(meta["title"])
-    letters = 17 * width * len(measures) * len(panels)
-    figure.supxlabel("\n".join(textwrap.wrap(meta["caption"], letters)),
-                     fontsize=6, color="grey")
-    for ending in ("svg", "png"):
-        figure.savefig(folder / f"study.{ending}", dpi=150)
+    draw_folder(parser.parse_args().folder)
 
 
 if __name__ == "__main__":

@@ -112,22 +112,40 @@ def is_reference(folder):
     return (Path(folder) / "nodes").is_dir()
 
 
-def nodes(folder, wanted):
-    """The nodes of a reference at the time nearest to the wanted one:
-    (time, {'position': ..., and each scalar array by its name})."""
+def node_series(folder):
+    """Returns the times and the files of nodes/, in order; only references
+    have them."""
     import h5py  # only references need it
 
-    best = None
-    for path in sorted((Path(folder) / "nodes").glob("*.h5")):
+    files = {}
+    for path in (Path(folder) / "nodes").glob("*.h5"):
         with h5py.File(path) as file:
-            fields = {name: values[()] for name, values in file.items()}
-        time = float(fields.pop("time")[0])
-        if best is None or abs(time - wanted) < abs(best[0] - wanted):
-            fields["position"] = np.stack(
-                [fields[f"initial place {d}"] + fields[f"displacement {d}"]
-                 for d in "xyz" if f"displacement {d}" in fields], axis=1)
-            best = time, fields
-    return best
+            files[float(file["time"][0])] = path
+    times = sorted(files)
+    return np.array(times), [files[time] for time in times]
+
+
+def node_arrays(path):
+    """The nodes of a reference: {'position': (n, 3), and each scalar array by
+    its name}."""
+    import h5py
+
+    with h5py.File(path) as file:
+        fields = {name: values[()] for name, values in file.items()}
+    fields.pop("time")
+    fields["position"] = np.stack(
+        [fields[f"initial place {d}"] + fields[f"displacement {d}"]
+         if f"displacement {d}" in fields
+         else np.zeros(len(fields["displacement x"])) for d in "xyz"], axis=1)
+    return fields
+
+
+def nodes(folder, wanted):
+    """The nodes of a reference at the time nearest to the wanted one:
+    (time, arrays)."""
+    times, files = node_series(folder)
+    nearest = np.argmin(abs(times - wanted))
+    return times[nearest], node_arrays(files[nearest])
 
 
 def magnitude(vectors):

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The advice of `limber advise` on the scenes that come with the program, held
 against runs with and without it.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Runs the shipped studies and puts their tables and charts into doc/studies.
 
     all_studies.py [--limber PROGRAM] [--short] [--results FOLDER] [NAME ...]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """First natural frequency of a beam in plane strain by finite elements.
 
     cantilever_reference.py [Poisson's ratio] [elements over the depth]
@@ -9,10 +9,15 @@ numpy and scipy; takes seconds.
 """
 
 import sys
+from pathlib import Path
 
-import numpy as np
-import scipy.sparse as sparse
-from scipy.sparse.linalg import eigsh
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plot"))
+import charts  # noqa: E402
+from charts import np  # noqa: E402
+
+charts.need("scipy")
+import scipy.sparse as sparse  # noqa: E402
+from scipy.sparse.linalg import eigsh  # noqa: E402
 
 LENGTH, YOUNG, DENSITY = 8, 1e6, 1000.
 

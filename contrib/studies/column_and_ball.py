@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """How the kernels converge and what they keep: tables and charts of
 doc/studies/column_stress.md and doc/studies/flying_ball.md.
 
@@ -18,13 +18,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
-
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "contrib/plot"))
+import charts  # noqa: E402
+from charts import np, plt  # noqa: E402
 import run_folder  # noqa: E402
 
 
@@ -115,9 +112,9 @@ def column(arguments):
     figure, axes = plt.subplots(1, 3, figsize=(13, 4.4), sharey=True,
                                 layout="constrained")
     for axis, modulus in zip(axes, COLUMN_MODULI):
-        for index, name in enumerate(COLUMN_METHODS):
-            axis.loglog(COLUMN_CELLS, curves[modulus, name], "osD^v<>"[index] +
-                        "-", markersize=4, linewidth=1, label=name)
+        for name in COLUMN_METHODS:
+            axis.loglog(COLUMN_CELLS, curves[modulus, name], markersize=5,
+                        linewidth=1, label=name, **charts.style_of(name))
         begin = curves["1e7", "splines, 3 x 3"][0]
         for power in (1, 2):
             axis.loglog(COLUMN_CELLS, [begin * (COLUMN_CELLS[0] / n)**power
@@ -130,8 +127,8 @@ def column(arguments):
         axis.set_xlabel("cells over the height")
         axis.grid(alpha=0.25)
     axes[0].set_ylabel("mean error of the stress over rho g l0")
-    axes[0].legend(fontsize=7)
-    figure.savefig(arguments.target / "column_stress.png", dpi=130)
+    charts.legend_outside(axes[-1])
+    charts.save(figure, arguments.target / "column_stress.png")
     text = ["# Column under its own weight: error of the stress", "",
             "![Column under its own weight](column_stress.png)", "",
             "An elastic column of 50 m without Poisson's effect comes to rest "
@@ -272,7 +269,7 @@ def ball(arguments):
         axis.set_aspect("equal")
         axis.set_xlim(-1.25, 1.25)
         axis.set_ylim(-1.25, 1.25)
-    figure.savefig(arguments.target / "flying_ball.png", dpi=110)
+    charts.save(figure, arguments.target / "flying_ball.png")
     text = ["# A rubber ball after two turns and a hundred cells", "",
             "![A rubber ball](flying_ball.png)", "",
             "What `prm/studies/scenes/flying_ball.prm` has gained at the end, in "

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Measures the treatments of locking and prints the table of
 doc/theory/treatments.md.
 
@@ -16,10 +16,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
-
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "contrib/plot"))
+from charts import np  # noqa: E402
 import run_folder  # noqa: E402
 
 TREATMENTS = {

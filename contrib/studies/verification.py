@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws the scenes of prm/verification beside their exact solutions and prints
 the numbers of doc/gallery/verification.
 
@@ -13,14 +13,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "contrib/plot"))
+import charts  # noqa: E402
+from charts import np, plt  # noqa: E402
 import run_folder  # noqa: E402
 
 SCENES = TOP / "prm/verification"
@@ -49,8 +45,7 @@ class Runner:
 
     def save(self, figure, name):
         figure.tight_layout()
-        figure.savefig(self.pictures / f"{name}.png", dpi=100)
-        plt.close(figure)
+        charts.save(figure, self.pictures / f"{name}.png")
 
 
 def last_points(folder):
@@ -77,7 +72,8 @@ def tank(runner):
                             "Output/Fields=pressure", *settings)
         values, _ = run_folder.statistics(folder)
         energy = values["kinetic energy"] / 4905
-        right.semilogy(values["time"], np.maximum(energy, 1e-33), label=name)
+        right.semilogy(values["time"], np.maximum(energy, 1e-33), label=name,
+                       **charts.line_of(name))
         data = last_points(folder)
         exact = 9810 * (1 - data["position"][:, 1])
         error = np.sqrt(((data["pressure"] - exact)**2).sum() /
@@ -85,12 +81,12 @@ def tank(runner):
         print(f"| {name} | {energy.max():.1e} | {100 * error:.1f} |")
         if name in ("cell without control", "cell"):
             left.plot(data["pressure"] / 1e3, data["position"][:, 1], ".",
-                      ms=3, label=name)
+                      ms=3, label=name, color=charts.style_of(name)["color"])
     left.plot([9.81, 0], [0, 1], "k-", label="exact")
     left.set(xlabel="pressure [kPa]", ylabel="y [m]")
     right.set(xlabel="time [s]", ylabel="kinetic energy / (rho g H² W/2)")
     left.legend()
-    right.legend()
+    charts.legend_outside(right)
     runner.save(figure, "hydrostatic_tank")
 
 
@@ -157,7 +153,8 @@ def manufactured_solution(runner):
                                      0.5 * np.cos(x) * np.sin(y)]).T
             errors.append(np.sqrt(((data["displacement"][:, :2] - exact)**2)
                                   .sum(axis=1).mean()) / 1e-6)
-        axes.loglog(1 / cells, errors, "o-", label=name)
+        axes.loglog(1 / cells, errors, label=name,
+                    **charts.style_of(name))
         ratios = [a / b for a, b in zip(errors, errors[1:])]
         print(f"manufactured solution, {name}: errors "
               + ", ".join(f"{e:.2e}" for e in errors) + "; ratios "
@@ -200,9 +197,11 @@ def pressurised_ring(runner):
         error = np.sqrt(((radial - exact)**2).sum() / (exact**2).sum())
         print(f"pressurised ring, {name}: error of the displacement "
               f"{100 * error:.2f} %")
-        left.plot(radius, radial, ".", ms=2, label=name)
+        left.plot(radius, radial, ".", ms=2, label=name,
+                  color=charts.style_of(name)["color"])
         if name != "none":
-            right.plot(radius, radial_stress, ".", ms=2, label=name)
+            right.plot(radius, radial_stress, ".", ms=2, label=name,
+                       color=charts.style_of(name)["color"])
     left.set(xlabel="r [m]", ylabel="radial displacement [mm]")
     right.set(xlabel="r [m]", ylabel="radial stress / p")
     left.legend()
@@ -219,7 +218,8 @@ def cantilever_3d(runner):
         folder = runner.run("cantilever_3d", *settings,
                             f"Body beam/Locking treatment={name}")
         values, _ = run_folder.statistics(folder)
-        axes.plot(values["time"], 1e3 * values["tip"], label=name)
+        axes.plot(values["time"], 1e3 * values["tip"], label=name,
+                  **charts.line_of(name))
         frequency = checks(folder)["first mode"]
         amplitude = amplitude or np.abs(values["tip"]).max()
         print(f"cantilever in 3d, nu = 0.49, {name}: {frequency:.4f} Hz "

@@ -1,0 +1,228 @@
+"""The fields of a run or of a finite element reference, at the times of its
+pictures: places, values, unit, bodies by name."""
+
+import re
+from pathlib import Path
+
+from charts import fail, need, np
+import run_folder
+
+COMPONENTS = ("xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz")
+UNITS = {"displacement": "m", "velocity": "m/s", "speed": "m/s",
+         "pressure": "Pa",
+         "stress": "Pa", "equivalent stress": "Pa", "mass": "kg",
+         "point pressure": "Pa", "point stress": "Pa"}
+
+
+class Source:
+    """A run folder that fields are drawn from.
+
+    times: of the pictures, in s. bodies: their names, in the order of the scene.
+    at(i): {'position': (n, 3), ...} with the arrays of picture i.
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        if not self.folder.is_dir():
+            fail(f"There is no folder '{folder}'. Usually the path is misspelt, "
+                 "or the run was written elsewhere ('--output-directory').")
+        if not (self.folder / "parameters.prm").is_file():
+            fail(f"The folder '{folder}' is not that of a run, a reference or a "
+                 "study: it holds neither 'parameters.prm' nor 'study.csv'. "
+                 "Usually a folder above or below it is meant.")
+        self.parameters = run_folder.parameters(self.folder)
+        self.dimension = int(self.parameters["Dimension"])
+        self.bodies = run_folder.words(self.parameters.get("Bodies", ""))
+        self.is_reference = run_folder.is_reference(self.folder)
+        if self.is_reference:
+            need("h5py")
+            self.times, self.files = run_folder.node_series(self.folder)
+        else:
+            self.times, self.files = run_folder.series(self.folder)
+        if not len(self.times):
+            fail(f"The run in '{folder}' has no pictures. 'Output/Time interval' "
+                 "is 0 there; repeat it with --set \"Output/Time interval=...\".")
+
+    @property
+    def name(self):
+        return self.folder.resolve().name
+
+    def nearest(self, time):
+        return int(np.argmin(abs(self.times - time)))
+
+    def at(self, index):
+        path = self.files[index]
+        if self.is_reference:
+            return run_folder.node_arrays(path)
+        cloud = run_folder.points(path)
+        arrays = Path(path).with_suffix(".h5")
+        if arrays.is_file():
+            cloud["arrays"] = arrays  # read only if a field is not here
+        return cloud
+
+    def spacing(self, cloud, body=None):
+        """Mean distance of neighbouring points at the start, in m."""
+        p = self.parameters
+        lower, upper, cells = (
+            run_folder.numbers(p[f"Grid/{name}"])
+            for name in ("Lower corner", "Upper corner", "Cells"))
+        edge = ((upper - lower) / cells)[:self.dimension]
+        name = body or (self.bodies[0] if self.bodies else "")
+        per_edge = p.get(f"Body {name}/Points per cell edge", "2")
+        numbers = run_folder.numbers(per_edge) if re.match(
+            r"[\d.,; ]+$", per_edge) else np.array([2.])
+        return float(np.prod(edge)**(1 / len(edge)) / numbers.mean())
+
+
+def names_of(cloud):
+    """What can be drawn of a cloud, components included."""
+    names = []
+    for name, values in _all(cloud).items():
+        if name in ("position", "arrays") or name.startswith("initial place"):
+            continue
+        names.append(name)
+        if values.ndim > 1:
+            names += [f"{name} {c}" for c in (
+                "xyz" if values.shape[1] == 3 else COMPONENTS)]
+    if any(name.startswith("stress") for name in names):
+        names += [n for n in ("equivalent stress", "pressure")
+                  if n not in names]
+    return names
+
+
+def unit_of(name):
+    words = name.split()
+    for end in range(len(words), 0, -1):
+        if " ".join(words[:end]) in UNITS:
+            return UNITS[" ".join(words[:end])]
+    return ""
+
+
+def _arrays(path):
+    """The arrays of single components as vectors and matrices."""
+    need("h5py")
+    import h5py
+    with h5py.File(path) as file:
+        return {name: values[()] for name, values in file.items()
+                if name != "time"}
+
+
+def _joined(arrays):
+    """'velocity x', 'velocity y' as one 'velocity' of three components."""
+    result = dict(arrays)
+    for name in ("displacement", "velocity"):
+        parts = [arrays[f"{name} {d}"] for d in "xyz" if f"{name} {d}" in arrays]
+        if parts:
+            while len(parts) < 3:
+                parts.append(np.zeros_like(parts[0]))
+            result[name] = np.stack(parts, axis=1)
+            for d in "xyz":
+                result.pop(f"{name} {d}", None)
+    if "stress xx" in arrays:
+        zero = np.zeros_like(arrays["stress xx"])
+
+        def part(a, b):
+            return arrays.get(f"stress {a}{b}", arrays.get(f"stress {b}{a}",
+                                                           zero))
+        result["stress"] = np.stack([part(c[0], c[1]) for c in COMPONENTS],
+                                    axis=1)
+        for c in COMPONENTS:
+            result.pop(f"stress {c}", None)
+    return result
+
+
+def _all(cloud):
+    fields = _joined({k: v for k, v in cloud.items() if k != "arrays"})
+    if "arrays" in cloud:
+        # HDF5 keeps an order of its own, so places say which point is which.
+        extra = _joined(_arrays(cloud["arrays"]))
+        fields = {**_in_order_of(fields, extra), **fields}
+    return fields
+
+
+def _in_order_of(fields, extra):
+    """The arrays of the same points, in the order of the picture."""
+    start = [extra[f"initial place {d}"] for d in "xyz"
+             if f"initial place {d}" in extra]
+    place = np.stack(start, axis=1) + extra["displacement"][:, :len(start)]
+    seen = fields["position"][:, :len(start)]
+    size = max(np.ptp(seen, axis=0).max(), 1e-300)
+    if len(seen) != len(place):
+        return {}
+    if abs(seen - place).max() < 1e-4 * size:
+        return extra
+    orders = [np.lexsort(np.round(x / size, 5).T) for x in (seen, place)]
+    if abs(seen[orders[0]] - place[orders[1]]).max() > 1e-4 * size:
+        return {}
+    back = np.empty(len(place), int)
+    back[orders[0]] = orders[1]
+    return {name: values[back] for name, values in extra.items()}
+
+
+def value(cloud, name, folder):
+    """The values of a field, a component or a magnitude, one a point."""
+    fields = {k: v for k, v in cloud.items() if k != "arrays"}
+    for known in (lambda: _joined(fields), lambda: _all(cloud)):
+        found = _find(known(), name)
+        if found is not None:
+            return found
+    fail(f"There is no field '{name}' in '{folder}'. It has: "
+         + ", ".join(names_of(cloud)) + ". What pictures of a run carry is "
+         f"said in its scene: --set \"Output/Fields={name.split(' x')[0]}\".")
+
+
+def _find(fields, name):
+    if name == "speed":
+        name = "velocity"
+    if name in fields:
+        values = fields[name]
+        if values.ndim == 1:
+            return values
+        if values.shape[1] == 3:
+            return run_folder.magnitude(values)
+        return _von_mises(values)  # of a stress as a whole
+    base, _, component = name.rpartition(" ")
+    if base in fields and fields[base].ndim > 1:
+        parts = "xyz" if fields[base].shape[1] == 3 else COMPONENTS
+        if component in parts:
+            return fields[base][:, list(parts).index(component)]
+    if "stress" in fields:
+        stress = fields["stress"]
+        if name == "pressure":
+            return -(stress[:, 0] + stress[:, 4] + stress[:, 8]) / 3
+        if name == "equivalent stress":
+            return _von_mises(stress)
+    return None
+
+
+def _von_mises(stress):
+    pressure = (stress[:, 0] + stress[:, 4] + stress[:, 8]) / 3
+    deviator = stress.copy()
+    for k in (0, 4, 8):
+        deviator[:, k] -= pressure
+    return np.sqrt(1.5 * (deviator**2).sum(axis=1))
+
+
+def label_of(name, unit):
+    if name in ("velocity", "speed"):
+        name = "speed"
+    elif name in ("stress", "point stress"):
+        name = name.replace("stress", "equivalent stress")
+    return f"{name} [{unit}]" if unit else name
+
+
+def of_body(cloud, source, body):
+    """The points of one body, all arrays alike."""
+    if body is None:
+        return cloud
+    if body not in source.bodies:
+        fail(f"There is no body '{body}' in '{source.folder}'. It has: "
+             + ", ".join(source.bodies) + ".")
+    if len(source.bodies) == 1:
+        return cloud
+    fields = _all(cloud)
+    if "body" not in fields:
+        fail(f"The pictures in '{source.folder}' do not say which point is of "
+             f"which body. Add 'body' to 'Output/Fields' of the scene.")
+    mine = np.round(fields["body"]) == source.bodies.index(body)
+    return {name: values[mine] for name, values in fields.items()}

@@ -1,0 +1,260 @@
+"""Panels of a field: one picture of one run each, with the same colours and the
+same size for all of them."""
+
+import charts
+from charts import np
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import EllipseCollection
+from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.tri import Triangulation
+
+import fields
+import run_folder
+import spheres
+
+RASTER_FROM = 3000  # points; more of them make a PDF or SVG slow
+BODY_COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00",
+                "#56B4E9", "#777777"]
+
+
+class State:
+    """What one panel shows: places, values and, for a body, its name."""
+
+    def __init__(self, source, index, look):
+        self.source, self.index = source, index
+        self.time = source.times[index]
+        cloud = fields.of_body(source.at(index), source, look.body)
+        self.values = fields.value(cloud, look.field, source.folder)
+        self.place = np.array(cloud["position"], float)
+        self.start = None
+        if look.enlarge != 1 or source.is_reference:
+            move = np.stack([fields.value(cloud, f"displacement {d}",
+                                          source.folder) for d in "xyz"], axis=1)
+            self.start = self.place - move
+            self.place = self.start + look.enlarge * move
+        self.spacing = source.spacing(cloud, look.body)
+
+
+class Look:
+    """What is drawn and how: the same for all panels of a picture.
+
+    field, body: names; enlarge: factor of displacements; limits: lower and upper
+    end of the colours, in the unit of the field, or nothing; view: azimuth and
+    elevation in degrees; zoom: (lower, upper) corner of what is seen, or nothing.
+    """
+
+    def __init__(self, field, body=None, enlarge=1., limits=None,
+                 view=(30., 20.), zoom=None):
+        self.field, self.body, self.enlarge = field, body, enlarge
+        self.limits, self.view, self.zoom = limits, view, zoom
+        self.is_body = field == "body"
+
+    def fix(self, states):
+        """Colours, unit and corners for good, from all states that are seen."""
+        values = np.concatenate([state.values for state in states])
+        finite = values[np.isfinite(values)]
+        if not len(finite):
+            charts.fail(f"The field '{self.field}' has no finite value.")
+        # Without the two hundredths at either end: one point that splashes
+        # would take all colours. The arrows of the bar stand for what is left.
+        low, high = self.limits or np.percentile(finite, [0.5, 99.5])
+        if low == high:
+            low, high = low - 0.5 * abs(low or 1), high + 0.5 * abs(high or 1)
+        self.factor, self.unit = charts.scaled_unit(
+            fields.unit_of(self.field), max(abs(low), abs(high)))
+        both_signs = low < 0 < high and min(-low, high) > 0.15 * max(-low, high)
+        if both_signs and not self.limits:
+            low, high = -max(-low, high), max(-low, high)
+        self.map = charts.plt.get_cmap("RdBu_r" if both_signs else "viridis")
+        self.norm = Normalize(low, high)
+        self.beyond = {(False, False): "neither", (True, False): "min",
+                       (False, True): "max", (True, True): "both"}[
+            bool(finite.min() < low), bool(finite.max() > high)]
+        if self.is_body:
+            names = states[0].source.bodies
+            self.map = ListedColormap([BODY_COLOURS[i % len(BODY_COLOURS)]
+                                       for i in range(len(names))])
+            self.norm = Normalize(-0.5, len(names) - 0.5)
+        if self.zoom:
+            self.lower, self.upper = self.zoom
+        else:
+            margin = max(state.spacing for state in states)
+            self.lower = np.min([s.place.min(axis=0) for s in states],
+                                axis=0) - margin
+            self.upper = np.max([s.place.max(axis=0) for s in states],
+                                axis=0) + margin
+            self._keep_to_the_grid(states[0].source)
+
+    def _keep_to_the_grid(self, source):
+        """The margin ends at the sides of the grid."""
+        for d in range(source.dimension):
+            grid = [run_folder.numbers(source.parameters[f"Grid/{name}"])[d]
+                    for name in ("Lower corner", "Upper corner")]
+            self.lower[d] = max(self.lower[d], grid[0])
+            self.upper[d] = min(self.upper[d], grid[1])
+
+    def colours(self, values):
+        return self.map(self.norm(values))[:, :3]
+
+    @property
+    def aspect(self):
+        """Height over width of a panel."""
+        extent = self.upper - self.lower
+        return extent[1] / extent[0]
+
+    def bar(self, figure, axes):
+        """The scale of colours, or the names of bodies."""
+        scale = ScalarMappable(Normalize(self.norm.vmin / self.factor,
+                                         self.norm.vmax / self.factor),
+                               self.map)
+        if self.is_body:
+            bar = figure.colorbar(scale, ax=axes, shrink=0.6, label="body")
+            bar.set_ticks(range(len(self.names)), labels=self.names)
+        else:
+            figure.colorbar(scale, ax=axes, extend=self.beyond, shrink=0.85,
+                            label=fields.label_of(self.field, self.unit))
+
+
+def draw(axis, state, look):
+    """One state into one panel."""
+    look.names = state.source.bodies
+    if state.source.dimension == 3:
+        _draw_spheres(axis, state, look)
+        return
+    if state.source.is_reference:
+        _draw_elements(axis, state, look)
+    else:
+        size = 1.45 * state.spacing  # no gaps up to a stretch of as much
+        n = len(state.place)
+        dots = EllipseCollection(
+            np.full(n, size), np.full(n, size), np.zeros(n), units="xy",
+            offsets=state.place[:, :2], transOffset=axis.transData,
+            linewidths=0, cmap=look.map, norm=look.norm,
+            rasterized=n > RASTER_FROM)
+        dots.set_array(state.values)
+        axis.add_collection(dots)
+    axis.set_xlim(look.lower[0], look.upper[0])
+    axis.set_ylim(look.lower[1], look.upper[1])
+    axis.set_aspect("equal")
+    _draw_box(axis, state, look)
+
+
+def _draw_box(axis, state, look):
+    """The sides of the grid's box, grey, where they are in sight."""
+    lower, upper = (run_folder.numbers(state.source.parameters[f"Grid/{name}"])
+                    for name in ("Lower corner", "Upper corner"))
+    axis.plot([lower[0], upper[0], upper[0], lower[0], lower[0]],
+              [lower[1], lower[1], upper[1], upper[1], lower[1]],
+              color="0.6", linewidth=0.8, zorder=0, scalex=False, scaley=False)
+
+
+def _draw_elements(axis, state, look):
+    """Values on nodes, linear between them; triangles outside of the body, which
+    are longer than the distances of nodes around, are left out."""
+    mesh = Triangulation(state.start[:, 0], state.start[:, 1])
+    corners = np.stack([mesh.x, mesh.y], axis=1)[mesh.triangles]
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    nearest = np.full(len(mesh.x), np.inf)
+    for k in range(3):
+        for node in (mesh.triangles[:, k], mesh.triangles[:, k - 1]):
+            np.minimum.at(nearest, node, edges[:, k])
+    mesh.set_mask(edges.max(axis=1) >
+                  3 * nearest[mesh.triangles].max(axis=1))
+    moved = Triangulation(state.place[:, 0], state.place[:, 1],
+                          mesh.triangles, mesh.mask)
+    axis.tripcolor(moved, state.values, shading="gouraud", cmap=look.map,
+                   norm=look.norm, rasterized=True)
+
+
+def _draw_spheres(axis, state, look):
+    azimuth, elevation = look.view
+    camera = spheres.Camera(look.lower, look.upper, azimuth, elevation,
+                            _upwards(state.source), 1100)
+    picture = spheres.render(camera, state.place, look.colours(state.values),
+                             0.75 * state.spacing)
+    left, right = camera.low[0], camera.high[0]
+    bottom, top = camera.low[1], camera.high[1]
+    _draw_edges(axis, camera, look)
+    axis.imshow(picture, extent=(left, right, bottom, top), zorder=2,
+                interpolation="antialiased")
+    margin = 0.03 * (right - left)
+    axis.set_xlim(left - margin, right + margin)
+    axis.set_ylim(bottom - 2 * margin, top + margin)
+    axis.set_aspect("equal")
+    axis.set_axis_off()
+
+
+def _upwards(source):
+    """The axis that gravity pulls against; y where there is none."""
+    gravity = run_folder.numbers(source.parameters.get("Loads/Gravity", "0"))
+    return int(np.argmax(abs(gravity))) if np.any(gravity) else 1
+
+
+def _draw_edges(axis, camera, look):
+    """The box that is seen, with its sizes in metres."""
+    lower, upper = look.lower, look.upper
+    corners = np.array([[(lower, upper)[i >> d & 1][d] for d in range(3)]
+                        for i in range(8)])
+    seen = camera.project(corners)
+    front = np.argmax(seen[:, 2])
+    for i in range(8):
+        for d in range(3):
+            j = i ^ (1 << d)
+            if i < j:
+                hidden = front in (i, j)
+                # edges at the corner next to the eye would cross the picture
+                axis.plot(*seen[[i, j], :2].T, color="0.7", linewidth=0.7,
+                          zorder=3 if hidden else 1,
+                          alpha=0.35 if hidden else 1)
+    lowest = np.argsort(seen[:, 1])[:4]
+    for d, name in enumerate("xyz"):
+        edges = [(i, i ^ (1 << d)) for i in lowest if i < i ^ (1 << d)
+                 and i ^ (1 << d) in lowest]
+        if not edges:
+            continue
+        i, j = min(edges, key=lambda e: seen[list(e), 1].mean())
+        middle = seen[[i, j], :2].mean(axis=0)
+        centre = seen[:, :2].mean(axis=0)
+        outward = np.sign(middle - centre)
+        axis.annotate(f"{name} = {lower[d]:.2g} to {upper[d]:.3g} m", middle,
+                      textcoords="offset points",
+                      xytext=(14 * outward[0], -9), fontsize=7, color="0.35",
+                      horizontalalignment="center", verticalalignment="top")
+
+
+def figure_of(states, look, labels, width=None):
+    """A figure with a row for each run and a column for each time; @p states is
+    a list of rows. Returns the figure."""
+    look.fix([state for row in states for state in row])
+    rows, columns = len(states), max(len(row) for row in states)
+    dimension = states[0][0].source.dimension
+    aspect = look.aspect
+    if dimension == 3:
+        camera = spheres.Camera(look.lower, look.upper, *look.view,
+                                _upwards(states[0][0].source), 100)
+        aspect = camera.shape[0] / camera.shape[1]
+    panel = (width or (6.5 if columns == 1 else min(4.2, 13 / columns)))
+    height = min(panel * aspect, 6) + (0.75 if rows == 1 else 0.45)
+    figure, axes = charts.plt.subplots(
+        rows, columns, squeeze=False, sharex=dimension == 2,
+        sharey=dimension == 2, layout="constrained",
+        figsize=(panel * columns + 1.3, height * rows + 0.1))
+    for i, (row, label) in enumerate(zip(states, labels)):
+        for axis, state in zip(axes[i], row):
+            draw(axis, state, look)
+            if i == 0 or state.time != states[0][row.index(state)].time:
+                axis.set_title(f"t = {state.time:.4g} s")
+            if dimension == 2 and i == rows - 1:
+                axis.set_xlabel("x [m]")
+        for axis in axes[i][len(row):]:
+            axis.set_axis_off()
+        if dimension == 2:
+            axes[i][0].set_ylabel("y [m]")
+        if label and rows > 1:
+            axes[i][0].annotate(
+                label, (0, 0.5), xycoords="axes fraction", rotation=90,
+                xytext=(-45 if dimension == 2 else -12, 0),
+                textcoords="offset points", fontweight="bold",
+                horizontalalignment="right", verticalalignment="center")
+    look.bar(figure, axes)
+    return figure

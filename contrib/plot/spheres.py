@@ -1,0 +1,142 @@
+"""Points in three dimensions as shaded spheres, in numpy alone: no graphics
+card, no display. An orthographic camera, a depth buffer, light from the upper
+left, and dimmer where neighbours stand closer to the eye."""
+
+from charts import np
+
+
+class Camera:
+    """Looks at a box from @p azimuth and @p elevation, in degrees; @p up is the
+    axis that points upwards in the picture. Azimuth 0 looks along the last of
+    the other two axes, from its positive end."""
+
+    def __init__(self, lower, upper, azimuth, elevation, up, pixels):
+        right0 = {1: (1., 0, 0), 2: (1., 0, 0), 0: (0, 1., 0)}[up]
+        eye0 = {1: (0, 0, 1.), 2: (0, -1., 0), 0: (0, 0, 1.)}[up]
+        top0 = np.eye(3)[up]
+        a, e = np.radians((azimuth, elevation))
+        right = np.cos(a) * np.array(right0) - np.sin(a) * np.array(eye0)
+        level = np.sin(a) * np.array(right0) + np.cos(a) * np.array(eye0)
+        self.eye = np.cos(e) * level + np.sin(e) * top0
+        top = -np.sin(e) * level + np.cos(e) * top0
+        self.turn = np.stack([right, top, self.eye])  # rows: right, up, depth
+        corners = self.project(np.array(
+            [[(lower, upper)[i >> d & 1][d] for d in range(3)]
+             for i in range(8)]))
+        self.low = corners[:, :2].min(axis=0)
+        self.high = corners[:, :2].max(axis=0)
+        width, height = self.high - self.low
+        self.scale = pixels / width  # pixels per metre
+        self.shape = int(np.ceil(height * self.scale)) + 1, pixels + 1
+
+    def project(self, places):
+        """Right and up in metres, and the depth towards the eye."""
+        return places @ self.turn.T
+
+
+LIGHT = np.array([-0.45, 0.6, 0.66])
+
+
+def render(camera, places, colours, radius):
+    """RGBA picture, (rows, columns, 4), row 0 at the top, transparent where
+    there is nothing. colours: RGB of each point; radius in metres."""
+    rows, columns = camera.shape
+    seen = camera.project(places)
+    x = (seen[:, 0] - camera.low[0]) * camera.scale
+    y = (camera.high[1] - seen[:, 1]) * camera.scale
+    depth = seen[:, 2] * camera.scale
+    r = max(radius * camera.scale, 0.8)
+
+    order = np.argsort(depth)  # of points on the same pixel the nearest wins
+    x, y, depth = x[order], y[order], depth[order]
+    column0, row0 = np.round(x).astype(int), np.round(y).astype(int)
+    buffer = np.full(rows * columns, -np.inf)
+    owner = np.full(rows * columns, -1)
+    reach = int(np.ceil(r))
+    winner = np.empty(rows * columns, int)
+    for i in range(-reach, reach + 1):
+        for j in range(-reach, reach + 1):
+            if i * i + j * j > r * r:
+                continue
+            bump = np.sqrt(r * r - i * i - j * j)
+            row, column = row0 + i, column0 + j
+            inside = np.flatnonzero((row >= 0) & (row < rows) & (column >= 0) &
+                                    (column < columns))
+            pixel = row[inside] * columns + column[inside]
+            winner[pixel] = inside  # the last, nearest one stays
+            pixel = np.unique(pixel)
+            point = winner[pixel]
+            nearer = depth[point] + bump > buffer[pixel]
+            pixel, point = pixel[nearer], point[nearer]
+            buffer[pixel] = depth[point] + bump
+            owner[pixel] = point
+    buffer = buffer.reshape(rows, columns)
+    owner = owner.reshape(rows, columns)
+    covered = owner >= 0
+
+    smooth = _smoothed(buffer, covered, r)
+    light = _light(smooth, covered) * _open_sky(smooth, covered, r)
+    picture = np.zeros((rows, columns, 4))
+    picture[covered, :3] = (colours[order][owner[covered]] *
+                            light[covered][:, None])
+    picture[covered, 3] = 1
+    return np.clip(picture, 0, 1)
+
+
+def _shifted(values, i, j, outside):
+    result = np.full_like(values, outside)
+    rows, columns = values.shape
+    result[max(i, 0):rows + min(i, 0), max(j, 0):columns + min(j, 0)] = (
+        values[max(-i, 0):rows + min(-i, 0), max(-j, 0):columns + min(-j, 0)])
+    return result
+
+
+def _smoothed(depth, covered, r):
+    """The surface that the spheres stand for: means over neighbours at about
+    the same depth, thrice."""
+    step = max(int(round(r / 2)), 1)
+    for _ in range(3):
+        total = np.where(covered, depth, 0.)
+        count = covered.astype(float)
+        for i, j in ((0, step), (0, -step), (step, 0), (-step, 0),
+                     (step, step), (-step, -step), (step, -step),
+                     (-step, step)):
+            other = _shifted(depth, i, j, -np.inf)
+            with np.errstate(invalid="ignore"):
+                same = covered & (abs(other - depth) < 2.5 * r)
+            total += np.where(same, other, 0)
+            count += same
+        depth = np.where(covered, total / np.maximum(count, 1), -np.inf)
+    return depth
+
+
+def _light(depth, covered):
+    slopes = []
+    for i, j in ((0, 1), (1, 0)):
+        ahead, behind = (_shifted(depth, -i * s, -j * s, -np.inf)
+                         for s in (1, -1))
+        with np.errstate(invalid="ignore"):
+            forward, backward = ahead - depth, depth - behind
+        forward = np.where(np.isfinite(forward), forward, np.nan)
+        backward = np.where(np.isfinite(backward), backward, np.nan)
+        slope = np.where(np.isnan(forward), backward, np.where(
+            np.isnan(backward), forward, (forward + backward) / 2))
+        slopes.append(np.clip(np.nan_to_num(slope), -3, 3))
+    normal = np.stack([-slopes[0], slopes[1], np.ones_like(depth)], axis=2)
+    normal /= np.linalg.norm(normal, axis=2, keepdims=True)
+    lit = np.clip(normal @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
+    return np.where(covered, 0.52 + 0.55 * lit, 0)
+
+
+def _open_sky(depth, covered, r):
+    """Ambient occlusion: the share of neighbours that do not stand in front."""
+    hidden, number = np.zeros_like(depth), 0
+    for distance in (2 * r, 4 * r, 7 * r):
+        for angle in np.arange(8) * np.pi / 4:
+            i, j = (int(round(distance * f(angle))) for f in (np.sin, np.cos))
+            other = _shifted(depth, i, j, -np.inf)
+            with np.errstate(invalid="ignore"):
+                rise = np.where(covered, other - depth, 0)
+            hidden += np.clip(rise / distance - 0.1, 0, 1)
+            number += 1
+    return 1 - 0.65 * hidden / number

@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""Tests `limber plot` and `limber animate` on small runs of their own: what is
+drawn, what is refused, and that a refused picture leaves the old one alone.
+
+    plots.py --limber build/release/limber
+"""
+
+import argparse
+import json
+import os
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+SCRIPTS = TOP / "contrib/plot"
+SYSTEM = os.environ.get("LIMBER_PYTHON") or (
+    "/usr/bin/python3" if Path("/usr/bin/python3").exists() else "python3")
+LIMBER = None
+
+SHORT = ["--set", "End time=0.004", "--set", "Output/Time interval=0.002",
+         "--set", "Grid/Cells=16, 16"]
+SHORT_3D = ["--set", "End time=0.002", "--set", "Output/Time interval=0.001",
+            "--set", "Grid/Cells=10, 10, 10",
+            "--set", "Output/Fields=velocity, stress"]
+
+
+def limber(*words, expected=0, environment=None):
+    program = (TOP / "contrib/limber" if words[0] in ("plot", "animate")
+               else LIMBER)
+    done = subprocess.run([program, *map(str, words)], text=True,
+                          capture_output=True,
+                          env={**os.environ, **(environment or {})})
+    if done.returncode != expected:
+        raise AssertionError(f"{words}: exit code {done.returncode}\n"
+                             + done.stdout + done.stderr)
+    return done.stdout + done.stderr
+
+
+def png_size(path):
+    data = Path(path).read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", path
+    return struct.unpack(">II", data[16:24])
+
+
+class Plots(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.home = Path(cls.scratch.name)
+        scenes = TOP / "prm/benchmarks"
+        limber(scenes / "block_2d.prm", *SHORT, "--output-directory",
+               cls.home / "flat", "--set", "Output/Fields=velocity, pressure")
+        limber(scenes / "block_2d.prm", *SHORT, "--output-directory",
+               cls.home / "arrays", "--set", "Output/Fields=pressure",
+               "--set", "Output/Point arrays=true")
+        limber(scenes / "block_3d.prm", *SHORT_3D, "--output-directory",
+               cls.home / "solid")
+        limber(TOP / "tests/mpi/two_bodies.prm", "--set", "End step=4",
+               "--set", "Output/Time interval=1e-3", "--set",
+               "Output/Fields=pressure, body", "--output-directory",
+               cls.home / "two")
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_default_pictures_of_a_run(self):
+        limber("plot", self.home / "flat")
+        for name in ("snapshots", "energies"):
+            self.assertEqual(png_size(self.home / f"flat/{name}.png")[0], 1600)
+
+    def test_endings(self):
+        for ending, begin in ((".png", b"\x89PNG"), (".pdf", b"%PDF"),
+                              (".svg", b"<?xml")):
+            path = self.home / f"picture{ending}"
+            limber("plot", self.home / "flat", "--field", "velocity x",
+                   "--time", 0, "--output", path)
+            self.assertEqual(path.read_bytes()[:len(begin)], begin)
+        said = limber("plot", self.home / "flat", "--field", "pressure",
+                      "--output", self.home / "a.jpg", expected=1)
+        self.assertIn(".png", said)
+        self.assertFalse((self.home / "a.jpg").exists())
+
+    def test_three_dimensions_and_components(self):
+        path = self.home / "solid.png"
+        for field in ("speed", "equivalent stress"):
+            limber("plot", self.home / "solid", "--field", field, "--snapshots",
+                   2, "--output", path)
+            self.assertEqual(png_size(path)[0], 1600)
+
+    def test_fields_of_point_arrays(self):
+        limber("plot", self.home / "arrays", "--field", "displacement y",
+               "--enlarge", 3, "--output", self.home / "arrays.png")
+
+    def test_runs_side_by_side(self):
+        path = self.home / "both.png"
+        limber("plot", self.home / "flat", self.home / "arrays", "--field",
+               "pressure", "--time", 0.004, "--labels", "one", "another",
+               "--output", path)
+        wide, high = png_size(path)
+        limber("plot", self.home / "flat", "--field", "pressure", "--time",
+               0.004, "--output", path)
+        self.assertGreater(high / wide, 1.5 * png_size(path)[1] / 1600)
+        self.refused("Runs in two and in three dimensions",
+                     "plot", self.home / "flat", self.home / "solid")
+
+    def test_bodies(self):
+        path = self.home / "two.png"
+        limber("plot", self.home / "two", "--field", "body", "--output", path)
+        limber("plot", self.home / "two", "--body", "jelly", "--field",
+               "pressure", "--output", path)
+        self.refused("There is no body 'jello'", "plot", self.home / "two",
+                     "--body", "jello")
+
+    def refused(self, expected, *words, **options):
+        said = limber(*words, expected=1, **options)
+        self.assertIn(expected, said)
+        self.assertNotIn("Traceback", said)
+
+    def test_what_is_refused_leaves_the_picture_alone(self):
+        path = self.home / "kept.png"
+        path.write_bytes(b"as it was")
+        run = self.home / "flat"
+        self.refused("There is no field 'presure'", "plot", run, "--field",
+                     "presure", "--output", path)
+        self.refused("There is no column 'mas'", "plot", run, "--columns",
+                     "mas", "--output", path)
+        self.refused("There is no folder", "plot", run / "none")
+        self.refused("is not that of a run", "plot", self.home)
+        self.refused("unrecognized arguments", "plot", run, "--filed", "mass")
+        self.assertEqual(path.read_bytes(), b"as it was")
+        self.assertEqual(sorted(self.home.glob("tmp*")), [])
+
+    def test_columns(self):
+        path = self.home / "columns.svg"
+        limber("plot", self.home / "flat", self.home / "arrays", "--columns",
+               "kinetic energy", "mass", "--output", path)
+        text = path.read_text()
+        self.assertIn("mass [kg]", text)
+        self.assertIn("kinetic energy", text)
+
+    def test_film(self):
+        path = self.home / "film.gif"
+        limber("animate", self.home / "flat", "--field", "pressure", "--output",
+               path)
+        self.assertEqual(path.read_bytes()[:4], b"GIF8")
+        done = subprocess.run(
+            [SYSTEM, "-B", str(SCRIPTS / "animate.py"), str(self.home / "flat"),
+             "--output", str(self.home / "film.mp4")], text=True,
+            capture_output=True, env={**os.environ, "PATH": str(self.home)})
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("needs ffmpeg", done.stderr)
+        self.assertFalse((self.home / "film.mp4").exists())
+
+    def test_help(self):
+        for word in ("plot", "animate"):
+            for option in ("--help", "-h"):
+                said = limber(word, option)
+                self.assertIn(f"limber {word} RUN", said)
+                self.assertIn("--enlarge", said)
+
+    def test_a_study(self):
+        folder = self.home / "study"
+        folder.mkdir()
+        columns = ["method", "cells", "outcome", "tip value", "tip error",
+                   "tip Pareto", "closed form", "beyond", "CPU seconds"]
+        rows = [["none", 2, "finished", 1.5, 0.5, 1, "nan", "", 1],
+                ["none", 4, "finished", 1.2, 0.2, 1, "nan", "", 4],
+                ["cell", 2, "finished", 1.1, 1e-14, 1, "nan", "", 1.1],
+                ["cell", 4, "lost points", "nan", "nan", 0, "nan", "", 2]]
+        (folder / "study.csv").write_text("\n".join(
+            ",".join(map(str, row)) for row in [columns, *rows]) + "\n")
+        (folder / "study.json").write_text(json.dumps({
+            "title": "Tip", "caption": "by hand", "measures": ["tip"],
+            "variations": ["cells"], "horizontal": "CPU seconds",
+            "horizontal label": "CPU seconds", "vertical label": "",
+            "against cost": True, "logarithmic": "both",
+            "error levels": [0.1], "closed forms": {}}))
+        limber("plot", folder)
+        self.assertEqual(png_size(folder / "study.png")[0], 1600)
+        text = (folder / "study.svg").read_text()
+        for words in ("error of the tip", "4: lost points", "1e-14", "none"):
+            self.assertIn(f"{words}</text>", text)
+        self.refused("A study is drawn alone", "plot", folder, "--field", "a")
+
+
+class Scripts(unittest.TestCase):
+    def test_without_numpy_there_is_a_message(self):
+        """A Python without the modules: one line, no traceback."""
+        with tempfile.TemporaryDirectory() as folder:
+            for module in ("numpy", "matplotlib", "scipy"):
+                (Path(folder) / f"{module}.py").write_text(
+                    "raise ModuleNotFoundError('hidden')\n")
+            scripts = [*SCRIPTS.glob("*.py"),
+                       *(TOP / "contrib/studies").glob("*.py")]
+            no_modules = {"advice_table.py", "all_studies.py"}
+            libraries = {"run_folder.py"}
+            self.assertGreater(len(scripts), 15)
+            for script in scripts:
+                if script.name in no_modules | libraries:
+                    continue
+                done = subprocess.run(
+                    [SYSTEM, "-B", str(script), "x"], text=True,
+                    capture_output=True,
+                    env={**os.environ, "PYTHONPATH": folder})
+                self.assertEqual(done.returncode, 1, script)
+                self.assertIn("has no numpy", done.stderr, script)
+                self.assertNotIn("Traceback", done.stderr, script)
+
+    def test_palette(self):
+        """In every study that comes along methods can be told apart, and look
+        the same wherever they occur."""
+        done = subprocess.run(
+            [SYSTEM, "-B", "-c", PALETTE, str(SCRIPTS),
+             *map(str, sorted((TOP / "prm/studies").glob("*.prm")))],
+            text=True, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+
+PALETTE = """
+import re, sys
+sys.path.insert(0, sys.argv[1])
+import charts
+count = 0
+for path in sys.argv[2:]:
+    found = re.search(r"^set Methods *= *(.*)$", open(path).read(), re.M)
+    methods = [m.strip() for m in found[1].split(",")]
+    looks = {}
+    for method in methods:
+        look = tuple(charts.style_of(method).values())
+        if look in looks:
+            sys.exit(f"{path}: '{method}' looks like '{looks[look]}'")
+        looks[look] = method
+        count += 1
+assert count > 100, count
+assert charts.style_of("quadratic node") == charts.style_of("splines node")
+"""
+
+
+def main():
+    global LIMBER
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--limber", required=True)
+    arguments, rest = parser.parse_known_args()
+    LIMBER = arguments.limber
+    unittest.main(argv=[sys.argv[0], *rest])
+
+
+if __name__ == "__main__":
+    main()
