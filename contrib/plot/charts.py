@@ -68,7 +68,7 @@ ALONE = {
     "FEM Q2": ("#8c5a2b", "p", "--"), "FEM Q2-P1-P1": ("#000000", "h", "--"),
     "USL": ("#D55E00", "^", "-"), "USF": ("#009E73", "v", "-"),
     "MUSL": ("#0072B2", "o", "-"), "USAVG": ("#E69F00", "D", "-"),
-    "both ends": ("#E69F00", "D", "-"), "MUSL cell": ("#56B4E9", "s", "--"),
+    "MUSL cell": ("#56B4E9", "s", "--"),
     "MUSL assumed strain": ("#CC79A7", "P", "-."),
     "PIC": ("#D55E00", "v", "-"), "FLIP": ("#0072B2", "o", "-"),
     "FLIP with damping": ("#56B4E9", "s", "--"), "APIC": ("#009E73", "^", "-"),
@@ -88,7 +88,7 @@ KERNELS = {
 # a kernel beside it, marker and line are the kernel's.
 CHANGES = {
     "USF": ("#33a02c", "v"), "USL": ("#b2443a", "^"), "MUSL": ("#7f9ccb", "<"),
-    "USAVG": ("#b8860b", ">"), "both ends": ("#b8860b", ">"),
+    "USAVG": ("#b8860b", ">"),
     "APIC": ("#e31a1c", "^"), "FMPM": ("#17807e", "H"),
     "3 points": ("#17807e", "P"), "3 x 3": ("#17807e", "P"),
     "soft water": ("#a6761d", "X"), "chi 0.3": ("#6a51a3", "d"),
