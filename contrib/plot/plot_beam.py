@@ -38,7 +38,7 @@ def state_at(folder, wanted):
 def draw_beam(axis, name, time, cloud, factor, largest_pressure):
     place = (cloud["position"][:, :2] +
              (factor - 1) * cloud["displacement"][:, :2])
-    dots = axis.scatter(place[:, 0], place[:, 1], c=cloud["pressure"], s=9,
+    dots = axis.scatter(place[:, 0], place[:, 1], c=cloud["pressure"], s=20,
                         linewidths=0, vmin=-largest_pressure,
                         vmax=largest_pressure, cmap="RdBu_r")
     axis.set_title(f"{name}, t = {time:.3g} s, displacements x {factor:.0f}",

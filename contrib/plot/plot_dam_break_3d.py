@@ -46,7 +46,8 @@ def main():
         scaled = table["time"] * SCALE
         for column in ("front", "height"):
             axis.plot(scaled, table[column], line, label=f"{column}, {name}",
-                      color=COLOURS[column], linewidth=2 if line == "-" else 1.2)
+                      color=COLOURS[column] if line == "-" else "black",
+                      linewidth=3 if line == "-" else 1)
             values = np.interp((1, 2, 3), scaled, table[column])
             print(name, column, "at T = 1, 2, 3:",
                   *(f"{value:.3f}" for value in values), "m")

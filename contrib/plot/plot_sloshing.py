@@ -83,7 +83,7 @@ def main():
     axis.plot(table["time"], -np.cos(angular * table["time"]), "k--",
               linewidth=1, label="linear theory")
     axis.set_xlabel("time [s]")
-    axis.set_ylabel("height of the centre of mass / start")
+    axis.set_ylabel("x of the centre of mass / start")
     axis.grid(alpha=0.3)
     charts.legend_outside(axis)
 
