@@ -33,6 +33,10 @@ class State:
             self.start = self.place - move
             self.place = self.start + look.enlarge * move
         self.spacing = source.spacing(cloud, look.body)
+        self.sizes = np.full(len(self.place), self.spacing)  # one a point
+        if "body" in cloud and look.body is None:
+            own = [source.spacing(cloud, name) for name in source.bodies]
+            self.sizes = np.array(own)[np.round(cloud["body"]).astype(int)]
 
 
 class Look:
@@ -124,10 +128,10 @@ def draw(axis, state, look):
     if state.source.is_reference:
         _draw_elements(axis, state, look)
     else:
-        size = 1.45 * state.spacing  # no gaps up to a stretch of as much
+        sizes = 1.45 * state.sizes  # no gaps up to a stretch of as much
         n = len(state.place)
         dots = EllipseCollection(
-            np.full(n, size), np.full(n, size), np.zeros(n), units="xy",
+            sizes, sizes, np.zeros(n), units="xy",
             offsets=state.place[:, :2], transOffset=axis.transData,
             linewidths=0, cmap=look.map, norm=look.norm,
             rasterized=n > RASTER_FROM)

@@ -2,7 +2,7 @@
 """Draws the scenes of prm/verification beside their exact solutions and prints
 the numbers of doc/gallery/verification.
 
-    verification.py [path of limber] [folder for the pictures]
+    verification.py [path of limber] [folder for the pictures] [scene ...]
 
 Takes a minute on one core.
 """
@@ -84,7 +84,8 @@ def tank(runner):
                       ms=3, label=name, color=charts.style_of(name)["color"])
     left.plot([9.81, 0], [0, 1], "k-", label="exact")
     left.set(xlabel="pressure [kPa]", ylabel="y [m]")
-    right.set(xlabel="time [s]", ylabel="kinetic energy / (rho g H² W/2)")
+    right.set(xlabel="time [s]", ylabel="kinetic energy / (rho g H² W/2)",
+              ylim=(1e-18, 1))
     left.legend()
     charts.legend_outside(right)
     runner.save(figure, "hydrostatic_tank")
@@ -118,17 +119,18 @@ def bar(runner):
                             "Output/Statistics interval=1")
         values, _ = run_folder.statistics(folder)
         left.plot(values["time"], values["end"] / (1e-4 / omega), "--",
-                  label=order)
+                  label=order, color=charts.style_of(order.upper())["color"])
         energy = values["total energy"] if "total energy" in values else (
             values["kinetic energy"] + values["strain energy"])
-        right.plot(values["time"], 100 * (energy / energy[0] - 1), label=order)
+        right.plot(values["time"], 100 * (energy / energy[0] - 1), label=order,
+                   color=charts.style_of(order.upper())["color"])
         print(f"bar, {order}: largest swing of the energy "
               f"{np.abs(energy / energy[0] - 1).max():.1e}, " +
               ", ".join(f"{n} {v:.6g}" for n, v in checks(folder).items()))
     left.set(xlabel="time [s]", ylabel="displacement of the end / amplitude")
     right.set(xlabel="time [s]", ylabel="E / E0 - 1 [%]")
-    left.legend()
-    right.legend()
+    handles, labels = left.get_legend_handles_labels()
+    right.legend(handles, labels, loc="upper left", bbox_to_anchor=(1.01, 1))
     runner.save(figure, "bar")
 
 
@@ -240,7 +242,8 @@ def main():
     runner = Runner(limber, pictures)
     for scene in (tank, column, bar, manufactured_solution, pressurised_ring,
                   cantilever_3d):
-        scene(runner)
+        if not sys.argv[3:] or scene.__name__ in sys.argv[3:]:
+            scene(runner)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ COMMANDS = {"reference", "compare", "study", "stability", "inf-sup", "advise",
             "plot", "animate"}
 # What pages name as examples, or what a build or a run makes
 MADE_UP = re.compile(r"^(runs|output|studies|build)/|scene\.prm$|study\.prm$|"
-                     r"disc\.prm$|ROOM|NAME|^X|my_")
+                     r"(disc|sill)\.prm$|ROOM|NAME|^X|my_")
 
 
 def pages_of(root):
