@@ -14,6 +14,7 @@
 #include <limber/simulation/simulation.h>
 #include <limber/study/commands.h>
 #include <limber/study/compare.h>
+#include <limber/study/plot_scripts.h>
 
 #include <cstdlib>
 #include <iostream>
@@ -115,10 +116,12 @@ main(int argc, char *argv[])
 {
   prepare_signals();
   // Before MPI: the runs of a study are processes with an MPI of their own.
-  if (is_study_command(argc, argv))
+  const bool is_plot = is_plot_command(argc, argv);
+  if (is_plot || is_study_command(argc, argv))
     try
       {
-        return run_study_command(argc, argv);
+        return is_plot ? run_plot_command(argc, argv) :
+                         run_study_command(argc, argv);
       }
     catch (const Failure &failure)
       {

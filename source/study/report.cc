@@ -3,6 +3,7 @@
 #include <limber/base/text.h>
 #include <limber/output/files.h>
 #include <limber/output/json.h>
+#include <limber/study/plot_scripts.h>
 #include <limber/study/report.h>
 
 #include <algorithm>
@@ -13,11 +14,6 @@
 #include <fstream>
 #include <sstream>
 #include <thread>
-
-// Given on the command line of the compiler, see CMakeLists.txt.
-#ifndef LIMBER_PLOT_FOLDER
-#  define LIMBER_PLOT_FOLDER "contrib/plot"
-#endif
 
 namespace limber
 {
@@ -540,32 +536,26 @@ namespace limber
   std::string
   draw_chart(const StudyFile &study)
   {
-    const std::string script = LIMBER_PLOT_FOLDER "/plot_study.py";
+    const std::string script = plot_script("plot_study.py");
+    const std::string python = plot_python();
     const std::string log    = study.directory + "/chart.log";
-    // The system's Python has the system's matplotlib, others may not.
-    std::vector<std::string> pythons = {"python3", "/usr/bin/python3"};
-    if (const char *const chosen = std::getenv("LIMBER_PYTHON"))
-      pythons = {chosen};
     if (std::filesystem::exists(script))
-      for (const std::string &python : pythons)
+      try
         {
-          ChildEnd end;
-          try
-            {
-              end = run_child({python, script, study.directory}, log, 300);
-            }
-          catch (const FileError &)
-            {
-              continue; // there is no such Python
-            }
-          if (end.exit_code == 0)
+          if (run_child({python, "-B", script, study.directory}, log, 300)
+                .exit_code == 0)
             {
               std::filesystem::remove(log);
               return "chart in " + study.directory + "/study.svg and study.png";
             }
         }
+      catch (const FileError &)
+        {
+          // there is no such Python
+        }
     return "No chart was drawn: it needs Python 3 with matplotlib and numpy (" +
            log + " says what was missing). Draw it elsewhere from study.csv " +
-           "and study.json with\n  python3 " + script + " " + study.directory;
+           "and study.json with\n  " + python + " " + script + " " +
+           study.directory;
   }
 } // namespace limber

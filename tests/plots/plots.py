@@ -29,9 +29,7 @@ SHORT_3D = ["--set", "End time=0.002", "--set", "Output/Time interval=0.001",
 
 
 def limber(*words, expected=0, environment=None):
-    program = (TOP / "contrib/limber" if words[0] in ("plot", "animate")
-               else LIMBER)
-    done = subprocess.run([program, *map(str, words)], text=True,
+    done = subprocess.run([LIMBER, *map(str, words)], text=True,
                           capture_output=True,
                           env={**os.environ, **(environment or {})})
     if done.returncode != expected:
@@ -162,6 +160,11 @@ class Plots(unittest.TestCase):
                 said = limber(word, option)
                 self.assertIn(f"limber {word} RUN", said)
                 self.assertIn("--enlarge", said)
+
+    def test_a_python_that_is_not_there(self):
+        said = limber("plot", self.home / "flat", expected=3,
+                      environment={"LIMBER_PYTHON": "/no/such/python"})
+        self.assertIn("cannot be started", said)
 
     def test_a_study(self):
         folder = self.home / "study"

@@ -1,0 +1,43 @@
+# What `cmake --install` puts where, and the Debian package that CPack makes of it:
+#
+#   cmake --install build/release --prefix /usr/local
+#   cd build/release && cpack
+#
+# The program finds share/limber/plot beside its own folder, so the prefix may be
+# moved as a whole. For a package configure with -DLIMBER_NATIVE=OFF, so that it runs
+# on other processors.
+
+include(GNUInstallDirs)
+
+# deal.II's libraries may lie in folders that the system does not search.
+set_target_properties(limber PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+install(TARGETS limber RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY contrib/plot/ DESTINATION ${CMAKE_INSTALL_DATADIR}/limber/plot
+  FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
+install(DIRECTORY prm/ DESTINATION ${CMAKE_INSTALL_DATADIR}/limber/prm
+  FILES_MATCHING PATTERN "*.prm" PATTERN "README.md")
+install(FILES contrib/packaging/limber.1
+  DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES contrib/packaging/completion.bash RENAME limber
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES README.md CHANGELOG.md CITATION.cff
+  DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE RENAME copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/doc)
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME limber)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_CONTACT "The Limber authors <maintainers@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY
+  "material point method for solids and fluids that do not lock")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES YES)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS YES)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "openmpi-bin")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
+  "python3-numpy, python3-matplotlib, python3-h5py")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "ffmpeg")
+include(CPack)
