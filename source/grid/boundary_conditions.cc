@@ -208,6 +208,29 @@ namespace limber
 
 
   template <int dim>
+  void
+  BoundaryConditions<dim>::for_each_held(const NodalFields<dim> &nodes,
+                                         const double            time,
+                                         const Hold             &hold)
+  {
+    for_each_node(
+      nodes,
+      time,
+      [&](const std::uint32_t node, const auto first, const auto last) {
+        for (auto c = first; c != last; ++c)
+          {
+            const double outward = c->side % 2 == 1 ? 1. : -1.;
+            const double velocity =
+              nodes.record(node)[NodeLayout<dim>::velocity + c->component];
+            if (!c->one_sided || outward * velocity >= 0)
+              hold(node, c->component, c->value);
+          }
+      });
+  }
+
+
+
+  template <int dim>
   std::array<unsigned int, dim>
   BoundaryConditions<dim>::held(const NodalFields<dim> &nodes,
                                 const std::uint32_t     node) const

@@ -236,6 +236,10 @@ namespace limber
         problem.notes.push_back("Kernel 'auto' is " + choice + ".");
       };
       problem.grid.kernel = KernelKind::linear;
+      if (read_word(root.subsection("Method"),
+                    "Time integration",
+                    time_integration_words()) == TimeIntegration::semi_implicit)
+        return say("'linear', which semi-implicit steps are made for");
       for (const auto &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);

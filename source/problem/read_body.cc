@@ -86,7 +86,15 @@ namespace limber
         "Dimensionless: rate, times h / c, at which a pressure per cell that "
         "alternates from cell to cell, and so moves nothing, is evened out "
         "without a change of volume; 'auto' is 0.5 for liquids with averages, "
-        "else 0.");
+        "else 0. In semi-implicit steps the share of the compact Laplacian in "
+        "the equations of the pressure; 'auto' is 0.1.");
+      parameters.declare(
+        "Density control",
+        "auto",
+        admissible::number_from_to(0, 1, "0.2").or_word("auto"),
+        "Dimensionless: of what nodes hold beyond 1.02 of the room around them, "
+        "the share that a semi-implicit step pushes apart; 'auto' is 0.2 where "
+        "the scene has one body, else 0.");
       declare_word(parameters,
                    "History",
                    "keep",

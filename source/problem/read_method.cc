@@ -81,9 +81,9 @@ namespace limber
   Method
   read_method(const Section &section)
   {
-    read_word(section, "Time integration", time_integration_words());
-
     Method method;
+    method.integration =
+      read_word(section, "Time integration", time_integration_words());
     method.order = read_word(section, "Stress update", stress_update_words());
     method.transfer = read_word(section, "Transfer", transfer_words());
     method.transfer_order =

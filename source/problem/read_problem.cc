@@ -119,6 +119,7 @@ namespace limber
     read_bodies(root, problem);
     read_face_loads(loads, problem);
     problem.method = read_method(root.subsection("Method"));
+    choose_time_integration(root, problem);
     choose_stress_update(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));

@@ -45,13 +45,16 @@ namespace limber
 
 
 
-  const Words<TimeIntegrationKind> &
+  const Words<TimeIntegration> &
   time_integration_words()
   {
-    static const Words<TimeIntegrationKind> words = {
-      {"explicit", TimeIntegrationKind::explicit_steps, "symplectic Euler"},
-      {"implicit", std::nullopt, not_available},
-      {"semi-implicit", std::nullopt, not_available}};
+    static const Words<TimeIntegration> words = {
+      {"explicit", TimeIntegration::explicit_steps, "symplectic Euler"},
+      {"semi-implicit",
+       TimeIntegration::semi_implicit,
+       "the pressure of liquids is that of the end of the step, so that sound "
+       "in them does not limit it"},
+      {"implicit", std::nullopt, not_available}};
     return words;
   }
 

@@ -269,6 +269,8 @@ namespace limber
            << std::setw(6) << std::fixed << std::setprecision(1) << 100 * share
            << " %\n"
            << std::defaultfloat;
+    if (const std::string effort = integrator->effort(); !effort.empty())
+      text << "  " << effort << '\n';
     text << std::setprecision(6);
     for (const CheckResult &check : summary.checks)
       text << "  check " << check.name << ": " << check.value << ", reference "

@@ -168,7 +168,9 @@ namespace limber
           body->deviator_sums.emplace(grid);
         if (averages_around_nodes(kind))
           body->nodal_means.emplace(grid.vertices);
-        if (body->description.chequerboard_control > 0)
+        if (body->description.implicit_pressure)
+          body->implicit.emplace(grid.n_cells());
+        else if (body->description.chequerboard_control > 0)
           body->cell_shift.reinit(grid.n_cells());
       }
     return bodies;

@@ -49,9 +49,14 @@ namespace limber
       project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
         sum_pressure<dim>(body.points.view(), nodes, records);
       });
-    std::size_t n_batches = 0;
+    std::size_t n_batches  = 0;
+    const bool  with_force = what.force;
     for (auto &body : parts.bodies)
       {
+        // An implicit pressure comes later.
+        what.pressure = !body->implicit;
+        what.force =
+          with_force && (what.pressure || body->stress->has_deviator());
         what.inverse_density = 1 / body->stress->density();
         what.projection      = body->stress->projection();
         what.nodal_pressure  = nodal_means_of(*body);
@@ -189,7 +194,8 @@ namespace limber
                                  const Pace   &pace,
                                  StepExtremes &extremes)
   {
-    const GridView<dim> nodes = parts.nodes.view();
+    const GridView<dim> nodes    = parts.nodes.view();
+    const bool          remapped = what.remapped;
     relax_deviators(pace);
     project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
       sum_divergence<dim>(body.points.view(), nodes, what.remapped, records);
@@ -202,16 +208,21 @@ namespace limber
                                      description.history,
                                      pace.volumetric,
                                      pace.speed);
-        what.shift                   = description.chequerboard_control > 0 ?
-                                         body->cell_shift.data() :
-                                         nullptr;
-        const auto sums              = sums_of(*body);
-        const auto found             = body->stress->update(body->points.view(),
+        what.shift =
+          body->cell_shift.size() > 0 ? body->cell_shift.data() : nullptr;
+        CellPressures pressures;
+        if (body->implicit)
+          pressures = body->implicit->view();
+        what.implicit    = body->implicit ? &pressures : nullptr;
+        what.remapped    = remapped && !body->implicit;
+        const auto sums  = sums_of(*body);
+        const auto found = body->stress->update(body->points.view(),
                                                 nodes,
                                                 sums ? &*sums : nullptr,
                                                 what);
-        extremes.wave_squared =
-          std::max(extremes.wave_squared, found.wave_speed_squared);
+        if (!body->implicit)
+          extremes.wave_squared =
+            std::max(extremes.wave_squared, found.wave_speed_squared);
         extremes.displacement =
           std::max(extremes.displacement, found.displacement);
         extremes.speed_squared =

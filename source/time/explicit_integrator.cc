@@ -47,9 +47,10 @@ namespace limber
           std::max(viscosity,
                    body->stress->viscosity() / body->stress->density());
         const PointView<dim> points = body->points.view();
-        extremes.wave_squared =
-          std::max(extremes.wave_squared,
-                   body->stress->wave_speed_squared(points));
+        if (!body->implicit)
+          extremes.wave_squared =
+            std::max(extremes.wave_squared,
+                     body->stress->wave_speed_squared(points));
         for (std::size_t p = 0; p < points.size; ++p)
           {
             double squared = 0;
@@ -155,6 +156,7 @@ namespace limber
     constexpr const char *names[] = {"points to grid",
                                      "stabilize",
                                      "add loads",
+                                     "solve pressure",
                                      "sum shared nodes",
                                      "advance nodes",
                                      "apply boundaries",
@@ -165,7 +167,9 @@ namespace limber
     static_assert(std::size(names) == std::size_t(Verb::n_verbs));
     std::vector<std::pair<std::string, double>> result;
     for (std::size_t v = 0; v < seconds.size(); ++v)
-      result.emplace_back(names[v], seconds[v]);
+      if (Verb(v) != Verb::solve_pressure ||
+          parts.problem.method.integration == TimeIntegration::semi_implicit)
+        result.emplace_back(names[v], seconds[v]);
     return result;
   }
 
@@ -199,6 +203,7 @@ namespace limber
             extremes.displacement,
             extremes.largest_mass,
             steps_since_filter,
+            step,
             loads.pieces()};
   }
 
@@ -213,6 +218,7 @@ namespace limber
     extremes.displacement = former.displacement;
     extremes.largest_mass = former.largest_mass;
     steps_since_filter    = former.steps_since_filter;
+    step                  = former.step;
     unstrained            = 0;
     stress_is_behind      = false;
     loads.restore(former.face_pieces);

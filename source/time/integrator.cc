@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/explicit_integrator.h>
+#include <limber/time/semi_implicit_integrator.h>
 
 namespace limber
 {
@@ -7,6 +8,13 @@ namespace limber
   std::unique_ptr<Integrator<dim>>
   make_integrator(const RunParts<dim> &parts)
   {
+    switch (parts.problem.method.integration)
+      {
+        case TimeIntegration::explicit_steps:
+          break;
+        case TimeIntegration::semi_implicit:
+          return std::make_unique<SemiImplicitIntegrator<dim>>(parts);
+      }
     return std::make_unique<ExplicitIntegrator<dim>>(parts);
   }
 

@@ -142,6 +142,34 @@ namespace limber
 
 
 
+  // Their largest speed, anew, after something else has changed it.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::measure_nodes()
+  {
+    double       checked_speed = 0, all = 0;
+    const double checked_mass = 0.1 * extremes.largest_mass;
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        const double *const record = parts.nodes.record(node);
+        if (!(record[Layout::mass] > 0))
+          continue;
+        double squared = 0;
+        for (int d = 0; d < dim; ++d)
+          squared +=
+            record[Layout::velocity + d] * record[Layout::velocity + d];
+        all += squared;
+        if (record[Layout::mass] > checked_mass)
+          checked_speed = std::max(checked_speed, squared);
+      }
+    fastest_node = std::isfinite(all) ? std::sqrt(checked_speed) * step /
+                                          parts.grid.smallest_edge :
+                                        1e300;
+    lap(Verb::advance_nodes);
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::check_nodes()
@@ -436,6 +464,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::advance_nodes();
   template void
+  ExplicitIntegrator<2>::measure_nodes();
+  template void
   ExplicitIntegrator<2>::check_nodes();
   template void
   ExplicitIntegrator<2>::account_loads(unsigned int);
@@ -473,6 +503,8 @@ namespace limber
   ExplicitIntegrator<3>::add_loads();
   template void
   ExplicitIntegrator<3>::advance_nodes();
+  template void
+  ExplicitIntegrator<3>::measure_nodes();
   template void
   ExplicitIntegrator<3>::check_nodes();
   template void

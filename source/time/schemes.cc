@@ -188,6 +188,8 @@ namespace limber
   double
   ExplicitIntegrator<dim>::square_of_strain() const
   {
+    if (parts.problem.method.integration == TimeIntegration::semi_implicit)
+      return 0.5; // as points move, see StressSweep::curved
     switch (parts.problem.method.order)
       {
         case StressUpdateOrder::usf:

@@ -3,10 +3,26 @@
 #include <limber/transfer/chequerboard.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace limber
 {
+  // Waves in a liquid with an implicit pressure may cross many cells in a step,
+  // but no more than the motion that is there can be taken away.
+  template <int dim>
+  double
+  Stabilization<dim>::speed_of_resistance(const MaterialBody<dim> &body,
+                                          const double             step) const
+  {
+    constexpr double most_cells = 5; // in a step
+    const auto       response   = body.stress->volumetric_response(1);
+    return std::min(std::sqrt(response.stiffness / body.stress->density()),
+                    most_cells * parts.grid.smallest_edge / step);
+  }
+
+
+
   template <int dim>
   Stabilization<dim>::Stabilization(const RunParts<dim> &parts)
     : parts(parts)
@@ -23,7 +39,7 @@ namespace limber
     for (auto &body : parts.bodies)
       {
         const double strength = body->description.chequerboard_control;
-        if (!(strength > 0))
+        if (!(strength > 0) || body->implicit)
           continue;
         const double share =
           std::min(strength * wave_speed * step / parts.grid.smallest_edge,
@@ -62,8 +78,10 @@ namespace limber
     resisting.clear();
     for (auto &body : parts.bodies)
       if (body->description.hourglass_control > 0)
-        resisting.push_back({body->cell_sums->view(),
-                             body->description.hourglass_control * wave_speed});
+        resisting.push_back(
+          {body->cell_sums->view(),
+           body->description.hourglass_control *
+             (body->implicit ? speed_of_resistance(*body, step) : wave_speed)});
     if (resisting.empty())
       return;
 

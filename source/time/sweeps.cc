@@ -225,6 +225,8 @@ namespace limber
   {
     what.shift_share = what.step / step;
     what.square      = square_of_strain();
+    what.curved =
+      parts.problem.method.integration == TimeIntegration::semi_implicit;
     loads.deform(parts.nodes, what);
     sweeps.update_stress(what,
                          {std::exchange(history_time, 0.),

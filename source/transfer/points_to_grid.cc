@@ -57,6 +57,9 @@ namespace limber
         for (std::size_t p = batch.begin + width; rarely(p < batch.end);
              p += width)
           add(std::false_type(), p);
+        if constexpr (kind == Projection::cell)
+          if (!what.pressure)
+            stress.drop_pressure();
         return stress.forces();
       }
     };

@@ -44,7 +44,7 @@ def run(arguments, ranks, folder):
     return names, rows
 
 
-def differences(names, reference, rows):
+def differences(names, reference, rows, tolerance=TOLERANCE):
     """Yields (row, column name, difference) of what does not agree."""
     for c, name in enumerate(names):
         scale = max((abs(row[c]) for row in reference if row[c] == row[c]),
@@ -53,7 +53,7 @@ def differences(names, reference, rows):
             scale = 1
         for r, (a, b) in enumerate(zip(reference, rows)):
             both_nan = a[c] != a[c] and b[c] != b[c]
-            if not both_nan and not abs(a[c] - b[c]) <= TOLERANCE * scale:
+            if not both_nan and not abs(a[c] - b[c]) <= tolerance * scale:
                 yield r, name, abs(a[c] - b[c]) / (scale or 1)
 
 
@@ -66,6 +66,8 @@ def main():
     parser.add_argument("--word", action="append", default=[],
                         help="stands before the scene, as 'reference'")
     parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 3, 4])
+    parser.add_argument("--tolerance", type=float, default=TOLERANCE,
+                        help="instead of 1e-10, where a solver iterates")
     parser.add_argument("--set", action="append", default=[])
     arguments = parser.parse_args()
 
@@ -77,7 +79,8 @@ def main():
     for ranks, (other_names, rows) in zip(arguments.ranks, results):
         if other_names != names or len(rows) != len(reference):
             sys.exit(f"{ranks} ranks: other columns or another number of rows")
-        for row, name, difference in differences(names, reference, rows):
+        for row, name, difference in differences(names, reference, rows,
+                                                 arguments.tolerance):
             failed = True
             print(f"{ranks} ranks, row {row}, {name}: {difference:.1e}")
     print(f"{len(reference)} rows of {len(names)} columns on "

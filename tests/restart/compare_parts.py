@@ -25,7 +25,7 @@ import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "mpi"))
-from compare_ranks import ENVIRONMENT, differences  # noqa: E402
+from compare_ranks import ENVIRONMENT, TOLERANCE, differences  # noqa: E402
 
 SIGNALS = {"terminate": signal.SIGTERM, "interrupt": signal.SIGINT,
            "kill": signal.SIGKILL}
@@ -128,7 +128,8 @@ def compare(arguments, whole, parts):
     if other_names != names or len(rows) != len(reference):
         yield f"other columns, or {len(rows)} rows instead of {len(reference)}"
         return
-    for row, name, difference in differences(names, reference, rows):
+    for row, name, difference in differences(names, reference, rows,
+                                             arguments.tolerance):
         yield f"row {row}, {name}: {difference:.1e}"
     yield from compare_health(whole, parts)
     if read_series(parts) != read_series(whole):
@@ -144,6 +145,8 @@ def main():
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--limber", required=True)
     parser.add_argument("--scene", required=True)
+    parser.add_argument("--tolerance", type=float, default=TOLERANCE,
+                        help="instead of 1e-10, where a solver iterates")
     parser.add_argument("--parts", nargs="+", required=True)
     parser.add_argument("--set", action="append", default=[])
     arguments = parser.parse_args()

@@ -5,7 +5,7 @@
 #include <limber/output/totals.h>
 #include <limber/problem/read_problem.h>
 #include <limber/simulation/set_up.h>
-#include <limber/time/explicit_integrator.h>
+#include <limber/time/integrator.h>
 
 #include <cmath>
 #include <functional>
@@ -61,7 +61,9 @@ namespace limber
       , grid(problem.grid, MPI_COMM_WORLD)
       , bodies(set_up_bodies(problem, grid))
       , nodes(grid)
-      , integrator({problem, grid, nodes, bodies, ledger})
+      , integrator_of_scene(
+          make_integrator<dim>({problem, grid, nodes, bodies, ledger}))
+      , integrator(*integrator_of_scene)
       , balance(state())
     {}
 
@@ -177,7 +179,8 @@ namespace limber
     std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
     NodalFields<dim>                                nodes;
     Ledger<dim>                                     ledger;
-    ExplicitIntegrator<dim>                         integrator;
+    const std::unique_ptr<Integrator<dim>>          integrator_of_scene;
+    Integrator<dim>                                &integrator;
     double                                          time   = 0;
     unsigned long                                   n_done = 0;
     Balance<dim>                                    balance;

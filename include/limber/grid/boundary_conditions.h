@@ -62,6 +62,17 @@ namespace limber
     void
     apply_trial(NodalFields<dim> &nodes, unsigned int slot, double time);
 
+    using Hold = std::function<
+      void(std::uint32_t node, unsigned int component, double value)>;
+
+    /**
+     * The components of new velocities that sides hold at @p time, and the
+     * velocities of the sides, m/s; of several for a component the last one
+     * counts. One-sided constraints hold what does not leave the side.
+     */
+    void
+    for_each_held(const NodalFields<dim> &nodes, double time, const Hold &hold);
+
     /**
      * For each component of the new velocity of a node the directions (bits)
      * in which a side holds it, so that nothing may change it. Sides with

@@ -48,6 +48,8 @@ namespace limber
     static constexpr unsigned int strain_velocity = remapped;
     // Between these two
     static constexpr unsigned int hourglass_force = remapped; // N
+    // Of implicit pressures, once the other forces have become increments, N
+    static constexpr unsigned int pressure_force = remapped;
   };
 
 

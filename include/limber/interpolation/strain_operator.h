@@ -352,6 +352,14 @@ namespace limber
         }
     }
 
+    /** Leave out what the pressure of the points has given so far. */
+    void
+    drop_pressure()
+    {
+      static_assert(mean_pressure);
+      pressure = Number{};
+    }
+
     /** The forces on the nodes, one lane each, for each direction. */
     __attribute__((always_inline)) std::array<Nodes, dim>
     forces() const

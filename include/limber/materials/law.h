@@ -29,6 +29,8 @@ namespace limber
     Number volumetric; // dt div v, averaged where the body is projected
     double step;       // dt, s
     double square = 0; // c in f = 1 + a + c a^2, see StressSweep
+    // Whether J grows by 1 + volumetric, as an implicit pressure has it
+    bool mean_volume = false;
 
     Number
     trace() const
@@ -76,6 +78,8 @@ namespace limber
     Number
     volume_ratio() const
     {
+      if (mean_volume)
+        return 1. + volumetric;
       const Number tr = trace();
       Number       tr_square{}; // tr(a^2)
       for (int i = 0; i < dim; ++i)

@@ -141,6 +141,23 @@ namespace limber
       return state.history[0];
     }
 
+    /** J p, Pa; exact also where the bulk modulus is very large. */
+    double
+    kirchhoff_pressure(const double J) const
+    {
+      return tait ? bulk_modulus / exponent * (std::pow(J, 1 - exponent) - J) :
+                    bulk_modulus * (1 - J);
+    }
+
+    /** -J d(J p)/dJ, Pa. */
+    double
+    kirchhoff_stiffness(const double J) const
+    {
+      return tait ? bulk_modulus / exponent *
+                      (J + (exponent - 1) * std::pow(J, 1 - exponent)) :
+                    bulk_modulus * J;
+    }
+
     /** The energy whose derivative with respect to J is -p. */
     template <class Number>
     Number

@@ -44,6 +44,13 @@ namespace limber
     replace   // it is replaced by the mean of the cell in every step
   };
 
+  /** What of the state at the end of a step acts in it. */
+  enum class TimeIntegration
+  {
+    explicit_steps, // nothing
+    semi_implicit   // the pressure of liquids
+  };
+
   /** When in a step the stress follows the motion. */
   enum class StressUpdateOrder
   {
@@ -114,11 +121,18 @@ namespace limber
 
     bool is_liquid = false; // bears pressure, but no shape of its own
 
-    Frame             frame                = Frame::current;
-    Projection        treatment            = Projection::none;
-    HourglassResponse hourglass            = HourglassResponse::bending;
-    double            hourglass_control    = 0; // chi, without dimension
-    double            chequerboard_control = 0; // without dimension
+    Frame             frame             = Frame::current;
+    Projection        treatment         = Projection::none;
+    HourglassResponse hourglass         = HourglassResponse::bending;
+    double            hourglass_control = 0; // chi, without dimension
+    // Without dimension; where the pressure is implicit, the share gamma of
+    // the compact Laplacian
+    double chequerboard_control = 0;
+    // Found together with the velocity at the end of the step
+    bool implicit_pressure = false;
+    // Of what nodes hold beyond their room, the share that is pushed apart in
+    // a step as long as motion allows; with an implicit pressure only
+    double density_control = 0;
     // of the volume ratios, and of the deviatoric strain
     HistoryTreatment history            = HistoryTreatment::keep;
     HistoryTreatment deviatoric_history = HistoryTreatment::keep;
@@ -169,6 +183,7 @@ namespace limber
 
   struct Method
   {
+    TimeIntegration   integration    = TimeIntegration::explicit_steps;
     StressUpdateOrder order          = StressUpdateOrder::automatic;
     Transfer          transfer       = Transfer::flip;
     unsigned int      transfer_order = 4; // k of FMPM(k) and XPIC(k)

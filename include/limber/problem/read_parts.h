@@ -170,6 +170,13 @@ namespace limber
   Method
   read_method(const Section &section);
 
+  // Of bodies and method (source/problem/time_integration.cc)
+
+  /** Which bodies have an implicit pressure, and whether they can. */
+  template <int dim>
+  void
+  choose_time_integration(const Section &root, Problem<dim> &problem);
+
   void
   declare_output(Parameters &parameters);
 

@@ -32,12 +32,6 @@ namespace limber
   template <typename Enum>
   using Words = std::vector<Word<Enum>>;
 
-  enum class TimeIntegrationKind
-  {
-    explicit_steps
-  };
-
-
   /** From the list of shapes, and that of unions. */
   const Words<std::string> &
   shape_words();
@@ -49,7 +43,7 @@ namespace limber
   const Words<KernelKind> &
   kernel_words();
 
-  const Words<TimeIntegrationKind> &
+  const Words<TimeIntegration> &
   time_integration_words();
 
   const Words<StressUpdateOrder> &

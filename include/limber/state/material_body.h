@@ -13,6 +13,26 @@
 
 namespace limber
 {
+  /** What an implicit pressure finds for a cell; see CellPressures. */
+  struct ImplicitFields
+  {
+    explicit ImplicitFields(const std::size_t n_cells)
+      : pressure(n_cells)
+      , dilation(n_cells)
+    {}
+
+    CellPressures
+    view() const
+    {
+      return {pressure.data(), dilation.data()};
+    }
+
+    LazyArray<double> pressure; // J p, Pa
+    LazyArray<double> dilation; // of the step, without dimension
+  };
+
+
+
   /** A body at run time: its points, its law, its means if projected. */
   template <int dim>
   struct MaterialBody
@@ -29,6 +49,8 @@ namespace limber
     // Per cell, what the volumetric variable gets in this step against
     // chequerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};
+    // Of an implicit pressure, by cell; only where the body has one
+    std::optional<ImplicitFields> implicit = {};
 
     /** Forget all sums and means, of a mesh that has changed. */
     void
@@ -39,6 +61,8 @@ namespace limber
           (*sums)->reinit();
       if (cell_shift.size() > 0)
         cell_shift.reinit(grid.n_cells());
+      if (implicit)
+        implicit.emplace(grid.n_cells());
       if (nodal_means)
         nodal_means->reinit();
     }

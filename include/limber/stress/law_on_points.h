@@ -50,6 +50,15 @@ namespace limber
       return result;
     }
 
+    VolumetricResponse
+    volumetric_response(const double J) const override
+    {
+      if constexpr (Law::takes_pressure)
+        return {law.kirchhoff_pressure(J), law.kirchhoff_stiffness(J)};
+      else
+        throw std::logic_error("no implicit pressure");
+    }
+
     double
     volume_ratio_at_rest(const double pressure) const override
     {

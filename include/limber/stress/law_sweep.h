@@ -7,6 +7,21 @@
 
 namespace limber
 {
+  /** (1 + a/2) u: the way u along a field that changes by a on the way. */
+  template <int dim, class Number>
+  std::array<Number, dim>
+  curve(const std::array<Number, dim>                  &u,
+        const std::array<std::array<Number, dim>, dim> &a)
+  {
+    std::array<Number, dim> result = u;
+    for (int d = 0; d < dim; ++d)
+      for (int e = 0; e < dim; ++e)
+        result[d] += 0.5 * (a[d][e] * u[e]);
+    return result;
+  }
+
+
+
   /** StressUpdate for one basis, one law and one projection of its strain. */
   template <class Basis, class Law, Projection kind>
   class LawSweep final : public LawOnPoints<Basis::dim, Law>
@@ -130,6 +145,7 @@ namespace limber
         , strained(nodal.field(what.remapped ? dim : 0))
         , means(sums, batch.cell)
         , shift(what.shift ? what.shift_share * what.shift[batch.cell] : 0)
+        , implicit(kind == Projection::cell ? what.implicit : nullptr)
         , divergence(what.nodal_divergence, cell)
         , strain(strained,
                  cell,
@@ -147,6 +163,7 @@ namespace limber
       const Field                              strained;
       const CellMeans<Basis>                   means;
       const double                             shift;
+      const CellPressures *const               implicit;
       const NodalMean<dim, kind>               divergence;
       const StrainOperator<Basis, kind, Field> strain;
     };
@@ -169,6 +186,11 @@ namespace limber
         motion.step   = what.step;
         motion.square = what.square;
         batch.strain.template evaluate<Number, Law::uses_spin>(xi, motion);
+        if (rarely(batch.implicit != nullptr))
+          {
+            motion.mean_volume = true;
+            motion.volumetric += batch.implicit->dilation[batch.cell_number];
+          }
 
         auto state = owner.strain(
           points,
@@ -183,6 +205,11 @@ namespace limber
           measure_waves,
           found);
 
+        if (rarely(batch.implicit != nullptr))
+          lanes.store(broadcast<Number>(
+                        batch.implicit->pressure[batch.cell_number]),
+                      points.pressure);
+
         if constexpr (moves)
           {
             std::array<Number, dim> shift;
@@ -190,6 +217,8 @@ namespace limber
               shift[d] =
                 what.move *
                 Basis::template value<Number>(batch.nodal.component(d), xi);
+            if (rarely(what.curved))
+              shift = curve<dim>(shift, motion.gradient);
             const auto moved =
               move_points<dim>(points, grid, batch.cell_number, lanes, shift);
             displacement = larger(displacement, moved.displacement);

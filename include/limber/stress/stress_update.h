@@ -14,6 +14,28 @@
 
 namespace limber
 {
+  /**
+   * What an implicit pressure has found for the cells of a body that is
+   * averaged over them. Points take the pressure; their J takes the mean
+   * divergence, with nothing of second order in the step, and this dilation.
+   */
+  struct CellPressures
+  {
+    const double *pressure = nullptr; // J p, Pa
+    const double *dilation = nullptr; // over the step, without dimension
+  };
+
+
+
+  /** How a change of volume is resisted at some J. */
+  struct VolumetricResponse
+  {
+    double pressure;  // J p, Pa
+    double stiffness; // -J d(J p)/dJ, Pa
+  };
+
+
+
   /** How a sweep over a body updates its strain and stress. */
   struct StressSweep
   {
@@ -27,6 +49,9 @@ namespace limber
     double square = 0;
     // Over which they then move with the new velocity, s; 0: they stay.
     double move = 0;
+    // Whether they follow the velocity field as it is now on their way: by
+    // step (1 + a/2) v, of second order, so that what turns does not grow.
+    bool curved = false;
     // With this share of FLIP points take their velocities in the same sweep,
     // where takes_velocity(); empty: they keep them.
     std::optional<double> flip_share;
@@ -39,6 +64,8 @@ namespace limber
     // Per cell, what that variable gets besides; null: nothing.
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
+    // Of an implicit pressure, with Projection::cell; null: there is none
+    const CellPressures *implicit = nullptr;
     // The divergence projected on nodes (nodal_means.h), where that is asked
     const double *nodal_divergence = nullptr;
   };
@@ -130,6 +157,10 @@ namespace limber
     /** The largest wave speed squared of the present state, m^2/s^2. */
     virtual double
     wave_speed_squared(const PointView<dim> &points) const = 0;
+
+    /** Of the volumetric part of the law, which must have J as history. */
+    virtual VolumetricResponse
+    volumetric_response(double J) const = 0;
 
     /** J at rest under a Cauchy pressure (Pa). */
     virtual double

@@ -20,6 +20,7 @@ namespace limber
     points_to_grid,
     stabilize,
     add_loads,
+    solve_pressure,
     sum_shared_nodes,
     advance_nodes,
     apply_boundaries,
@@ -69,12 +70,17 @@ namespace limber
     lost_points() const override;
     std::vector<std::pair<std::string, double>>
     verb_seconds() const override;
+    std::string
+    effort() const override
+    {
+      return "";
+    }
 
-  private:
+  protected:
     using Layout = NodeLayout<dim>;
 
     // The schemes: in which order of its verbs a step is done
-    void
+    virtual void
     do_scheme();
     void
     usf();
@@ -130,6 +136,8 @@ namespace limber
     add_loads();
     void
     advance_nodes();
+    void
+    measure_nodes();
     void
     check_nodes();
     void

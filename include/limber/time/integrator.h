@@ -35,6 +35,7 @@ namespace limber
     double                              displacement       = 0;
     double                              largest_mass       = 0;
     unsigned long                       steps_since_filter = 0;
+    double                              step               = 0; // s
     typename ExternalLoads<dim>::Pieces face_pieces;
   };
 
@@ -123,6 +124,10 @@ namespace limber
     /** The verbs of a step and the wall time each has taken here so far, s. */
     virtual std::vector<std::pair<std::string, double>>
     verb_seconds() const = 0;
+
+    /** A line for the end of a run about work that varies; may be empty. */
+    virtual std::string
+    effort() const = 0;
   };
 
 

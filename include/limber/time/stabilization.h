@@ -37,6 +37,9 @@ namespace limber
     resist_hourglass(double step, double wave_speed);
 
   private:
+    double
+    speed_of_resistance(const MaterialBody<dim> &body, double step) const;
+
     const RunParts<dim> parts;
     // Refilled in each step, which then allocates nothing
     std::vector<HourglassResistance<dim>> resisting;

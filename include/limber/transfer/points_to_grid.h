@@ -12,6 +12,7 @@ namespace limber
   {
     bool             momentum        = true;  // mass and momentum
     bool             force           = true;  // internal force
+    bool             pressure        = true;  // its part of the force
     bool             affine          = false; // momentum with the affine part
     double           inverse_density = 0;     // 1 / rho_0, m^3/kg
     StrainProjection projection; // of the strain that the force works with
@@ -30,7 +31,8 @@ namespace limber
    *
    * (Mast et al. 2012, mass-specific form); forces in the initial frame come
    * from the StressUpdate of the body. @p sums may be null where nothing is
-   * projected. Returns the number of batches.
+   * projected; forces without the pressure are for Projection::cell. Returns
+   * the number of batches.
    */
   template <int dim>
   std::size_t

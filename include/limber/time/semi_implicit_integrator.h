@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_semi_implicit_integrator_h
+#define limber_time_semi_implicit_integrator_h
+
+#include <limber/time/explicit_integrator.h>
+#include <limber/time/implicit_pressure.h>
+
+namespace limber
+{
+  /**
+   * Steps as long as the motion of the material allows: the pressure of
+   * liquids is found together with the velocity at the end of the step
+   * (ImplicitPressure), all other forces are those of its beginning. Points
+   * follow the new velocity along its curved field.
+   */
+  template <int dim>
+  class SemiImplicitIntegrator final : public ExplicitIntegrator<dim>
+  {
+  public:
+    explicit SemiImplicitIntegrator(const RunParts<dim> &parts);
+
+    /**
+     * The shortest of: the time in which points move by the Courant number in
+     * cells; a part of the time in which a surface wave as short as a cell
+     * swings, as the surface moves explicitly; and what waves in other bodies
+     * and viscosity allow.
+     */
+    double
+    longest_step() const override;
+    void
+    reinit() override;
+    std::string
+    effort() const override;
+
+  private:
+    using Base   = ExplicitIntegrator<dim>;
+    using Layout = NodeLayout<dim>;
+
+    void
+    do_scheme() override;
+    double
+    step_of_motion() const;
+    void
+    resist_hourglass();
+    void
+    update_liquids();
+    void
+    update_all();
+    void
+    solve_pressure();
+    void
+    account(unsigned int velocity_after);
+    double
+    energy_to_points() const;
+    double
+    energy_of_points() const;
+
+    ImplicitPressure<dim> pressure;
+    LazyArray<double>     hourglass; // forces by node and component, N
+    const bool            remaps;    // for bodies that are not implicit
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/index_set.h>
+
+#include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+#include <deal.II/lac/trilinos_sparsity_pattern.h>
+#include <deal.II/lac/trilinos_vector.h>
+
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/time/pressure_solver.h>
+
+#include <Epetra_CrsMatrix.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    constexpr unsigned int most_iterations = 500;
+
+    // To make a multigrid takes as long as these.
+    constexpr unsigned int iterations_of_making = 40;
+
+    using Vector = dealii::TrilinosWrappers::MPI::Vector;
+  } // namespace
+
+
+
+  struct PressureSolver::Methods
+  {
+    explicit Methods(const MPI_Comm communicator)
+      : communicator(communicator)
+    {}
+
+    void
+    find_entries(const PressureEquations &equations);
+    void
+    set_values(const PressureEquations &equations);
+    void
+    make_multigrid();
+    unsigned int
+    iterate(double accuracy);
+
+    const MPI_Comm communicator;
+    bool           has_multigrid       = false;
+    unsigned int   iterations_when_new = 0;
+    unsigned int   more_iterations = 0; // that the old one has taken, summed
+    dealii::TrilinosWrappers::SparseMatrix    matrix;
+    std::vector<double *>                     entries; // by place
+    dealii::TrilinosWrappers::PreconditionAMG multigrid;
+    Vector                                    x, b;
+  };
+
+
+
+  void
+  PressureSolver::set_pattern(const PressureEquations &equations)
+  {
+    dealii::IndexSet rows(equations.n_all);
+    rows.add_range(equations.first, equations.first + equations.n);
+
+    dealii::TrilinosWrappers::SparsityPattern    pattern(rows,
+                                                      methods->communicator,
+                                                      equations.width);
+    std::vector<dealii::types::global_dof_index> of_row;
+    for (std::uint32_t r = 0; r < equations.n; ++r)
+      {
+        of_row.clear();
+        for (unsigned int k = 0; k < equations.width; ++k)
+          if (const auto column = equations.columns[r * equations.width + k];
+              column != PressureEquations::no_column)
+            of_row.push_back(column);
+        pattern.add_entries(equations.first + r, of_row.begin(), of_row.end());
+      }
+    pattern.compress();
+    methods->matrix.reinit(pattern);
+    methods->find_entries(equations);
+    methods->x.reinit(rows, methods->communicator);
+    methods->b.reinit(rows, methods->communicator);
+    methods->has_multigrid = false;
+  }
+
+
+
+  // Where the matrix keeps the entries: to look each of them up in every step
+  // would take longer than to form them.
+  void
+  PressureSolver::Methods::find_entries(const PressureEquations &equations)
+  {
+    const Epetra_CrsMatrix &rows = matrix.trilinos_matrix();
+    entries.assign(equations.columns.size(), nullptr);
+    for (std::uint32_t r = 0; r < equations.n; ++r)
+      {
+        int     n       = 0;
+        double *values  = nullptr;
+        int    *columns = nullptr;
+        rows.ExtractMyRowView(r, n, values, columns);
+        for (unsigned int k = 0; k < equations.width; ++k)
+          {
+            const std::size_t place = std::size_t(r) * equations.width + k;
+            if (equations.columns[place] == PressureEquations::no_column)
+              continue;
+            const int local = rows.LCID(int(equations.columns[place]));
+            entries[place] =
+              values + (std::find(columns, columns + n, local) - columns);
+          }
+      }
+  }
+
+
+
+  void
+  PressureSolver::Methods::set_values(const PressureEquations &equations)
+  {
+    for (std::size_t place = 0; place < entries.size(); ++place)
+      if (entries[place] != nullptr)
+        *entries[place] = equations.values[place];
+  }
+
+
+
+  void
+  PressureSolver::Methods::make_multigrid()
+  {
+    dealii::TrilinosWrappers::PreconditionAMG::AdditionalData settings;
+    settings.elliptic              = true;
+    settings.smoother_type         = "Chebyshev";
+    settings.smoother_sweeps       = 2;
+    settings.aggregation_threshold = 0.02;
+    settings.coarse_type           = "Amesos-KLU";
+    multigrid.initialize(matrix, settings);
+  }
+
+
+
+  unsigned int
+  PressureSolver::Methods::iterate(const double accuracy)
+  {
+    dealii::SolverControl control(most_iterations, accuracy);
+    try
+      {
+        dealii::SolverCG<Vector>(control).solve(matrix, x, b, multigrid);
+      }
+    catch (const dealii::SolverControl::NoConvergence &failure)
+      {
+        throw ComputationError(
+          "The equations of the implicit pressure were not solved: after " +
+            std::to_string(failure.last_step) + " iterations the residual is " +
+            brief(failure.last_residual / accuracy) +
+            " times what is asked for. Usually the step is too long or the "
+            "run has become unstable. Set 'Method/Courant number' lower, or "
+            "'Time integration = explicit'.",
+          FailureKind::not_finite);
+      }
+    return control.last_step();
+  }
+
+
+
+  PressureSolver::PressureSolver(const MPI_Comm communicator)
+    : methods(std::make_unique<Methods>(communicator))
+  {}
+
+
+
+  PressureSolver::~PressureSolver() = default;
+
+
+
+  unsigned int
+  PressureSolver::solve(const PressureEquations &equations,
+                        const double             accuracy,
+                        std::vector<double>     &solution)
+  {
+    if (equations.n_all == 0)
+      return 0;
+    methods->set_values(equations);
+    for (std::uint32_t r = 0; r < equations.n; ++r)
+      {
+        methods->x[equations.first + r] = solution[r];
+        methods->b[equations.first + r] = equations.right_side[r];
+      }
+
+    const bool is_new = !methods->has_multigrid;
+    if (is_new)
+      methods->make_multigrid();
+    const unsigned int iterations = methods->iterate(accuracy);
+    if (is_new)
+      {
+        methods->iterations_when_new = iterations;
+        methods->more_iterations     = 0;
+      }
+    else if (iterations > methods->iterations_when_new)
+      methods->more_iterations += iterations - methods->iterations_when_new;
+    methods->has_multigrid = methods->more_iterations < iterations_of_making;
+
+    for (std::uint32_t r = 0; r < equations.n; ++r)
+      solution[r] = methods->x[equations.first + r];
+    return iterations;
+  }
+} // namespace limber

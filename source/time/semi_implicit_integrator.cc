@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/time/semi_implicit_integrator.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    // Of sqrt(h / g): half as much loses a percent of the height of a wave in
+    // each swing less, five times as much is unstable.
+    constexpr double share_of_swing = 0.2;
+
+    constexpr double growth = 1.5; // of steps, from one to the next
+  }                                // namespace
+
+
+
+  template <int dim>
+  SemiImplicitIntegrator<dim>::SemiImplicitIntegrator(
+    const RunParts<dim> &parts)
+    : Base(parts)
+    , pressure(parts, Base::boundaries)
+    , hourglass(std::size_t(parts.nodes.table.n()) * dim)
+    , remaps(!this->full_mass &&
+             std::any_of(parts.bodies.begin(),
+                         parts.bodies.end(),
+                         [](const auto &body) { return !body->implicit; }))
+  {}
+
+
+
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::reinit()
+  {
+    Base::reinit();
+    pressure.reinit();
+    hourglass.reinit(std::size_t(this->parts.nodes.table.n()) * dim);
+  }
+
+
+
+  template <int dim>
+  std::string
+  SemiImplicitIntegrator<dim>::effort() const
+  {
+    const auto &spent = pressure.effort();
+    return "implicit pressure: " +
+           brief(double(spent.iterations) / std::max(1ul, spent.steps)) +
+           " iterations a step, at most " +
+           std::to_string(spent.most_iterations);
+  }
+
+
+
+  // As an explicit step, but for the pressure of its end.
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::do_scheme()
+  {
+    this->p2g();
+    resist_hourglass();
+    this->damp();
+    this->add_loads();
+    this->advance_nodes();
+    solve_pressure();
+    this->apply_boundaries();
+    this->interpolate_hanging();
+    this->measure_nodes();
+    this->check_nodes();
+    if (remaps)
+      update_all();
+    else
+      update_liquids();
+  }
+
+
+
+  // The pressure belongs to the new velocity, which strains the liquids.
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::update_liquids()
+  {
+    account(Layout::velocity);
+    this->filter_velocity();
+    const double expected = energy_to_points();
+    this->g2p_update_stress_and_move();
+    this->parts.ledger.viscous += expected - energy_of_points();
+  }
+
+
+
+  // Solids in the scene are strained by the velocity that points give back.
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::update_all()
+  {
+    this->clear_remapped();
+    this->g2p_and_remap();
+    account(Layout::strain_velocity);
+    this->interpolate_hanging();
+    this->update_stress_and_move(this->step);
+  }
+
+
+
+  // What is kinetic after the increments of nodes with lumped mass have gone to
+  // the points, and less what is on record as removed on the way: points get
+  // less of those of short waves, as their full mass has it. In explicit steps
+  // these are too short for that to be seen.
+  template <int dim>
+  double
+  SemiImplicitIntegrator<dim>::energy_to_points() const
+  {
+    double result = energy_of_points();
+    for (const std::uint32_t node : this->parts.nodes.active_nodes())
+      {
+        const double *const record = this->parts.nodes.record(node);
+        if (!this->parts.nodes.owns(node))
+          continue;
+        for (int d = 0; d < dim; ++d)
+          result += record[Layout::mass] * record[Layout::increment + d] *
+                    (record[Layout::velocity + d] -
+                     0.5 * record[Layout::increment + d]);
+      }
+    return result;
+  }
+
+
+
+  // Of this rank, and what is on record as removed from it, J.
+  template <int dim>
+  double
+  SemiImplicitIntegrator<dim>::energy_of_points() const
+  {
+    double result = this->parts.ledger.transfer;
+    for (const auto &body : this->parts.bodies)
+      {
+        const PointView<dim> points = body->points.view();
+        for (int d = 0; d < dim; ++d)
+          for (std::size_t p = 0; p < points.size; ++p)
+            result += 0.5 * points.mass[p] * points.velocity[d][p] *
+                      points.velocity[d][p];
+      }
+    return result;
+  }
+
+
+
+  // The forces against hourglass motion, which are added to others, are kept.
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::resist_hourglass()
+  {
+    const auto add = [this](const double factor) {
+      for (const std::uint32_t node : this->parts.nodes.active_nodes())
+        for (int d = 0; d < dim; ++d)
+          hourglass[std::size_t(node) * dim + d] +=
+            factor * this->parts.nodes.record(node)[Layout::force + d];
+    };
+    for (const std::uint32_t node : this->parts.nodes.active_nodes())
+      std::fill_n(&hourglass[std::size_t(node) * dim], dim, 0.);
+    add(-1);
+    Base::resist_hourglass();
+    add(1);
+  }
+
+
+
+  // The heat of hourglass motion is on record as if the velocity did not change
+  // in the step.
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::account(const unsigned int velocity_after)
+  {
+    this->account_loads(velocity_after);
+    pressure.account(this->step, velocity_after);
+    for (const std::uint32_t node : this->parts.nodes.active_nodes())
+      if (this->parts.nodes.owns(node))
+        for (int d = 0; d < dim; ++d)
+          {
+            const double *const record = this->parts.nodes.record(node);
+            const double        before =
+              record[Layout::velocity + d] - record[Layout::increment + d];
+            this->parts.ledger.viscous -=
+              0.5 * this->step * hourglass[std::size_t(node) * dim + d] *
+              (record[velocity_after + d] - before);
+          }
+  }
+
+
+
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::solve_pressure()
+  {
+    pressure.solve(this->time + this->step,
+                   this->step,
+                   std::min(1., this->step / step_of_motion()));
+    this->lap(Verb::solve_pressure);
+  }
+
+
+
+  // In which points move by the Courant number in cells, and surface waves of
+  // the length of a cell do not swing far.
+  template <int dim>
+  double
+  SemiImplicitIntegrator<dim>::step_of_motion() const
+  {
+    const Problem<dim> &problem = this->parts.problem;
+    const double        h       = this->parts.grid.smallest_edge;
+    const double        gravity = problem.loads.gravity.norm();
+    return std::min(problem.method.courant_number * h /
+                      std::max(this->point_speed, 1e-300),
+                    share_of_swing * std::sqrt(h / std::max(gravity, 1e-300)));
+  }
+
+
+
+  template <int dim>
+  double
+  SemiImplicitIntegrator<dim>::longest_step() const
+  {
+    const Problem<dim> &problem = this->parts.problem;
+    const double        longest = Base::longest_step();
+    if (problem.method.time_step > 0)
+      return longest;
+    if (problem.loads.gravity.norm() > 0)
+      return std::min(longest, step_of_motion());
+    // Nothing says how fast it will become what other loads set in motion.
+    return std::min(longest,
+                    this->step > 0 ? growth * this->step :
+                                     pressure.time_of_sound());
+  }
+
+
+
+  template class SemiImplicitIntegrator<2>;
+  template class SemiImplicitIntegrator<3>;
+} // namespace limber

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+/**
+ * @file Semi-implicit steps: the pressure of a liquid is found together with
+ * the velocity that it leaves (ImplicitPressure).
+ */
+
+using namespace limber;
+
+namespace
+{
+  // Water in a vessel, on cells of 1 m
+  const std::string vessel = R"(
+    set Bodies = water
+    subsection Body water
+      subsection Box
+        set Upper corner = 4, 4
+      end
+      set Points per cell edge = 3
+      set Placement = cut
+      set Material = newtonian fluid
+      subsection Newtonian fluid
+        set Density = 1000
+        set Bulk modulus = 1e15
+      end
+      set Locking treatment = cell
+    end
+    subsection Grid
+      set Upper corner = 4, 6
+      set Cells = 4, 6
+    end
+    subsection Boundaries
+      set left = slip
+      set right = slip
+      set bottom = slip
+      set top = slip
+    end
+    subsection Method
+      set Time integration = semi-implicit
+    end)";
+
+  const std::string gravity = "Loads/Gravity=0, -10";
+} // namespace
+
+
+
+// From no pressure to that of rest in one step, wherever the surface cuts its
+// cells and however stiff the liquid is: rho g z at the middle of full cells,
+// half of it at the bottom of cells that are filled in part.
+TEST(ImplicitPressure, IsHydrostaticAfterOneStep)
+{
+  for (const double height : {2.05, 2.2, 2.37, 2.5, 2.77, 2.885, 2.95, 3.})
+    for (const std::string modulus : {"1e15", "2e9"})
+      {
+        SCOPED_TRACE(modulus + ", " + std::to_string(height));
+        SceneRun<2>         run(vessel,
+                        {gravity,
+                                 "Body water/Box/Upper corner=4, " + digits(height),
+                                 "Body water/Newtonian fluid/Bulk modulus=" + modulus});
+        std::vector<double> places;
+        for (const auto &place : run.positions())
+          places.push_back(place[1]);
+        run.advance(0.05);
+        // sound: the liquid gives way by rho g z / K in the step
+        const double tolerance = modulus == "1e15" ? 1e-7 : 1e-3;
+        // The placement counts what the surface cuts off by samples.
+        const auto   points = run.points();
+        const double top    = std::ceil(height) - 1;
+        double       volume = 0, in_top = 0, centre = 0;
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const double of_point = points.mass[p] / 1000;
+            volume += of_point;
+            if (places[run.bodies[0]->points.id(p)] > top)
+              {
+                in_top += of_point;
+                centre +=
+                  of_point * (places[run.bodies[0]->points.id(p)] - top);
+              }
+          }
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const double bottom =
+              std::floor(places[run.bodies[0]->points.id(p)]);
+            const double depth =
+              bottom < top ? volume / 4 - bottom - 0.5 : centre / in_top;
+            ASSERT_NEAR(points.pressure[p],
+                        1e4 * depth,
+                        1e4 * tolerance * height);
+            ASSERT_NEAR(points.velocity[1][p], 0, 10 * 0.05 * tolerance);
+          }
+      }
+}
+
+
+
+// What kinetic energy and the work of compression lose is on record but for the
+// residual of the solver.
+TEST(ImplicitPressure, AccountsForTheEnergyThatItTakes)
+{
+  for (const std::string gamma : {"0", "0.1", "1"})
+    {
+      SCOPED_TRACE(gamma);
+      SceneRun<2> run(vessel,
+                      {"Body water/Box/Lower corner=1.1, 1.1",
+                       "Body water/Box/Upper corner=2.9, 3.6",
+                       "Body water/Newtonian fluid/Bulk modulus=1e5",
+                       "Body water/Chequerboard control=" + gamma,
+                       "Body water/Initial velocity=sin(2*x)*y; cos(3*y)*x"});
+      const auto  kinetic_energy = [&]() {
+        double sum = 0;
+        for (std::size_t p = 0; p < run.points().size; ++p)
+          sum += 0.5 * run.points().mass[p] * run.velocity(p).norm_square();
+        return sum;
+      };
+      const double before = kinetic_energy();
+      run.advance(0.05);
+
+      // P^2/2K of the cells in which the points were
+      double compression = 0;
+      for (std::size_t p = 0; p < run.points().size; ++p)
+        compression += 0.5 * run.points().mass[p] / 1000 *
+                       std::pow(run.points().pressure[p], 2) / 1e5;
+      EXPECT_NEAR(kinetic_energy() + compression + run.ledger.viscous,
+                  before,
+                  1e-7 * before);
+      EXPECT_GT(compression, 0.01 * before);
+      EXPECT_LT(kinetic_energy(), 0.9 * before);
+    }
+}
+
+
+
+// The volume that the control of chequerboards moves between cells, and that
+// which the motion takes, sum up to what crosses the surface: J of all points
+// together follows the divergence of the nodes.
+TEST(ImplicitPressure, ChangesVolumeAsMuchAsPressure)
+{
+  SceneRun<2> run(vessel,
+                  {gravity,
+                   "Body water/Box/Upper corner=3.3, 3.6",
+                   "Body water/Newtonian fluid/Bulk modulus=1e6",
+                   "Body water/Initial velocity=sin(x); 0"});
+  for (unsigned int n = 0; n < 20; ++n)
+    {
+      run.advance(0.02);
+      // where all points of a cell have met the same motions, J p = K (1 - J)
+      if (n == 0)
+        {
+          std::vector<double> J(run.bodies[0]->points.size());
+          run.bodies[0]->stress->volume_ratio(run.points(), J.data());
+          for (std::size_t p = 0; p < J.size(); ++p)
+            ASSERT_NEAR(run.points().pressure[p], 1e6 * (1 - J[p]), 1e-2);
+        }
+    }
+  EXPECT_EQ(run.ledger.lost_points, 0u);
+}
+
+
+
+// A step as long as those of explicit runs gives what they give.
+TEST(ImplicitPressure, TendsToExplicitSteps)
+{
+  const std::vector<std::string> scene = {
+    gravity,
+    "Body water/Box/Upper corner=2, 3",
+    "Body water/Newtonian fluid/Bulk modulus=1e6",
+    "Body water/Hourglass control=0",
+    "Body water/Chequerboard control=0",
+    "Body water/Initial pressure=hydrostatic"};
+  const auto height = [&](const bool implicit, const double step) {
+    auto settings = scene;
+    settings.push_back(implicit ? "Method/Time integration=semi-implicit" :
+                                  "Method/Time integration=explicit");
+    settings.push_back("Method/Stress update=usl");
+    if (implicit)
+      settings.push_back("Body water/Density control=0");
+    SceneRun<2> run(vessel, settings);
+    run.advance(step, static_cast<unsigned int>(std::lround(0.2 / step)));
+    double sum = 0;
+    for (const auto &place : run.positions())
+      sum += place[1];
+    return sum / run.bodies[0]->points.size();
+  };
+  const auto distance = [&](const double step) {
+    return std::abs(height(true, step) - height(false, step));
+  };
+  const double coarse = distance(2e-3), fine = distance(5e-4);
+  EXPECT_LT(coarse, 1e-3);
+  EXPECT_LT(fine, 0.4 * coarse);
+}
+
+
+
+// A turning drop keeps its size: points follow curves, not tangents.
+TEST(ImplicitPressure, LetsAVortexTurn)
+{
+  SceneRun<2> run(vessel,
+                  {"Grid/Upper corner=2, 2",
+                   "Grid/Cells=16, 16",
+                   "Body water/Shape=ball",
+                   "Body water/Ball/Centre=1, 1",
+                   "Body water/Ball/Radius=0.6",
+                   "Body water/Newtonian fluid/Bulk modulus=2e9",
+                   "Body water/Initial velocity=-(y-1); x-1",
+                   "Boundaries/left=free",
+                   "Boundaries/right=free",
+                   "Boundaries/bottom=free",
+                   "Boundaries/top=free"});
+  const auto  radius_squared = [&]() {
+    double sum = 0;
+    for (std::size_t p = 0; p < run.bodies[0]->points.size(); ++p)
+      sum += (run.position(p) - dealii::Point<2>(1, 1)).norm_square();
+    return sum / run.bodies[0]->points.size();
+  };
+  const double before = radius_squared();
+  run.advance(0.04, 40);
+  EXPECT_NEAR(radius_squared() / before, 1, 0.02);
+}
