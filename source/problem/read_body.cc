@@ -84,8 +84,8 @@ namespace limber
         "auto",
         admissible::non_negative_number("0.5").or_word("auto"),
         "Dimensionless: rate, times h / c, at which a pressure per cell that "
-        "alternates from cell to cell, and so moves nothing, is evened out "
-        "without a change of volume; 'auto' is 0.5 for liquids with averages, "
+        "alternates from cell to cell (checkerboard), and so moves nothing, is "
+        "evened out without a change of volume; 'auto' is 0.5 for liquids with averages, "
         "else 0.");
       declare_word(parameters,
                    "History",
