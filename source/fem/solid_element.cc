@@ -485,9 +485,11 @@ namespace limber
     if (result == nullptr)
       throw InputError(
         "The material '" + body.law + "' in section 'Body " + body.name +
-        "' has no finite element reference: elements that move with the "
-        "material do not last in a liquid. Compare with a finer run, or set "
-        "'Material = neo hookean'.");
+        "' has no finite element reference: " +
+        (body.is_plastic ?
+           "its elements know elastic materials alone" :
+           "elements that move with the material do not last in a liquid") +
+        ". Compare with a finer run, or set 'Material = neo hookean'.");
     return result;
   }
 

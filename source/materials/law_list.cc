@@ -18,7 +18,12 @@ namespace limber
                             Law::text,
                             Law::takes_pressure,
                             Law::is_elastic,
-                            {Law::parameters.begin(), Law::parameters.end()}});
+                            Law::is_plastic,
+                            {Law::parameters.begin(), Law::parameters.end()},
+                            {}});
+        // those of the last variant, which has the most
+        result.back().variables.assign(Law::variables.begin(),
+                                       Law::variables.end());
       });
       return result;
     }();
@@ -27,21 +32,81 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Call work(law) with the law of that name for these values. */
+    template <class Work>
+    void
+    with_law(const std::string         &name,
+             const std::vector<double> &values,
+             const Work                &work)
+    {
+      for_each_law([&](auto *const candidate) {
+        using Law = std::remove_pointer_t<decltype(candidate)>;
+        std::array<double, Law::parameters.size()> own;
+        if (name != Law::name || values.size() != own.size())
+          return;
+        std::copy(values.begin(), values.end(), own.begin());
+        if (Law::accepts(own))
+          work(Law(own));
+      });
+    }
+  } // namespace
+
+
+
   Moduli
   moduli_of(const std::string &name, const std::vector<double> &values)
   {
     Moduli result;
+    with_law(name, values, [&](const auto &law) {
+      result = {law.bulk_modulus, law.shear_modulus};
+    });
+    return result;
+  }
+
+
+
+  std::vector<StateVariable>
+  variables_of(const std::string &name, const std::vector<double> &values)
+  {
+    std::vector<StateVariable> result;
+    with_law(name, values, [&](const auto &law) {
+      using Law = std::decay_t<decltype(law)>;
+      result.assign(Law::variables.begin(), Law::variables.end());
+    });
+    return result;
+  }
+
+
+
+  std::string
+  objection_to(const std::string &name, const std::vector<double> &values)
+  {
+    std::string result;
     for_each_law([&](auto *const candidate) {
       using Law = std::remove_pointer_t<decltype(candidate)>;
       std::array<double, Law::parameters.size()> own;
       if (name != Law::name || values.size() != own.size())
         return;
       std::copy(values.begin(), values.end(), own.begin());
-      if (!Law::accepts(own))
-        return;
-      const Law law(own);
-      result = {law.bulk_modulus, law.shear_modulus};
+      if (const char *const found = Law::objection(own))
+        result = found;
     });
+    return result;
+  }
+
+
+
+  std::vector<std::string>
+  names_of_variables()
+  {
+    std::vector<std::string> result;
+    for (const LawDescription &law : describe_laws())
+      for (const StateVariable &variable : law.variables)
+        if (std::find(result.begin(), result.end(), variable.name) ==
+            result.end())
+          result.push_back(variable.name);
     return result;
   }
 } // namespace limber

@@ -107,7 +107,10 @@ namespace limber
                      " J from sides, and as taken out " +
                      brief(figures.viscous) + " J by viscosity, " +
                      brief(figures.transfer) + " J by the transfer, " +
-                     brief(figures.history) + " J with histories";
+                     brief(figures.history) + " J with histories" +
+                     (figures.plastic > 0 ?
+                        ", " + brief(figures.plastic) + " J by plastic flow" :
+                        "");
       line.entry = "Method/Courant number";
       return line;
     }

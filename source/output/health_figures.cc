@@ -198,6 +198,7 @@ namespace limber
     figures.transfer     = totals.removed_by_transfer;
     figures.viscous      = totals.dissipated;
     figures.history      = totals.removed_with_history;
+    figures.plastic      = totals.plastic_work;
     figures.sides        = totals.boundary_work;
     figures.loads        = totals.load_work;
 

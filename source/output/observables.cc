@@ -53,10 +53,26 @@ namespace limber
 
 
 
+    /** On this rank. */
+    template <int dim>
+    double
+    largest_variable(const MaterialBody<dim> &body, const unsigned int k)
+    {
+      const double *const values  = body.variable(k);
+      double              largest = -std::numeric_limits<double>::infinity();
+      for (std::size_t p = 0; p < body.points.size(); ++p)
+        largest = std::max(largest, values[p]);
+      return largest;
+    }
+
+
+
     /** Of a point; nothing where it has been lost. */
     template <int dim>
     Seen<dim>
-    see(const PointSample<dim> &point, const dealii::Point<dim> &start)
+    see(const PointSample<dim>   &point,
+        const dealii::Point<dim> &start,
+        const Observable<dim>    &observable)
     {
       Seen<dim> seen;
       seen.known        = !point.lost;
@@ -66,6 +82,7 @@ namespace limber
       seen.stress       = point.stress;
       seen.pressure     = point.pressure;
       seen.volume_ratio = point.volume_ratio;
+      seen.variable     = point.variables[observable.variable];
       return seen;
     }
 
@@ -127,7 +144,8 @@ namespace limber
         const ObservedPart part = problem.observables[i].kind->looks_at;
         if (part == ObservedPart::material)
           with_stress[memory.tracked_of[i]] = true;
-        has_extremes |= part == ObservedPart::extent;
+        has_extremes |=
+          part == ObservedPart::extent || part == ObservedPart::largest;
       }
   }
 
@@ -200,12 +218,15 @@ namespace limber
         case ObservedPart::material:
           {
             const unsigned int t = memory.tracked_of[number];
-            return see(samples[t], points.points()[t].reference);
+            return see(samples[t], points.points()[t].reference, observable);
           }
         case ObservedPart::body:
           return see(totals_of(observable, totals));
         case ObservedPart::extent:
           seen.extent = extents[number];
+          return seen;
+        case ObservedPart::largest:
+          seen.variable = extents[number];
           return seen;
         case ObservedPart::side:
           seen.force = memory.side_force[observable.side];
@@ -218,7 +239,8 @@ namespace limber
 
 
 
-  // By observable: the largest coordinate in its direction, over all ranks.
+  // By observable: the largest coordinate in its direction, or the largest
+  // value of its variable, over all ranks.
   template <int dim>
   std::vector<double>
   Observables<dim>::extents(const State<dim> &state) const
@@ -228,13 +250,16 @@ namespace limber
     for (unsigned int i = 0; i < largest.size(); ++i)
       {
         const Observable<dim> &observable = problem.observables[i];
-        if (observable.kind->looks_at == ObservedPart::extent)
-          for (unsigned int b = 0; b < state.bodies.size(); ++b)
-            if (observable.body.empty() || b == body_index(observable.body))
-              largest[i] = std::max(largest[i],
-                                    extreme_of_body(*state.bodies[b],
-                                                    problem.grid,
-                                                    observable));
+        const ObservedPart     part       = observable.kind->looks_at;
+        if (part != ObservedPart::extent && part != ObservedPart::largest)
+          continue;
+        for (unsigned int b = 0; b < state.bodies.size(); ++b)
+          if (observable.body.empty() || b == body_index(observable.body))
+            largest[i] = std::max(
+              largest[i],
+              part == ObservedPart::extent ?
+                extreme_of_body(*state.bodies[b], problem.grid, observable) :
+                largest_variable(*state.bodies[b], observable.variable));
       }
     MPI_Allreduce(MPI_IN_PLACE,
                   largest.data(),

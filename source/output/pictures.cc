@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/support.h>
+#include <limber/materials/law_list.h>
 #include <limber/output/pictures.h>
 #include <limber/output/point_stress.h>
 
@@ -19,6 +20,8 @@ namespace limber
       const PointView<dim>     points;
       const PointStress<dim>  &stress;
       const unsigned int       number;
+      // By named variable that is drawn: an array of its values, or null
+      const std::vector<const double *> variables;
     };
 
 
@@ -210,10 +213,41 @@ namespace limber
             std::find_if(point_fields<dim>().begin(),
                          point_fields<dim>().end(),
                          [&](const auto &known) { return known.name == name; });
-          if (field == point_fields<dim>().end())
-            throw std::logic_error("no point field " + name);
-          result.push_back(*field);
+          if (field != point_fields<dim>().end())
+            result.push_back(*field);
         }
+      return result;
+    }
+
+
+
+    /** Those of them that are named variables of laws. */
+    std::vector<std::string>
+    chosen_variables(const std::vector<std::string> &names)
+    {
+      const auto               known = names_of_variables();
+      std::vector<std::string> result;
+      for (const std::string &name : names)
+        if (std::find(known.begin(), known.end(), name) != known.end())
+          result.push_back(name);
+      return result;
+    }
+
+
+
+    /** By name: where the body keeps it; null where it does not. */
+    template <int dim>
+    std::vector<const double *>
+    arrays_of(const MaterialBody<dim>        &body,
+              const std::vector<std::string> &names)
+    {
+      std::vector<const double *> result(names.size(), nullptr);
+      const auto                  own =
+        variables_of(body.description.law, body.description.material);
+      for (unsigned int i = 0; i < names.size(); ++i)
+        for (unsigned int k = 0; k < own.size(); ++k)
+          if (own[k].name == names[i])
+            result[i] = body.variable(k);
       return result;
     }
 
@@ -239,6 +273,8 @@ namespace limber
               for (unsigned int k = 0; k < field.n_components; ++k)
                 patch.data(component++, 0) = values[k];
             }
+          for (const double *const array : seen.variables)
+            patch.data(component++, 0) = array == nullptr ? 0 : array[p];
         }
     }
   } // namespace
@@ -263,6 +299,9 @@ namespace limber
     Picture<0, dim> picture;
     for (const PointField<dim> &field : fields)
       picture.fields.add(field.name, field.unit, field.n_components);
+    const auto variables = chosen_variables(state.problem.output.fields);
+    for (const std::string &name : variables)
+      picture.fields.add(name, "", 1);
 
     std::size_t n = 0;
     for (const auto &body : state.bodies)
@@ -274,7 +313,10 @@ namespace limber
       {
         const MaterialBody<dim> &body = *state.bodies[b];
         stress.compute(body);
-        add_body<dim>({body, body.points.view(), stress, b}, fields, picture);
+        add_body<dim>(
+          {body, body.points.view(), stress, b, arrays_of(body, variables)},
+          fields,
+          picture);
       }
     return picture;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/output/statistics.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -131,9 +132,23 @@ namespace limber
 
 
 
+  namespace
+  {
+    template <int dim>
+    bool
+    may_flow(const Problem<dim> &problem)
+    {
+      return std::any_of(problem.bodies.begin(),
+                         problem.bodies.end(),
+                         [](const auto &body) { return body.is_plastic; });
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<Column>
-  statistics_columns(const std::vector<Observable<dim>> &observables)
+  statistics_columns(const Problem<dim> &problem)
   {
     std::vector<Column> columns = {{"step", ""},
                                    {"time", "s"},
@@ -159,8 +174,10 @@ namespace limber
     columns.push_back({"smallest volume ratio", ""});
     columns.push_back({"largest volume ratio", ""});
     columns.push_back({"lost points", ""});
+    if (may_flow(problem))
+      columns.push_back({"plastic work", "J"});
 
-    for (const Observable<dim> &observable : observables)
+    for (const Observable<dim> &observable : problem.observables)
       columns.push_back({observable.name, observable.kind->unit});
     return columns;
   }
@@ -197,6 +214,8 @@ namespace limber
                 totals.smallest_volume,
                 totals.largest_volume,
                 static_cast<double>(totals.lost_points)});
+    if (may_flow(state.problem))
+      row.push_back(totals.plastic_work);
     row.insert(row.end(), observed.begin(), observed.end());
     return row;
   }
@@ -204,9 +223,9 @@ namespace limber
 
 
   template std::vector<Column>
-  statistics_columns(const std::vector<Observable<2>> &);
+  statistics_columns(const Problem<2> &);
   template std::vector<Column>
-  statistics_columns(const std::vector<Observable<3>> &);
+  statistics_columns(const Problem<3> &);
   template std::vector<double>
   statistics_row(const State<2> &,
                  const Totals<2> &,

@@ -229,6 +229,7 @@ namespace limber
     totals.lost_points          = ledger.lost_points;
     totals.dissipated           = ledger.viscous;
     totals.removed_with_history = ledger.history;
+    totals.plastic_work         = ledger.plastic;
     totals.boundary_work        = ledger.boundary_work;
     totals.load_work            = ledger.load_work;
     totals.side_impulse         = ledger.side_impulse;
@@ -252,7 +253,7 @@ namespace limber
     const double gain = (all.kinetic_energy - start.kinetic_energy) +
                         (all.strain_energy - start.strain_energy) +
                         potential_change + ledger.transfer + ledger.viscous +
-                        ledger.history + ledger.lost_energy -
+                        ledger.history + ledger.plastic + ledger.lost_energy -
                         ledger.boundary_work - ledger.load_work;
     start.energy_scale =
       std::max(start.energy_scale,

@@ -19,7 +19,8 @@ namespace limber
       static constexpr unsigned int volume   = 1 + 2 * dim;
       static constexpr unsigned int pressure = 2 + 2 * dim;
       static constexpr unsigned int deviator = 3 + 2 * dim;
-      static constexpr unsigned int stride   = 9 + 2 * dim;
+      static constexpr unsigned int variable = 9 + 2 * dim;
+      static constexpr unsigned int stride   = variable + max_variables;
     };
 
 
@@ -174,6 +175,10 @@ namespace limber
         record[T::pressure]            = stress.pressure(index[t]);
         const auto s                   = stress.deviator(index[t]);
         std::copy(s.begin_raw(), s.end_raw(), record + T::deviator);
+        const unsigned int n =
+          body.stress->n_history() - body.stress->first_variable();
+        for (unsigned int k = 0; k < n; ++k)
+          record[T::variable + k] = body.variable(k)[index[t]];
       }
     MPI_Allreduce(MPI_IN_PLACE,
                   records.data(),
@@ -232,6 +237,9 @@ namespace limber
         std::copy_n(record + T::deviator, 6, s.begin_raw());
         samples[t].stress =
           s - samples[t].pressure * dealii::unit_symmetric_tensor<3>();
+        std::copy_n(record + T::variable,
+                    max_variables,
+                    samples[t].variables.begin());
       }
     return samples;
   }

@@ -52,6 +52,15 @@ namespace limber
                          "p at time 0, Pa, positive in compression, only for "
                          "fluids; empty: none; hydrostatic: in balance with "
                          "gravity, zero at the highest place of the body.");
+      parameters.declare(
+        "Initial state",
+        "",
+        admissible::text("formulas of " + variable_names(dim) +
+                           " for variables of the material",
+                         "equivalent plastic strain: 0.01*x"),
+        "What the points of the material have been through before time 0: "
+        "'name: formula', several with ';' between them; variables that are "
+        "not named are zero. Materials without memory have none.");
     }
 
 
@@ -67,7 +76,7 @@ namespace limber
                    "see doc/theory.");
       declare_word(parameters,
                    "Hourglass response",
-                   "bending",
+                   "auto",
                    hourglass_words(),
                    "With the treatment 'assumed strain': how the normal "
                    "strains follow a motion that bends the cell.");
@@ -306,6 +315,53 @@ namespace limber
 
 
 
+    /** One part of 'Initial state', "name: formula". */
+    template <int dim>
+    void
+    read_variable(const std::string                &part,
+                  const std::vector<StateVariable> &variables,
+                  const Section                    &section,
+                  const Constants                  &constants,
+                  Body<dim>                        &body)
+    {
+      const std::string where = section.where("Initial state");
+      const std::size_t colon = part.find(':');
+      if (colon == std::string::npos)
+        throw InputError("The part " + in_quotes(part) + " in " + where +
+                         " has no ':' between a name and a formula. Write "
+                         "'equivalent plastic strain: 0.01', for instance.");
+      std::vector<std::string> names;
+      for (const StateVariable &variable : variables)
+        names.push_back(variable.name);
+      const std::string name = trimmed(part.substr(0, colon));
+      if (names.empty())
+        throw InputError("The variable " + in_quotes(name) + " in " + where +
+                         " has no meaning for the material " +
+                         in_quotes(section.text("Material")) +
+                         ", which has no memory. Usually the material was "
+                         "changed. Remove the entry.");
+      check_name("variable of the material", name, names, where);
+      const unsigned int k =
+        std::find(names.begin(), names.end(), name) - names.begin();
+      body.initial_state[k] =
+        Formula<dim>(part.substr(colon + 1), constants, 1, where);
+    }
+
+
+
+    template <int dim>
+    void
+    read_initial_state(const Section   &section,
+                       const Constants &constants,
+                       Body<dim>       &body)
+    {
+      const auto variables = variables_of(body.law, body.material);
+      for (const std::string &part : split(section.text("Initial state"), ';'))
+        read_variable(part, variables, section, constants, body);
+    }
+
+
+
     /**
      * Whether averages leave hourglass modes without resistance: all modes
      * where everything is averaged, or where the rest bears no load at rest;
@@ -350,6 +406,9 @@ namespace limber
       const Choice choice =
         fluid ? Choice{Projection::cell,
                        "'cell', as a liquid resists volume changes only."} :
+        !linear && body.is_plastic ?
+                Choice{Projection::node,
+                       "'node', as plastic flow keeps its volume."} :
         !linear && soft ?
                 Choice{Projection::none,
                        "'none', as smooth functions do not lock at this "
@@ -460,6 +519,10 @@ namespace limber
         body.treatment = automatic_treatment(body, fluid, problem);
       body.hourglass =
         read_word(section, "Hourglass response", hourglass_words());
+      // Elastic coefficients go on hardening where the material flows.
+      if (body.hourglass == HourglassResponse::automatic)
+        body.hourglass = body.is_plastic ? HourglassResponse::incompressible :
+                                           HourglassResponse::bending;
       body.hourglass_control =
         section.text("Hourglass control") != "auto" ?
           section.number("Hourglass control") :
@@ -513,8 +576,10 @@ namespace limber
                                            body.shape->bounding_box());
       read_material(section, body, problem);
       read_initial_pressure(section, constants, problem, body);
-      body.is_liquid =
-        read_word(section, "Material", law_words()).takes_pressure;
+      const LawDescription law = read_word(section, "Material", law_words());
+      body.is_liquid           = law.takes_pressure;
+      body.is_plastic          = law.is_plastic;
+      read_initial_state(section, constants, body);
       body.frame = read_word(section, "Frame", frame_words());
       return body;
     }

@@ -42,6 +42,8 @@ namespace limber
                                                          example)) :
         parameter.closed ? admissible::non_negative_number(example) :
                            admissible::positive_number(example);
+      if (parameter.required)
+        return result.or_empty();
       return words.empty() ? result : result.or_word(words);
     }
   } // namespace
@@ -56,6 +58,8 @@ namespace limber
         parameters.enter_subsection(law.section());
         for (const LawParameter &parameter : law.parameters)
           parameters.declare(parameter.name,
+                             parameter.required ?
+                               std::string() :
                              is_choice(parameter) ?
                                split(parameter.words,
                                      '|')[std::size_t(parameter.standard)] :
@@ -168,6 +172,11 @@ namespace limber
       body.material.push_back(own.text(parameter.name) == "auto" ?
                                 automatic_bulk_modulus(own, body, problem) :
                                 read_value(own, parameter));
+    if (const std::string objection = objection_to(law.name, body.material);
+        !objection.empty())
+      throw InputError("In the section " + in_quotes(law.section()) +
+                       " of body " + in_quotes(body.name) + " " + objection +
+                       ".");
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -136,6 +137,30 @@ namespace limber
 
 
 
+  namespace
+  {
+    std::vector<std::string>
+    field_words()
+    {
+      std::vector<std::string> words = {"displacement",
+                                        "velocity",
+                                        "pressure",
+                                        "stress",
+                                        "equivalent stress",
+                                        "volume ratio",
+                                        "mass",
+                                        "point pressure",
+                                        "point stress",
+                                        "body"};
+      for (const std::string &variable : names_of_variables())
+        words.push_back(variable);
+      words.push_back("none");
+      return words;
+    }
+  } // namespace
+
+
+
   void
   declare_output(Parameters &parameters)
   {
@@ -155,21 +180,13 @@ namespace limber
                        "statistics.");
     parameters.declare("Fields",
                        "displacement, velocity, pressure",
-                       admissible::some_of({"displacement",
-                                            "velocity",
-                                            "pressure",
-                                            "stress",
-                                            "equivalent stress",
-                                            "volume ratio",
-                                            "mass",
-                                            "point pressure",
-                                            "point stress",
-                                            "body",
-                                            "none"}),
+                       admissible::some_of(field_words()),
                        "What is written with the points. Pressure is positive "
                        "in compression, stress in tension (Cauchy). They are "
                        "those that act after the locking treatment; 'point "
-                       "pressure' and 'point stress' are those before it.");
+                       "pressure' and 'point stress' are those before it. "
+                       "Variables of materials with a memory go by their "
+                       "names; they are zero in other bodies.");
     parameters.declare("Point arrays",
                        "false",
                        admissible::flag(),

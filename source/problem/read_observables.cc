@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
 
 #include <algorithm>
@@ -99,6 +100,11 @@ namespace limber
                          "",
                          admissible::one_of(side_names(dim)).or_empty(),
                          "For reaction force: the side of the grid.");
+      parameters.declare("Variable",
+                         "",
+                         admissible::one_of(names_of_variables()).or_empty(),
+                         "For state variable: which of those that the "
+                         "material of the body keeps.");
       parameters.leave_subsection();
     }
   } // namespace
@@ -127,8 +133,13 @@ namespace limber
                                const std::string              &entry) {
         return std::find(list.begin(), list.end(), entry) != list.end();
       };
-      for (const std::string entry :
-           {"Body", "Location", "Direction", "Within", "Observable", "Side"})
+      for (const std::string entry : {"Body",
+                                      "Location",
+                                      "Direction",
+                                      "Within",
+                                      "Observable",
+                                      "Side",
+                                      "Variable"})
         if (contains(kind.required, entry))
           section.required_text(entry);
         else if (!contains(kind.optional, entry) && !section.is_empty(entry))
@@ -244,6 +255,44 @@ namespace limber
 
 
     template <int dim>
+    void
+    read_variable(const Section      &section,
+                  const Problem<dim> &problem,
+                  Observable<dim>    &observable)
+    {
+      if (section.is_empty("Variable"))
+        return;
+      if (observable.body.empty())
+        {
+          if (problem.bodies.size() > 1)
+            throw InputError("No body is named in " + section.where("Body") +
+                             ", but the scene has several, and the name of a "
+                             "variable belongs to the material of one. Write "
+                             "'set Body = " +
+                             problem.bodies.front().name + "', for instance.");
+          observable.body = problem.bodies.front().name;
+        }
+      const auto body      = std::find_if(problem.bodies.begin(),
+                                     problem.bodies.end(),
+                                     [&](const Body<dim> &candidate) {
+                                       return candidate.name == observable.body;
+                                     });
+      const auto variables = variables_of(body->law, body->material);
+      while (observable.variable < variables.size() &&
+             variables[observable.variable].name != section.text("Variable"))
+        ++observable.variable;
+      if (observable.variable == variables.size())
+        throw InputError("The variable " + in_quotes(section.text("Variable")) +
+                         " in " + section.where("Variable") +
+                         " is none of the material " + in_quotes(body->law) +
+                         " of body " + in_quotes(body->name) +
+                         ". Usually the material was changed. Remove the "
+                         "observable, or name another body.");
+    }
+
+
+
+    template <int dim>
     Observable<dim>
     read_observable(const Section      &section,
                     const std::string  &name,
@@ -257,6 +306,7 @@ namespace limber
       read_location(section, problem.grid, observable);
       read_direction(section, observable);
       read_within(section, observable);
+      read_variable(section, problem, observable);
       observable.observable = section.text("Observable");
       if (!section.is_empty("Side"))
         observable.side = side_index(section.text("Side"));

@@ -195,6 +195,9 @@ namespace limber
   hourglass_words()
   {
     static const Words<HourglassResponse> words = {
+      {"auto",
+       HourglassResponse::automatic,
+       "'incompressible' if the material flows plastically, else 'bending'"},
       {"bending",
        HourglassResponse::bending,
        "as a beam bends, from the moduli of the material"},

@@ -202,6 +202,8 @@ namespace limber
           seen.strain_energy    = totals.strain.strain_energy;
           seen.potential_energy = totals.gravitational_energy;
           return seen;
+        case ObservedPart::largest: // elastic materials keep no variables
+          return seen;
         case ObservedPart::extent:
           seen.extent = extreme(observable);
           return seen;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/base/text.h>
 #include <limber/interpolation/basis.h>
+#include <limber/materials/law_list.h>
 #include <limber/points/seeding.h>
+#include <limber/problem/read_parts.h>
 #include <limber/simulation/set_up.h>
 
 #include <algorithm>
@@ -65,6 +68,36 @@ namespace limber
 
 
 
+    /** What the point has been through, by the formulas of the scene. */
+    template <int dim>
+    void
+    set_initial_variables(const dealii::Point<dim> &place,
+                          const std::size_t         p,
+                          MaterialBody<dim>        &body)
+    {
+      const Body<dim> &scene = body.description;
+      if (scene.initial_state.empty())
+        return;
+      const auto           variables = variables_of(scene.law, scene.material);
+      const PointView<dim> points    = body.points.view();
+      for (const auto &[k, formula] : scene.initial_state)
+        {
+          const StateVariable &variable = variables[k];
+          const double         value    = formula.value(place, 0);
+          if (!(value >= variable.lowest))
+            throw InputError(
+              "The variable " + in_quotes(variable.name) + " of body " +
+              in_quotes(scene.name) + " is " + brief(value) + " at the place " +
+              to_text(place) + " by 'Body " + scene.name +
+              "/Initial state', where it is at least " +
+              brief(variable.lowest) +
+              ". Usually a formula has the wrong sign. Correct it there.");
+          points.history[body.stress->first_variable() + k][p] = value;
+        }
+    }
+
+
+
     template <int dim>
     void
     set_initial_state(const Problem<dim> &problem, MaterialBody<dim> &body)
@@ -79,6 +112,7 @@ namespace limber
             points,
             p,
             initial_pressure(problem, body.description, *body.stress, place));
+          set_initial_variables(place, p, body);
           if (body.description.initial_velocity.empty())
             continue;
           const auto velocity =

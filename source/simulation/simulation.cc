@@ -86,7 +86,7 @@ namespace limber
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
       {
         const std::string path    = problem.output.directory + "/statistics";
-        const auto        columns = statistics_columns(problem.observables);
+        const auto        columns = statistics_columns(problem);
         if (resumed)
           statistics.emplace(path, resumed->statistics_length, columns.size());
         else

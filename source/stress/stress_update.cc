@@ -23,6 +23,8 @@ namespace limber
       result.kind = kind;
       switch (response)
         {
+          case HourglassResponse::automatic:
+            throw std::logic_error("no hourglass response chosen");
           case HourglassResponse::bending:
             result.own            = 1;
             result.mate           = -(K - 2. / 3. * G) / (K + 4. / 3. * G);

@@ -230,6 +230,7 @@ namespace limber
         parts.ledger.transfer += found.removed;
         parts.ledger.viscous += found.viscous;
         parts.ledger.history += found.history;
+        parts.ledger.plastic += found.plastic;
       }
   }
 

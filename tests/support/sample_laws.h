@@ -34,6 +34,17 @@ namespace limber
                   {{1000, 2e5, mu, 0, 1, 7}},
                   {{800, 1e6, mu, 0, 1, 1.4}}};
         }
+      else if constexpr (std::is_same_v<Law, J2>)
+        return {{{1000, 1e6, 0.3, 5e4, 0, 0, 10}},
+                {{1200, 2e5, 0.49, 4e3, 1e4, 0, 10}},
+                {{8900, 3e6, 0.2, 2e5, 1e3, 1e5, 20}}};
+      else if constexpr (std::is_same_v<Law, DruckerPrager<false>>)
+        return {{{2000, 1e6, 0.3, 30, 0, 0, 0, 0}},
+                {{1500, 2e6, 0.2, 20, 5e4, 0, 3e4, 1}},
+                {{1800, 5e5, 0.45, 0, 2e4, 0, 1e4, 0}}};
+      else if constexpr (std::is_same_v<Law, DruckerPrager<true>>)
+        return {{{2000, 1e6, 0.3, 30, 0, 10, 0, 0}},
+                {{1500, 2e6, 0.2, 25, 5e4, 25, 1e9, 2}}};
       else
         {
           std::array<double, Law::parameters.size()> defaults;

@@ -16,11 +16,30 @@ namespace limber
   struct LawParameter
   {
     const char *name;
-    double      standard;        // default
-    double      lowest, highest; // open interval, or closed where admitted
-    bool        closed;          // the bounds themselves are admissible
-    const char *text;            // symbol, meaning, unit, formula
-    const char *words = "";      // "false|true": a choice instead of a number
+    double      standard;         // default
+    double      lowest, highest;  // open interval, or closed where admitted
+    bool        closed;           // the bounds themselves are admissible
+    const char *text;             // symbol, meaning, unit, formula
+    const char *words    = "";    // "false|true": a choice instead of a number
+    bool        required = false; // no default: the scene has to say it
+  };
+
+
+
+  /** The largest number of variables that a law may have names for. */
+  inline constexpr unsigned int max_variables = 4;
+
+
+
+  /**
+   * A number that a point of a law keeps and that a scene may name: it is
+   * drawn, observed and given at the start.
+   */
+  struct StateVariable
+  {
+    const char *name;
+    const char *unit;
+    double      lowest; // admissible at the start, this value included
   };
 
 
@@ -34,8 +53,11 @@ namespace limber
     // all there is to say about its initial state.
     bool takes_pressure;
     // Whether the stress follows from the deformation alone.
-    bool                      is_elastic;
-    std::vector<LawParameter> parameters; // the first is the density
+    bool is_elastic;
+    // Whether it flows, so that no elastic coefficients hold for its strain.
+    bool                       is_plastic;
+    std::vector<LawParameter>  parameters; // the first is the density
+    std::vector<StateVariable> variables;
 
     /** The section of the scene that holds the entries. */
     std::string

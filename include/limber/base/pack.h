@@ -347,6 +347,36 @@ namespace limber
 
 
 
+  /**
+   * e^a to two units in the last place where that is a normal number; for
+   * smaller and larger a the value at the end of that range. With a = n ln 2 +
+   * r, 2^n times the series of e^r up to r^13.
+   */
+  template <class Number>
+  inline Number
+  exponential(const Number &a)
+  {
+    using Bits       = internal::Bits<Number>;
+    const Number low = broadcast<Number>(-708.), high = broadcast<Number>(709.);
+    const Number x = a < low ? low : a > high ? high : a;
+    // An integer in the last digits of 1.5 2^52 is that number of units.
+    constexpr double units    = 6755399441055744.;
+    const Number     shifted  = x * 1.4426950408889634 + units;
+    const Number     n        = shifted - units;
+    constexpr double ln2_high = 0x1.62e42fefa38p-1;
+    constexpr double ln2_low  = 0x1.ef35793c7673p-45;
+    const Number     r        = (x - n * ln2_high) - n * ln2_low;
+    Number           series   = broadcast<Number>(1.);
+#pragma GCC unroll 16
+    for (int k = 13; k >= 1; --k)
+      series = 1. + series * r * (1. / k);
+    const Bits bits = internal::same_bits<Bits>(shifted);
+    return series * internal::same_bits<Number>(
+                      (bits - 0x4338000000000000LL + 1023) << 52);
+  }
+
+
+
   /** Whether a comparison of packs holds in every lane. */
   template <class Mask>
   inline bool

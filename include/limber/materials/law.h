@@ -3,6 +3,7 @@
 #define limber_materials_law_h
 
 #include <limber/base/expected.h>
+#include <limber/base/law_parameter.h>
 #include <limber/base/pack.h>
 #include <limber/base/small_matrix.h>
 
@@ -123,7 +124,8 @@ namespace limber
   struct Dissipation
   {
     Number viscous{};
-    Number cutoff{}; // removed together with tension
+    Number cutoff{};  // removed together with tension
+    Number plastic{}; // work of the stress on plastic strain, never negative
   };
 
 
@@ -203,9 +205,13 @@ namespace limber
    *    what its section holds, the density first; takes_pressure, whether a
    *    body may start under pressure;
    *  - n_history<dim>, how many doubles a point keeps besides the stress;
+   *  - variables, those of them that the scene may name: the last ones, in this
+   *    order;
    *  - has_deviator, whether it bears shear;
    *  - uses_spin, whether it looks at the skew part of the motion;
    *  - dissipates, whether update() may return dissipated energy;
+   *  - objection(), what is wrong with parameters that are admissible one by
+   *    one, as the end of a sentence; null where nothing is;
    *  - accepts(), whether this variant of a law serves given parameters;
    *  - has_constant_wave_speed(), whether it is the same in every state;
    *  - bulk_modulus, shear_modulus at rest, Pa;
@@ -219,7 +225,9 @@ namespace limber
    *  - initialise(): the state at rest under a given pressure;
    *  - volume_ratio(), strain_energy(), volumetric_energy(),
    *    wave_speed_squared() of a state; dynamic_viscosity();
-   *  - is_elastic, whether the stress follows from the deformation alone.
+   *  - is_elastic, whether the stress follows from the deformation alone;
+   *  - is_plastic, whether it flows plastically: elastic coefficients then say
+   *    nothing about its strain, and update() returns plastic work.
    *
    * An elastic law has besides
    *  - finite_strain: whether the measure of volume is J = det F and forces
@@ -242,7 +250,24 @@ namespace limber
     static_assert(Law::volumetric >= -1 &&
                     Law::volumetric < Law::template n_history<2>,
                   "the volumetric variable is one of the history variables");
+    static_assert(Law::volumetric <
+                    Law::template n_history<2> - int(Law::variables.size()),
+                  "the named variables are the last ones of the history");
+    static_assert(Law::variables.size() <= max_variables,
+                  "more names than 'max_variables' has room for");
+    static_assert(!Law::is_plastic || (Law::dissipates && !Law::is_elastic),
+                  "what flows dissipates, by plastic work alone");
   };
+
+
+
+  /** The index in the history of a law of its named variable @p k. */
+  template <int dim, class Law>
+  inline constexpr int
+  index_of_variable(const int k)
+  {
+    return Law::template n_history<dim> - int(Law::variables.size()) + k;
+  }
 } // namespace limber
 
 #endif

@@ -2,6 +2,8 @@
 #ifndef limber_materials_law_list_h
 #define limber_materials_law_list_h
 
+#include <limber/materials/drucker_prager.h>
+#include <limber/materials/j2.h>
 #include <limber/materials/linear_elastic.h>
 #include <limber/materials/neo_hookean.h>
 #include <limber/materials/newtonian_fluid.h>
@@ -21,7 +23,10 @@ namespace limber
   using LawList = std::tuple<LinearElastic,
                              NeoHookean,
                              NewtonianFluid<false>,
-                             NewtonianFluid<true>>;
+                             NewtonianFluid<true>,
+                             J2,
+                             DruckerPrager<false>,
+                             DruckerPrager<true>>;
 
 
 
@@ -57,6 +62,21 @@ namespace limber
   /** Of the law of that name; @p values in the order of its entries. */
   Moduli
   moduli_of(const std::string &law, const std::vector<double> &values);
+
+  /**
+   * What a point of that law keeps under a name: the last entries of its
+   * history, in this order.
+   */
+  std::vector<StateVariable>
+  variables_of(const std::string &law, const std::vector<double> &values);
+
+  /** What is wrong with these values together; empty where nothing is. */
+  std::string
+  objection_to(const std::string &law, const std::vector<double> &values);
+
+  /** The names of the variables of all laws, each once. */
+  std::vector<std::string>
+  names_of_variables();
 
 
 

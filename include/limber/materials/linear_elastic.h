@@ -26,6 +26,8 @@ namespace limber
        law_parameters::young_modulus,
        law_parameters::poisson_ratio}};
 
+    static constexpr std::array<StateVariable, 0> variables{};
+
     template <int>
     static constexpr int  n_history      = 0;
     static constexpr bool has_deviator   = true;
@@ -34,6 +36,7 @@ namespace limber
     static constexpr bool dissipates     = false;
     static constexpr int  volumetric     = -1;
     static constexpr bool is_elastic     = true;
+    static constexpr bool is_plastic     = false;
     static constexpr bool finite_strain  = false;
 
     template <int dim, class Number>
@@ -44,6 +47,12 @@ namespace limber
       , bulk_modulus(values[1] / (3 * (1 - 2 * values[2])))
       , shear_modulus(values[1] / (2 * (1 + values[2])))
     {}
+
+    static const char *
+    objection(const std::array<double, 3> &)
+    {
+      return nullptr;
+    }
 
     /** Whether this variant of the law serves these parameters. */
     static bool

@@ -52,6 +52,8 @@ namespace limber
                     "linear|tait"},
        LawParameter{"Tait exponent", 7, 0, 100, false, "gamma, for tait"}}};
 
+    static constexpr std::array<StateVariable, 0> variables{};
+
     template <int>
     static constexpr int  n_history      = 1;
     static constexpr bool has_deviator   = viscous;
@@ -60,6 +62,7 @@ namespace limber
     static constexpr bool dissipates     = true;
     static constexpr int  volumetric     = 0;
     static constexpr bool is_elastic     = false;
+    static constexpr bool is_plastic     = false;
 
     template <int dim, class Number>
     using State = PointState<dim, Number, 1>;
@@ -73,6 +76,12 @@ namespace limber
       , tait(values[4] != 0 && values[5] != 1)
       , exponent(values[5])
     {}
+
+    static const char *
+    objection(const std::array<double, 6> &)
+    {
+      return nullptr;
+    }
 
     /** Whether this variant of the law serves these parameters. */
     static bool

@@ -195,6 +195,7 @@ namespace limber
   /** The strain that an hourglass mode gets under the assumed strain. */
   enum class HourglassResponse
   {
+    automatic,     // to be chosen from the law when the scene is read
     bending,       // that of a beam in bending, from the moduli of the law
     deviatoric,    // the deviator of its own, in the plane of the mode
     incompressible // no change of volume

@@ -66,10 +66,13 @@ namespace limber
 
 
 
-  /** The fixed columns, then the observables. */
+  /**
+   * The fixed columns, the plastic work where a body may flow, then the
+   * observables.
+   */
   template <int dim>
   std::vector<Column>
-  statistics_columns(const std::vector<Observable<dim>> &observables);
+  statistics_columns(const Problem<dim> &problem);
 
   /** The numbers for these columns. */
   template <int dim>

@@ -4,8 +4,10 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
+#include <limber/base/law_parameter.h>
 #include <limber/output/point_stress.h>
 
+#include <array>
 #include <map>
 #include <vector>
 
@@ -33,6 +35,8 @@ namespace limber
     double                        volume_ratio = 1; // J
     double                        pressure = 0; // Cauchy, as PointStress, Pa
     dealii::SymmetricTensor<2, 3> stress;       // Cauchy, Pa
+    // Those that the law has names for, in its order
+    std::array<double, max_variables> variables{};
   };
 
 

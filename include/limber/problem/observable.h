@@ -37,6 +37,8 @@ namespace limber
     std::optional<std::pair<dealii::Point<dim>, dealii::Point<dim>>> within;
     std::string  observable; // frequency: of which other observable
     unsigned int side = 0;   // reaction force
+    // state variable: by its number among those of the law of the body
+    unsigned int variable = 0;
   };
 
 
@@ -45,9 +47,10 @@ namespace limber
   enum class ObservedPart
   {
     place,    // where the material of a place has gone, and how fast
-    material, // the same, and its stress and volume
+    material, // the same, its stress, volume and variables of its law
     body,     // sums over a body, or over all
     extent,   // how far a body, or all, reach in the direction
+    largest,  // the largest value of a variable in the points of a body
     side,     // the force on a side of the box
     column    // another observable, over time
   };
@@ -74,6 +77,8 @@ namespace limber
     dealii::SymmetricTensor<2, 3> stress;       // Cauchy, Pa
     double                        pressure     = not_known; // Pa
     double                        volume_ratio = not_known;
+    // The named one of the law; of 'largest' that of all points
+    double variable = not_known;
     // Body; gravitational energy is -sum of m g.x
     double                 mass = 0;             // kg
     dealii::Tensor<1, dim> momentum;             // kg m/s

@@ -15,6 +15,7 @@
 
 #include <array>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -119,7 +120,12 @@ namespace limber
     std::string         law;      // by name, as in the list of laws
     std::vector<double> material; // its entries, in its order
 
-    bool is_liquid = false; // bears pressure, but no shape of its own
+    bool is_liquid  = false; // bears pressure, but no shape of its own
+    bool is_plastic = false; // may flow plastically
+
+    // By number of the law's variables: 1 component each; those not given are
+    // absent
+    std::map<unsigned int, Formula<dim>> initial_state;
 
     Frame             frame             = Frame::current;
     Projection        treatment         = Projection::none;

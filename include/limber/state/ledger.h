@@ -23,6 +23,7 @@ namespace limber
     double load_work     = 0; // by body force formulas and face loads
     double viscous       = 0; // turned into heat by viscosity and damping
     double history       = 0; // removed with volumetric history or tension
+    double plastic       = 0; // work on plastic strain
 
     // Body force formulas, face loads and damping
     dealii::Tensor<1, dim> load_impulse;

@@ -52,6 +52,13 @@ namespace limber
     // Of an implicit pressure, by cell; only where the body has one
     std::optional<ImplicitFields> implicit = {};
 
+    /** Of the named variable @p k of the law, by points. */
+    const double *
+    variable(const unsigned int k) const
+    {
+      return points.view().history[stress->first_variable() + k];
+    }
+
     /** Forget all sums and means, of a mesh that has changed. */
     void
     reinit_sums(const BackgroundGrid<dim> &grid)

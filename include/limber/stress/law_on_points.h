@@ -91,6 +91,12 @@ namespace limber
       return Law::template n_history<dim>;
     }
 
+    unsigned int
+    first_variable() const override
+    {
+      return index_of_variable<dim, Law>(0);
+    }
+
     bool
     has_deviator() const override
     {
@@ -142,7 +148,7 @@ namespace limber
     /** What a sweep finds while it strains points, by lanes. */
     struct Findings
     {
-      PointPack<dim> waves{}, viscous{}, removed{};
+      PointPack<dim> waves{}, viscous{}, removed{}, plastic{};
     };
 
     /**
@@ -168,7 +174,9 @@ namespace limber
       change(state, mass);
 
       const auto dissipation = law.template update<dim>(motion, state);
-      if constexpr (Law::dissipates)
+      if constexpr (Law::is_plastic)
+        found.plastic += mass * inverse_density * dissipation.plastic;
+      else if constexpr (Law::dissipates)
         {
           found.viscous += mass * inverse_density * dissipation.viscous;
           found.removed += mass * inverse_density * dissipation.cutoff;
@@ -193,6 +201,7 @@ namespace limber
                         law.template wave_speed_squared<dim>(State<double>{});
       result.viscous = sum(found.viscous);
       result.history = sum(found.removed);
+      result.plastic = sum(found.plastic);
       return result;
     }
 

@@ -77,6 +77,7 @@ namespace limber
     double wave_speed_squared = 0; // the largest, m^2/s^2
     double viscous            = 0; // dissipated by viscosity, J
     double history            = 0; // removed with history or tension, J
+    double plastic            = 0; // work on plastic strain, J
     double displacement       = 0; // the largest over the edge of its cell
     // where points take their velocities
     double speed_squared = 0; // the largest, m^2/s^2
@@ -178,6 +179,9 @@ namespace limber
 
     virtual unsigned int
     n_history() const = 0;
+    /** Where the variables that have names begin in the history. */
+    virtual unsigned int
+    first_variable() const = 0;
     virtual bool
     has_deviator() const = 0;
     /** Index of the volumetric history variable; -1: the pressure. */

@@ -21,8 +21,14 @@ namespace
     using Law                = typename Case::Law;
     using State              = typename Case::State;
 
-    static constexpr bool linear    = std::is_same_v<Law, LinearElastic>;
-    static constexpr bool fluid     = Law::dissipates;
+    static constexpr bool linear  = std::is_same_v<Law, LinearElastic>;
+    static constexpr bool fluid   = Law::dissipates && !Law::is_plastic;
+    static constexpr bool plastic = Law::is_plastic;
+    // Whether the pressure says how much shear stress there may be, and none
+    // is borne without it.
+    static constexpr bool frictional =
+      std::is_same_v<Law, DruckerPrager<false>> ||
+      std::is_same_v<Law, DruckerPrager<true>>;
     static constexpr bool pointwise = Law::volumetric < 0;
 
     static double
@@ -70,6 +76,15 @@ namespace
         return state.history[Law::volumetric];
     }
 
+    /** Whether the material bears nothing at all, as sand that was pulled. */
+    static bool
+    parted(const Law &, const State &state)
+    {
+      if constexpr (frictional)
+        return state.history[index_of_variable<dim, Law>(1)] > 0;
+      return false;
+    }
+
     Random random;
   };
 
@@ -86,7 +101,9 @@ TYPED_TEST(EveryLaw, SamplesAreServedByThisVariant)
 
 
 
-// dW = J sigma : grad v dt; of a viscous fluid only pressure stores energy.
+// dW = J sigma : grad v dt; of a viscous fluid only pressure stores energy,
+// and with plastic flow its work is the rest. That is known to second order of
+// a step, so that its two sides leave an error of first order in h.
 TYPED_TEST(EveryLaw, StressIsTheDerivativeOfStrainEnergy)
 {
   constexpr int dim = TestFixture::dim;
@@ -96,10 +113,13 @@ TYPED_TEST(EveryLaw, StressIsTheDerivativeOfStrainEnergy)
         const auto state = random_state<TypeParam>(law, this->random);
         const auto a     = this->random.template matrix<dim>();
 
-        const double h      = 1e-5;
+        const double h      = this->plastic ? 1e-8 : 1e-5;
         const auto   energy = [&](const double t) {
-          return law.template strain_energy<dim>(
-            this->moved(law, state, this->times(t, a)));
+          auto         now = state;
+          const double work =
+            law.template update<dim>(motion_of<dim>(this->times(t, a)), now)
+              .plastic;
+          return law.template strain_energy<dim>(now) + work;
         };
         // The first step of a central difference of second order in h
         EXPECT_NEAR((energy(h) - energy(-h)) / (2 * h),
@@ -120,9 +140,13 @@ TYPED_TEST(EveryLaw, EnergyIsZeroAtRestAndPositiveElsewhere)
                   0.,
                   1e-15 * this->stiffness(law));
       for (int k = 0; k < 20; ++k)
-        EXPECT_GT(law.template strain_energy<dim>(
-                    random_state<TypeParam>(law, this->random)),
-                  0.);
+        {
+          const auto state = random_state<TypeParam>(law, this->random);
+          if (!this->parted(law, state))
+            {
+              EXPECT_GT(law.template strain_energy<dim>(state), 0.);
+            }
+        }
     }
 }
 
@@ -296,6 +320,12 @@ TYPED_TEST(EveryLaw, WaveSpeedAtRestIsThatOfTheModuli)
       double       modulus = law.bulk_modulus;
       if constexpr (!TestFixture::fluid)
         modulus += 4. / 3. * law.shear_modulus;
+      // what is frictional bears nothing at rest, and adds to the bound
+      if (TestFixture::frictional)
+        {
+          EXPECT_GE(squared, modulus / law.density);
+          continue;
+        }
       EXPECT_DOUBLE_EQ(squared, modulus / law.density);
 
       const double h = 1e-5;
@@ -369,6 +399,9 @@ TYPED_TEST(EveryLaw, InitialStateIsAtRestUnderThePressure)
   for (const auto &law : samples<typename TestFixture::Law>())
     for (const double ratio : {-0.05, 0., 1e-6, 0.03, 0.4})
       {
+        // tension may be more than the material bears
+        if (TestFixture::frictional && ratio < 0)
+          continue;
         const double pressure = ratio * law.bulk_modulus;
         auto         state    = law.template initialise<dim>(pressure);
         const double J        = law.template volume_ratio<dim>(state);
@@ -421,10 +454,13 @@ TYPED_TEST(EveryLaw, VolumetricEnergyBelongsToThePressure)
 
 
 
-// Averages over cells replace the volumetric part of the motion only.
+// Averages over cells replace the volumetric part of the motion only. Where
+// strength follows the pressure, the deviator does as well.
 TYPED_TEST(EveryLaw, VolumetricMotionActsOnThePressureAlone)
 {
   constexpr int dim = TestFixture::dim;
+  if (TestFixture::frictional)
+    return;
   for (const auto &law : samples<typename TestFixture::Law>())
     {
       const auto before = random_state<TypeParam>(law, this->random);
@@ -558,6 +594,11 @@ TYPED_TEST(EveryLaw, DeviatoricStrainIsTheWholeDeviatoricHistory)
           again.pressure    = state.pressure;
           if constexpr (!TestFixture::pointwise)
             again.history[Law::volumetric] = state.history[Law::volumetric];
+          for (unsigned int i = 0; i < Law::variables.size(); ++i)
+            {
+              const int j      = index_of_variable<dim, Law>(i);
+              again.history[j] = state.history[j];
+            }
           law.template set_deviatoric_strain<dim>(again, strain);
           const double scale = this->stiffness(law);
           EXPECT_NEAR(again.pressure, state.pressure, 1e-13 * scale);

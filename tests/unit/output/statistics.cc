@@ -103,7 +103,7 @@ namespace limber::test
     run.problem.observables = {mass_centre};
     Observables<3>  observables(run.state);
     const Totals<3> totals  = Balance<3>(run.state).evaluate(run.state);
-    const auto      columns = statistics_columns(run.problem.observables);
+    const auto      columns = statistics_columns(run.problem);
     const auto      row     = statistics_row(run.state,
                                     totals,
                                     observables.evaluate(run.state, totals));

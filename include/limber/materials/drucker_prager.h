@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_drucker_prager_h
+#define limber_materials_drucker_prager_h
+
+#include <limber/materials/finite_elasticity.h>
+#include <limber/materials/radial_return.h>
+
+namespace limber
+{
+  /**
+   * Sand and soil: a shear strength that grows with the pressure (Drucker and
+   * Prager, Quart. Appl. Math. 10 (1952) 157),
+   *
+   *   sqrt(J2) <= k + eta p,
+   *
+   * fitted to the strength of Mohr and Coulomb, t = P sin(phi) + c cos(phi), in
+   * plane strain or in triaxial tests. Plastic flow dilates by eta_bar per
+   * sqrt(2) of its length, from the angle of dilatancy; without one it keeps
+   * the volume, and the return is a scaling of the deviator. Stress is that of
+   * Kirchhoff. Pressure cannot fall below that of the tensile strength: the
+   * material parts there, without shear stress, and bears pressure again when
+   * the volume that has opened is closed (Tampubolon et al., ACM Trans. Graph.
+   * 36 (2017) 105), so that no volume is gained by parting.
+   *
+   * J in the history is the elastic volume ratio; the whole one is J (1 +
+   * opening) (1 + dilation).
+   */
+  template <bool dilatant>
+  class DruckerPrager : public FiniteElasticity<dilatant ? 3 : 2>
+  {
+    using Elasticity = FiniteElasticity<dilatant ? 3 : 2>;
+    using Elasticity::pressure_at;
+
+  public:
+    using Elasticity::bulk_modulus;
+    using Elasticity::shear_modulus;
+    template <int dim, class Number>
+    using State = typename Elasticity::template State<dim, Number>;
+
+    static constexpr const char *name = "drucker prager";
+    static constexpr const char *text =
+      "elastic and plastic with friction and cohesion, for sand and soil";
+    static constexpr bool                        takes_pressure = false;
+    static constexpr std::array<LawParameter, 8> parameters{
+      {law_parameters::density,
+       law_parameters::young_modulus,
+       law_parameters::poisson_ratio,
+       LawParameter{"Friction angle",
+                    30,
+                    0,
+                    89,
+                    true,
+                    "phi, degrees",
+                    "",
+                    true},
+       LawParameter{"Cohesion", 0, 0, 1e300, true, "c, Pa"},
+       LawParameter{"Dilatancy angle",
+                    0,
+                    0,
+                    89,
+                    true,
+                    "psi, degrees, at most phi: how much flow dilates; it does "
+                    "so without end"},
+       LawParameter{"Tensile strength",
+                    0,
+                    0,
+                    1e300,
+                    true,
+                    "Pa: tension at which the material parts; never more than "
+                    "c cot(phi)"},
+       LawParameter{"Fit",
+                    0,
+                    0,
+                    2,
+                    true,
+                    "under which motion the strength is that of Mohr and "
+                    "Coulomb",
+                    "plane strain|triaxial compression|triaxial extension"}}};
+    static constexpr std::array<StateVariable, dilatant ? 3 : 2> variables{
+      []() {
+        std::array<StateVariable, dilatant ? 3 : 2> result{
+          {{"equivalent plastic strain", "", 0}, {"opening", "", 0}}};
+        if constexpr (dilatant)
+          result[2] = {"dilation", "", 0};
+        return result;
+      }()};
+
+    static constexpr bool dissipates = true;
+    static constexpr bool is_elastic = false;
+    static constexpr bool is_plastic = true;
+
+    explicit DruckerPrager(const std::array<double, 8> &values)
+      : Elasticity(values[0], values[1], values[2])
+      , cone(values)
+      , least_pressure(-std::min(values[6], cone.apex_tension))
+      , largest_volume(std::sqrt(1 - 2 * least_pressure / bulk_modulus))
+      , friction_modulus(modulus_of_friction(cone.slope))
+    {}
+
+    static const char *
+    objection(const std::array<double, 8> &values)
+    {
+      if (values[5] > values[3])
+        return "the 'Dilatancy angle' is larger than the 'Friction angle', so "
+               "that flow would give energy. Usually the two are swapped. Give "
+               "a smaller one, for instance 0";
+      if (values[3] == 0 && values[4] == 0)
+        return "both 'Friction angle' and 'Cohesion' are zero, so that nothing "
+               "bears shear. Usually the cohesion was forgotten. Give one of "
+               "them, or use 'Material = newtonian fluid'";
+      return nullptr;
+    }
+
+    /** Whether this variant of the law serves these parameters. */
+    static bool
+    accepts(const std::array<double, 8> &values)
+    {
+      return (values[5] > 0) == dilatant;
+    }
+
+    template <int dim, class Number>
+    Dissipation<Number>
+    update(const MotionIncrement<dim, Number> &motion,
+           State<dim, Number>                 &state) const
+    {
+      const Number former_pressure = state.pressure;
+      this->template strain<dim>(motion, state);
+      Dissipation<Number> result;
+      Number             &J       = state.history[0];
+      Number             &opening = variable<dim>(state, 1);
+      if (!all(J <= 1.) || !all(opening <= 0.))
+        result.plastic = part_or_close(J, opening);
+      state.pressure = pressure_at(J);
+
+      RadialReturn<dim, Number> trial(state, shear_modulus);
+      const Number              radius = radius_at(state.pressure, opening);
+      if (!all(trial.norm() <= radius))
+        {
+          Number flow = larger(trial.norm() - radius, Number{});
+          Number volume{}; // plastic, logarithmic
+          if constexpr (dilatant)
+            {
+              const Number square = J * J;
+              const Number rate =
+                opening > 0. ? Number{} : broadcast<Number>(cone.dilatancy);
+              // f / (G I + K J^2 eta eta_bar), with s = sqrt(2) sqrt(J2)
+              const Number plastic =
+                flow * std::sqrt(0.5) /
+                (0.5 * trial.stiffness() +
+                 bulk_modulus * cone.slope * (rate * square));
+              const Number ratio = square_root(1. - 2. * rate * plastic);
+              // J p grows by K J^2 eta_bar plastic
+              volume = -logarithm(ratio);
+              J *= ratio;
+              variable<dim>(state, 2) =
+                (1. + variable<dim>(state, 2)) / ratio - 1.;
+              state.pressure = pressure_at(J);
+              flow           = std::sqrt(0.5) * plastic;
+            }
+          else
+            flow /= trial.stiffness();
+          variable<dim>(state, 0) += std::sqrt(2. / 3.) * flow;
+          const Number work = trial.flow(flow, state) -
+                              0.5 * (former_pressure + state.pressure) * volume;
+          result.plastic += larger(work, Number{});
+        }
+      trial.set_stress(state);
+      return result;
+    }
+
+    /** J of the body, with what has opened and dilated. */
+    template <int dim, class Number>
+    Number
+    volume_ratio(const State<dim, Number> &state) const
+    {
+      Number result = state.history[0] * (1. + variable<dim>(state, 1));
+      if constexpr (dilatant)
+        result *= 1. + variable<dim>(state, 2);
+      return result;
+    }
+
+    /**
+     * The elastic bound and, as strength follows the pressure, what flow may
+     * add to it: an acoustic tensor of flow that is not associated is larger
+     * than the elastic one in some directions.
+     */
+    template <int dim, class Number>
+    Number
+    wave_speed_squared(const State<dim, Number> &state) const
+    {
+      return Elasticity::template wave_speed_squared<dim>(state) +
+             friction_modulus / this->density;
+    }
+
+    /** The strength sqrt(J2) <= cohesion + slope p of the flow rule, Pa. */
+    struct Cone
+    {
+      explicit Cone(const std::array<double, 8> &values)
+      {
+        const double degree = 3.14159265358979323846 / 180;
+        const double sine   = std::sin(values[3] * degree),
+                     c      = values[4] * std::cos(values[3] * degree),
+                     psi    = std::sin(values[5] * degree);
+        if (values[7] == 0)
+          {
+            // the flow does not strain the third axis
+            dilatancy = psi / std::sqrt(1 + psi * psi / 3);
+            const double scale =
+              std::sqrt(1 - dilatancy * dilatancy / 3) + dilatancy * sine / 3;
+            slope    = sine / scale;
+            cohesion = c / scale;
+          }
+        else
+          {
+            const double sign  = values[7] == 1 ? -1 : 1;
+            const double scale = 6 / (std::sqrt(3.) * (3 + sign * sine));
+            slope              = scale * sine;
+            cohesion           = scale * c;
+            dilatancy          = 6 * psi / (std::sqrt(3.) * (3 + sign * psi));
+          }
+        apex_tension = slope > 0 ? cohesion / slope : 1e300;
+      }
+
+      double slope        = 0; // eta
+      double cohesion     = 0; // k, Pa
+      double dilatancy    = 0; // eta_bar
+      double apex_tension = 0; // at which no shear stress is left, Pa
+    };
+
+    const Cone cone;
+
+  private:
+    template <int dim, class AnyState>
+    static auto &
+    variable(AnyState &state, const int k)
+    {
+      return state.history[index_of_variable<dim, DruckerPrager>(k)];
+    }
+
+    /** |s| of the cone; where the material has parted there is none. */
+    template <class Number>
+    Number
+    radius_at(const Number &pressure, const Number &opening) const
+    {
+      const Number radius =
+        std::sqrt(2.) * larger(cone.cohesion + cone.slope * pressure, Number{});
+      return opening > 0. ? Number{} : radius;
+    }
+
+    /**
+     * Volume beyond that of the tensile strength opens; what has opened is
+     * closed before the pressure grows. Returns the work on it.
+     */
+    template <class Number>
+    Number
+    part_or_close(Number &J, Number &opening) const
+    {
+      const Number beyond =
+        larger(J * (1 / largest_volume), broadcast<Number>(1.));
+      J /= beyond;
+      const Number gap      = (1. + opening) * beyond;
+      const Number to_close = larger(1. / J, broadcast<Number>(1.));
+      const Number closed   = to_close < gap ? to_close : gap;
+      J *= closed;
+      opening = gap / closed - 1.;
+      return -least_pressure * (beyond - 1.);
+    }
+
+    /**
+     * The largest -2 G x^2 + sqrt(2) eta K x over the shear x = m.(s / |s|) n
+     * of a plane wave, which is no more than sqrt(2/3).
+     */
+    double
+    modulus_of_friction(const double eta) const
+    {
+      const double G = shear_modulus, b = std::sqrt(2.) * eta * bulk_modulus;
+      const double x = std::min(b / (4 * G), std::sqrt(2. / 3.));
+      return (b - 2 * G * x) * x;
+    }
+
+    const double least_pressure;   // of the tensile strength, Pa
+    const double largest_volume;   // J there
+    const double friction_modulus; // Pa
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_finite_elasticity_h
+#define limber_materials_finite_elasticity_h
+
+#include <limber/materials/isochoric_strain.h>
+
+#include <cmath>
+
+namespace limber
+{
+  /**
+   * What solids at finite strain share whose elastic energy is that of Simo
+   * and Hughes (Computational Inelasticity, 9.2), with volumetric and
+   * isochoric parts apart:
+   *
+   *   W = K/2 ((J^2 - 1)/2 - ln J) + G/2 (tr(be) - 3)
+   *   J p = -K/2 (J^2 - 1),   dev(tau) = G dev(be)
+   *
+   * A point keeps J, the free entries of be (isochoric_strain.h), and behind
+   * them @p n_variables of the law's own.
+   */
+  template <int n_variables>
+  class FiniteElasticity
+  {
+  public:
+    template <int dim>
+    static constexpr int n_history =
+      1 + isochoric::n_entries<dim> + n_variables;
+    static constexpr bool has_deviator   = true;
+    static constexpr bool keeps_deviator = true;
+    static constexpr bool uses_spin      = true;
+    static constexpr int  volumetric     = 0;
+    static constexpr bool finite_strain  = true;
+
+    template <int dim, class Number>
+    using State = PointState<dim, Number, n_history<dim>>;
+
+    FiniteElasticity(const double density,
+                     const double young_modulus,
+                     const double poisson_ratio)
+      : density(density)
+      , bulk_modulus(young_modulus / (3 * (1 - 2 * poisson_ratio)))
+      , shear_modulus(young_modulus / (2 * (1 + poisson_ratio)))
+    {}
+
+    template <class Values>
+    static const char *
+    objection(const Values &)
+    {
+      return nullptr;
+    }
+
+    double
+    dynamic_viscosity() const
+    {
+      return 0;
+    }
+
+    bool
+    has_constant_wave_speed() const
+    {
+      return false;
+    }
+
+    /** At rest; the law's own variables are zero. */
+    template <int dim>
+    State<dim, double>
+    initialise(const double pressure) const
+    {
+      // J p with Cauchy pressure p: K/2 J^2 + p J - K/2 = 0
+      const double       ratio = pressure / bulk_modulus;
+      State<dim, double> state;
+      state.history[0] = std::sqrt(ratio * ratio + 1) - ratio;
+      state.history[1] = state.history[2] = 1;
+      set_stress<dim>(state);
+      return state;
+    }
+
+    template <int dim, class Number>
+    Number
+    volume_ratio(const State<dim, Number> &state) const
+    {
+      return state.history[0];
+    }
+
+    template <class Number>
+    Number
+    volumetric_energy(const Number &J) const
+    {
+      return 0.5 * bulk_modulus * (0.5 * (J * J - 1.) - logarithm(J));
+    }
+
+    /** ln(be) / 2 */
+    template <int dim>
+    Deviator<dim, double>
+    deviatoric_strain(const State<dim, double> &state) const
+    {
+      return isochoric::logarithmic<dim>(state.history);
+    }
+
+    template <int dim>
+    void
+    set_deviatoric_strain(State<dim, double>          &state,
+                          const Deviator<dim, double> &strain) const
+    {
+      isochoric::set_logarithmic<dim>(state.history, strain);
+      set_stress<dim>(state);
+    }
+
+    template <int dim, class Number>
+    Number
+    deviatoric_energy(const State<dim, Number> &state) const
+    {
+      const auto be = isochoric::strain<dim>(state.history);
+      return 0.5 * shear_modulus * (isochoric::trace(be) - 3.);
+    }
+
+    template <int dim, class Number>
+    Number
+    strain_energy(const State<dim, Number> &state) const
+    {
+      return volumetric_energy(state.history[0]) +
+             deviatoric_energy<dim>(state);
+    }
+
+    /** An upper bound; exact at rest (largest eigenvalue by Gershgorin). */
+    template <int dim, class Number>
+    Number
+    wave_speed_squared(const State<dim, Number> &state) const
+    {
+      const auto   be = isochoric::strain<dim>(state.history);
+      const Number J  = state.history[0];
+      return (0.5 * bulk_modulus * (J * J + 1.) +
+              4. / 3. * shear_modulus * isochoric::largest_eigenvalue(be)) *
+             (1. / density);
+    }
+
+    const double density;       // rho_0, kg/m^3
+    const double bulk_modulus;  // K, Pa
+    const double shear_modulus; // G, Pa
+
+  protected:
+    /** Strained by a motion without flow; the stress is that of before. */
+    template <int dim, class Number>
+    static void
+    strain(const MotionIncrement<dim, Number> &motion,
+           State<dim, Number>                 &state)
+    {
+      const auto   f         = motion.deformation();
+      const Number J_of_step = determinant<dim>(f);
+      isochoric::deform<dim>(state.history, f, J_of_step);
+      state.history[0] *= J_of_step + (motion.volumetric - motion.trace());
+    }
+
+    /** J p */
+    template <class Number>
+    Number
+    pressure_at(const Number &J) const
+    {
+      return -0.5 * bulk_modulus * (J * J - 1.);
+    }
+
+    template <int dim, class Number>
+    void
+    set_stress(State<dim, Number> &state) const
+    {
+      state.deviator =
+        isochoric::deviator<dim>(isochoric::strain<dim>(state.history));
+      for (Number &component : state.deviator)
+        component *= shear_modulus;
+      state.pressure = pressure_at(state.history[0]);
+    }
+  };
+} // namespace limber
+
+#endif

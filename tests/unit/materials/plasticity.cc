@@ -1,0 +1,554 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <support/sample_laws.h>
+
+#include <cmath>
+
+/**
+ * @file Laws that flow, on the paths of a single point that have a closed form
+ * (doc/theory/plasticity.md).
+ */
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  template <int dimension>
+  struct Dimension
+  {
+    static constexpr int dim = dimension;
+  };
+
+  using BothDimensions = testing::Types<Dimension<2>, Dimension<3>>;
+
+  template <class Case>
+  class MetalPaths : public testing::Test
+  {};
+  TYPED_TEST_SUITE(MetalPaths, BothDimensions);
+
+  template <class Case>
+  class SoilPaths : public testing::Test
+  {};
+  TYPED_TEST_SUITE(SoilPaths, BothDimensions);
+
+
+
+  constexpr double E = 1e9, nu = 0.3, sy = 1e5;
+
+  /** Parameters of a law, in the order of its entries. */
+  template <class... Value>
+  std::array<double, sizeof...(Value)>
+  values(const Value... value)
+  {
+    return {{double(value)...}};
+  }
+
+
+
+  J2
+  metal(const double H = 0, const double Q = 0, const double delta = 10)
+  {
+    return J2(values(1000, E, nu, sy, H, Q, delta));
+  }
+
+
+
+  template <int dim>
+  Matrix<dim>
+  diagonal(const double x, const double y, const double z = 0)
+  {
+    Matrix<dim> result{};
+    result[0][0] = x;
+    result[1][1] = y;
+    if constexpr (dim == 3)
+      result[2][2] = z;
+    return result;
+  }
+
+
+
+  template <int dim, class Law, class State>
+  double
+  move(const Law &law, State &state, const Matrix<dim> &gradient)
+  {
+    return law.template update<dim>(motion_of<dim>(gradient), state).plastic;
+  }
+
+
+
+  template <class Law, class State>
+  double
+  alpha_of(const Law &, const State &state)
+  {
+    return state.history[state.history.size() - Law::variables.size()];
+  }
+} // namespace
+
+
+
+TYPED_TEST(MetalPaths, SteadyShearIsAtTheYieldStressOverRootThree)
+{
+  constexpr int dim   = TypeParam::dim;
+  const J2      law   = metal();
+  auto          state = law.template initialise<dim>(0);
+  Matrix<dim>   shear{};
+  shear[0][1] = 1e-5;
+  for (int k = 0; k < 1000; ++k)
+    move<dim>(law, state, shear);
+  EXPECT_NEAR(state.deviator[2], sy / std::sqrt(3.), 1e-5 * sy);
+  EXPECT_NEAR(state.pressure, 0, 1e-9 * law.bulk_modulus);
+  // 0.01 of shear, but for the elastic part
+  EXPECT_NEAR(alpha_of(law, state),
+              0.01 / std::sqrt(3.) - sy / (3 * law.shear_modulus),
+              1e-6 * 0.01);
+}
+
+
+
+// |s1 - s2| = 2 sy / sqrt(3): the third axis is held.
+TYPED_TEST(MetalPaths, PlaneCompressionBearsMoreThanUniaxial)
+{
+  constexpr int dim   = TypeParam::dim;
+  const J2      law   = metal();
+  auto          state = law.template initialise<dim>(0);
+  for (int k = 0; k < 1000; ++k)
+    move<dim>(law, state, diagonal<dim>(-1e-5, 1e-5));
+  EXPECT_NEAR(state.deviator[1] - state.deviator[0],
+              2 / std::sqrt(3.) * sy,
+              1e-4 * sy);
+}
+
+
+
+// Uniaxial stress without its pressure: s1 - s2 = k(alpha), the plastic strain
+// is what is not elastic.
+TEST(Metal, HardensByItsFormula)
+{
+  for (const J2 &law :
+       {metal(1e7), metal(0, 5e4, 200), metal(1e6, 1e5, 50), metal()})
+    for (const int steps : {10, 1000})
+      {
+        auto         state = law.initialise<3>(0);
+        const double e     = 0.02 / steps;
+        for (int k = 0; k < steps; ++k)
+          {
+            move<3>(law, state, diagonal<3>(e, -e / 2, -e / 2));
+            const double q = state.deviator[0] - state.deviator[1];
+            if (alpha_of(law, state) > 0)
+              {
+                ASSERT_NEAR(q,
+                            law.yield_strength(alpha_of(law, state)),
+                            1e-8 * sy);
+              }
+          }
+        // steps are those of 1 + a, which is not e^a
+        const double strain =
+          steps * 2. / 3. * (std::log1p(e) - std::log1p(-e / 2));
+        const double q = state.deviator[0] - state.deviator[1];
+        EXPECT_NEAR(alpha_of(law, state),
+                    strain - q / (3 * law.shear_modulus),
+                    0.02 * (e + 2 * sy / E));
+      }
+}
+
+
+
+TEST(Metal, YieldStrengthSaturates)
+{
+  const J2 law = metal(1e4, 5e4, 20);
+  EXPECT_DOUBLE_EQ(law.yield_strength(0.), sy);
+  EXPECT_NEAR(law.yield_strength(0.05),
+              sy + 500 + 5e4 * (1 - std::exp(-1.)),
+              1e-9 * sy);
+  EXPECT_NEAR(law.yield_strength(10.), sy + 1e5 + 5e4, 1e-9 * sy);
+}
+
+
+
+// In and out again within the yield surface: nothing flows, energy comes back.
+TYPED_TEST(MetalPaths, BelowTheYieldStressIsElastic)
+{
+  constexpr int    dim = TypeParam::dim;
+  const J2         law = metal();
+  const NeoHookean elastic(values(1000, E, nu));
+  auto             state = law.template initialise<dim>(0);
+  auto             other = elastic.template initialise<dim>(0);
+  Matrix<dim>      shear{};
+  shear[0][1] = shear[1][0] = 1e-5;
+  shear[0][0]               = -2e-6;
+  for (const double sign : {1., 1., -1., -1., -1.})
+    {
+      Matrix<dim> a = shear;
+      for (auto &row : a)
+        for (double &x : row)
+          x *= sign;
+      EXPECT_EQ(move<dim>(law, state, a), 0);
+      move<dim>(elastic, other, a);
+      EXPECT_EQ(alpha_of(law, state), 0);
+      EXPECT_DOUBLE_EQ(state.pressure, other.pressure);
+      for (std::size_t k = 0; k < other.deviator.size(); ++k)
+        EXPECT_NEAR(state.deviator[k], other.deviator[k], 1e-12 * sy);
+    }
+}
+
+
+
+// A full turn of a body that is about to flow.
+TYPED_TEST(MetalPaths, TurningDoesNotFlow)
+{
+  constexpr int dim   = TypeParam::dim;
+  const J2      law   = metal(1e6);
+  auto          state = law.template initialise<dim>(0);
+  Matrix<dim>   shear{};
+  shear[0][1] = 1e-5;
+  for (int k = 0; k < 100; ++k)
+    move<dim>(law, state, shear);
+  const auto    before = state;
+  constexpr int n      = 90;
+  const double  angle  = 2 * 3.14159265358979323846 / n;
+  Matrix<dim>   turn{};
+  turn[0][0] = turn[1][1] = std::cos(angle) - 1;
+  turn[0][1]              = -std::sin(angle);
+  turn[1][0]              = std::sin(angle);
+  double work             = 0;
+  for (int k = 0; k < n; ++k)
+    work += move<dim>(law, state, turn);
+  for (std::size_t k = 0; k < before.deviator.size(); ++k)
+    EXPECT_NEAR(state.deviator[k], before.deviator[k], 1e-13 * E);
+  EXPECT_NEAR(state.pressure, before.pressure, 1e-13 * E);
+  EXPECT_NEAR(alpha_of(law, state), alpha_of(law, before), 1e-15);
+  EXPECT_LT(work, 1e-12 * sy);
+}
+
+
+
+namespace
+{
+  // Work and dissipation along a path that turns in strain space
+  template <int dim, class Law>
+  struct Path
+  {
+    Path(const Law &law, const int n_steps)
+      : state(law.template initialise<dim>(0.01 * law.bulk_modulus * 1e-2))
+    {
+      const double start = law.template strain_energy<dim>(state);
+      const double h     = 1. / n_steps;
+      double       done = 0, work = 0;
+      for (int k = 0; k < n_steps; ++k)
+        {
+          const double t = (k + 0.5) * h * 3;
+          Matrix<dim>  a{};
+          a[0][0] = -4e-3 * h * std::cos(t);
+          a[1][1] = -a[0][0];
+          a[0][1] = a[1][0] = 4e-3 * h * std::sin(t);
+          const auto before = kirchhoff_stress_of<dim>(state);
+          work += move<dim>(law, state, a);
+          const auto after = kirchhoff_stress_of<dim>(state);
+          // on the strain of the step 1 + a to its second order
+          for (int i = 0; i < dim; ++i)
+            for (int j = 0; j < dim; ++j)
+              {
+                double strain = a[i][j];
+                for (int l = 0; l < dim; ++l)
+                  strain -= 0.5 * a[i][l] * a[l][j];
+                done += 0.5 * (before[i][j] + after[i][j]) * strain;
+              }
+        }
+      left = done - work - (law.template strain_energy<dim>(state) - start);
+      dissipated = work;
+    }
+
+    typename Law::template State<dim, double> state;
+    double                                    left = 0, dissipated = 0;
+  };
+
+
+
+  // The work is what is stored and what is dissipated, in steps of any size;
+  // the stress of a path that turns is reached with an error of first order, as
+  // the return is implicit Euler.
+  template <int dim, class Law>
+  void
+  test_balance(const Law &law)
+  {
+    const Path<dim, Law> fine(law, 12800);
+    double               errors[3];
+    for (int k = 0; k < 3; ++k)
+      {
+        const Path<dim, Law> path(law, 100 << k);
+        errors[k] = 0;
+        for (std::size_t i = 0; i < path.state.deviator.size(); ++i)
+          errors[k] =
+            std::max(errors[k],
+                     std::abs(path.state.deviator[i] - fine.state.deviator[i]));
+        EXPECT_GT(path.dissipated, 0);
+        EXPECT_NEAR(path.left, 0, 2e-8 * path.dissipated);
+      }
+    EXPECT_GT(errors[0] / errors[1], 1.8);
+    EXPECT_GT(errors[1] / errors[2], 1.8);
+  }
+} // namespace
+
+
+
+TYPED_TEST(MetalPaths, WorkIsStoredOrDissipated)
+{
+  test_balance<TypeParam::dim>(metal(1e7));
+  test_balance<TypeParam::dim>(metal(0, 5e4, 100));
+}
+
+
+
+TYPED_TEST(SoilPaths, WorkIsStoredOrDissipated)
+{
+  test_balance<TypeParam::dim>(
+    DruckerPrager<false>(values(2000, E, nu, 30, 0, 0, 0, 0)));
+  test_balance<TypeParam::dim>(
+    DruckerPrager<true>(values(2000, E, nu, 30, 0, 10, 0, 0)));
+}
+
+
+
+namespace
+{
+  template <class Case>
+  class EveryFlow : public testing::Test
+  {};
+  TYPED_TEST_SUITE(EveryFlow, AllLawCases);
+} // namespace
+
+
+
+TYPED_TEST(EveryFlow, PlasticWorkIsNeverNegative)
+{
+  constexpr int dim = TypeParam::dim;
+  using Law         = typename TypeParam::Law;
+  if constexpr (Law::is_plastic)
+    {
+      Random random;
+      double whole = 0;
+      for (const auto &law : samples<Law>())
+        for (int run = 0; run < 100; ++run)
+          {
+            auto   state = law.template initialise<dim>(0);
+            double alpha = 0;
+            for (int k = 0; k < 1000; ++k)
+              {
+                const double work = move<dim>(law,
+                                              state,
+                                              random.template matrix<dim>(
+                                                0.001 * std::pow(1.04, run)));
+                ASSERT_GE(work, 0.);
+                ASSERT_GE(alpha_of(law, state), alpha);
+                alpha = alpha_of(law, state);
+                whole += work;
+                // steps that no volume stands for long
+                state.history[0] =
+                  std::min(std::max(state.history[0], 0.7), 1.4);
+              }
+          }
+      EXPECT_GT(whole, 0);
+    }
+}
+
+
+
+// Uniaxial strain from zero on: elastic first, if that is inside the cone, or
+// on it, K0 = (3 - M) / (3 + 2 M), M = 6 sin(phi) / (3 - sin(phi)).
+TEST(Soil, OedometerSlidesOnTheCone)
+{
+  const double degree = 3.14159265358979323846 / 180;
+  for (const double phi : {20., 30., 35.})
+    {
+      const DruckerPrager<false> law(values(2000, E, 0.1, phi, 0, 0, 0, 1));
+      const double               M =
+        6 * std::sin(phi * degree) / (3 - std::sin(phi * degree));
+      auto state = law.initialise<3>(0);
+      for (int k = 0; k < 200; ++k)
+        move<3>(law, state, diagonal<3>(-1e-6, 0, 0));
+      const double axial   = state.deviator[0] - state.pressure,
+                   lateral = state.deviator[1] - state.pressure;
+      EXPECT_NEAR(lateral / axial, (3 - M) / (3 + 2 * M), 1e-4);
+    }
+}
+
+
+
+// At constant lateral stress p0: q = 3 M p0 / (3 - M).
+TEST(Soil, TriaxialCompressionFailsAtItsStrength)
+{
+  const double               p0 = 1e5;
+  const DruckerPrager<false> law(values(2000, E, nu, 30, 0, 0, 0, 1));
+  auto                       state = law.initialise<3>(p0);
+  double                     wide  = 0; // lateral strain of a step
+  for (int k = 0; k < 200; ++k)
+    {
+      const auto lateral_at = [&](const double e) {
+        auto trial = state;
+        move<3>(law, trial, diagonal<3>(-1e-5, e, e));
+        return (trial.deviator[1] - trial.pressure) /
+                 law.volume_ratio<3>(trial) +
+               p0;
+      };
+      double a = wide, b = wide + 1e-7, fa = lateral_at(a), fb = lateral_at(b);
+      for (int i = 0; i < 50 && std::abs(fb) > 1e-7 * p0; ++i)
+        {
+          const double c = b - fb * (b - a) / (fb - fa);
+          a              = b;
+          fa             = fb;
+          b              = c;
+          fb             = lateral_at(c);
+        }
+      ASSERT_LT(std::abs(fb), 1e-6 * p0);
+      wide = b;
+      move<3>(law, state, diagonal<3>(-1e-5, wide, wide));
+    }
+  const double q =
+    (state.deviator[1] - state.deviator[0]) / law.volume_ratio<3>(state);
+  EXPECT_NEAR(q, 2 * p0, 1e-3 * p0); // M = 1.2
+}
+
+
+
+// t = P sin(phi) + c cos(phi) with the mean P and half the difference t of the
+// stresses in the plane, whatever the dilatancy, in a motion that dilates by
+// its angle: sin(psi) = -(d1 + d3) / (d1 - d3).
+template <class Law, int dim>
+void
+test_plane_strain_fit(const double psi, const double c)
+{
+  const double degree = 3.14159265358979323846 / 180;
+  const double phi    = 30 * degree;
+  const Law    law(values(2000, E, nu, 30, c, psi, 0, 0));
+  auto         state = law.template initialise<dim>(1e4);
+  const double spread =
+    (1 + std::sin(psi * degree)) / (1 - std::sin(psi * degree));
+  for (int k = 0; k < 2000; ++k)
+    move<dim>(law, state, diagonal<dim>(-1e-6, spread * 1e-6));
+  const double t = (state.deviator[1] - state.deviator[0]) / 2;
+  const double P = state.pressure - (state.deviator[0] + state.deviator[1]) / 2;
+  EXPECT_NEAR(t, P * std::sin(phi) + c * std::cos(phi), 2e-3 * t);
+}
+
+TYPED_TEST(SoilPaths, PlaneStrainFitIsMohrCoulombs)
+{
+  constexpr int dim = TypeParam::dim;
+  test_plane_strain_fit<DruckerPrager<false>, dim>(0, 0);
+  test_plane_strain_fit<DruckerPrager<false>, dim>(0, 3e3);
+  test_plane_strain_fit<DruckerPrager<true>, dim>(15, 3e3);
+  test_plane_strain_fit<DruckerPrager<true>, dim>(30, 0);
+}
+
+
+
+// The plane strain fit of associated flow in closed form (3 tan(phi) / sqrt(9 +
+// 12 tan^2(phi))), and those of the triaxial tests.
+TEST(Soil, ConesAreThoseOfTheBooks)
+{
+  const double degree = 3.14159265358979323846 / 180;
+  for (const double phi : {10., 25., 40.})
+    {
+      const double tangent = std::tan(phi * degree),
+                   sine    = std::sin(phi * degree),
+                   cosine  = std::cos(phi * degree);
+      const auto cone      = [&](const double psi, const double fit) {
+        return DruckerPrager<true>::Cone(
+          values(1, 1, 0, phi, 100, psi, 0, fit));
+      };
+      const double root = std::sqrt(9 + 12 * tangent * tangent);
+      EXPECT_NEAR(cone(phi, 0).slope, 3 * tangent / root, 1e-14);
+      EXPECT_NEAR(cone(phi, 0).dilatancy, 3 * tangent / root, 1e-14);
+      EXPECT_NEAR(cone(phi, 0).cohesion, 300 / root, 1e-11);
+      EXPECT_NEAR(cone(0, 0).slope, sine, 1e-15);
+      EXPECT_NEAR(cone(0, 0).cohesion, 100 * cosine, 1e-12);
+      EXPECT_NEAR(cone(0, 1).slope,
+                  6 * sine / (std::sqrt(3.) * (3 - sine)),
+                  1e-14);
+      EXPECT_NEAR(cone(0, 2).slope,
+                  6 * sine / (std::sqrt(3.) * (3 + sine)),
+                  1e-14);
+      EXPECT_NEAR(cone(0, 1).cohesion,
+                  600 * cosine / (std::sqrt(3.) * (3 - sine)),
+                  1e-11);
+      for (const double fit : {0., 1., 2.})
+        EXPECT_NEAR(cone(0, fit).apex_tension, 100 * cosine / sine, 1e-10);
+    }
+}
+
+
+
+// Pulled apart by 10 % and pushed together again: no stress until the volume is
+// what it was, and then that of the elastic law.
+TYPED_TEST(SoilPaths, WhatPartedBearsPressureOnlyWhenClosed)
+{
+  constexpr int              dim = TypeParam::dim;
+  const DruckerPrager<false> law(values(2000, E, nu, 30, 0, 0, 0, 0));
+  const NeoHookean           elastic(values(2000, E, nu));
+  auto                       state = law.template initialise<dim>(1e5);
+  auto                       other = elastic.template initialise<dim>(1e5);
+  for (int k = 0; k < 400; ++k)
+    {
+      const double e = k < 200 ? 5e-4 : -5.005e-4;
+      move<dim>(law, state, diagonal<dim>(e, 0));
+      move<dim>(elastic, other, diagonal<dim>(e, 0));
+      EXPECT_NEAR(law.template volume_ratio<dim>(state),
+                  other.history[0],
+                  1e-12);
+      EXPECT_NEAR(state.pressure,
+                  std::max(other.pressure, 0.),
+                  1e-12 * law.bulk_modulus);
+      if (other.history[0] > 1)
+        for (const double s : state.deviator)
+          EXPECT_NEAR(s, 0, 1e-12 * law.bulk_modulus);
+    }
+  EXPECT_GT(state.pressure, 0);
+}
+
+
+
+// Tension is borne up to the tensile strength T, and parting takes the work T
+// per volume that opens.
+TYPED_TEST(SoilPaths, PartingTakesTheTensileStrength)
+{
+  constexpr int              dim = TypeParam::dim;
+  const double               T   = 2e4;
+  const DruckerPrager<false> law(values(2000, E, nu, 30, 5e4, 0, T, 0));
+  auto                       state = law.template initialise<dim>(0);
+  double                     work  = 0;
+  for (int k = 0; k < 100; ++k)
+    {
+      auto motion       = motion_of<dim>({});
+      motion.volumetric = 1e-5;
+      work += law.template update<dim>(motion, state).plastic;
+    }
+  const double opening =
+    law.template volume_ratio<dim>(state) / state.history[0] - 1;
+  EXPECT_NEAR(state.pressure, -T, 1e-6 * T);
+  EXPECT_NEAR(opening, 1e-3 - T / law.bulk_modulus, 1e-6);
+  EXPECT_NEAR(work, T * opening, 1e-3 * T * opening);
+}
+
+
+
+// Per length of plastic strain, flow dilates by the angle: d ln J = sqrt(3)
+// eta_bar d alpha.
+TYPED_TEST(SoilPaths, FlowDilates)
+{
+  constexpr int             dim = TypeParam::dim;
+  const DruckerPrager<true> law(values(2000, E, nu, 30, 0, 10, 0, 0));
+  auto                      state = law.template initialise<dim>(1e4);
+  for (int k = 0; k < 100; ++k)
+    move<dim>(law, state, diagonal<dim>(-1e-5, 1e-5));
+  const double dilation = state.history.back();
+  EXPECT_GT(dilation, 1e-5);
+  EXPECT_NEAR(std::log1p(dilation),
+              std::sqrt(3.) * law.cone.dilatancy * alpha_of(law, state),
+              1e-3 * dilation);
+  // held in volume, so the pressure has grown by it
+  EXPECT_NEAR(law.template volume_ratio<dim>(state),
+              1 - 1e4 / law.bulk_modulus,
+              1e-7);
+  EXPECT_NEAR(state.pressure,
+              1e4 + law.bulk_modulus * dilation,
+              1e-3 * state.pressure);
+}

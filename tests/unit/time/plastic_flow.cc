@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/output/observables.h>
+#include <limber/output/pictures.h>
+#include <limber/output/statistics.h>
+
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+/**
+ * @file Bodies that flow: their variables by name, and where their energy goes.
+ */
+
+using namespace limber;
+
+namespace
+{
+  // A block of 1 m meets the floor at 20 m/s, above what it bears.
+  template <int dim>
+  std::string
+  impact(const std::string &method)
+  {
+    const std::string third = dim == 3 ? ", 0" : "",
+                      end   = dim == 3 ? ", 1" : "";
+    return "set Dimension = " + std::to_string(dim) + R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 0, 0)" +
+           third + R"(
+        set Upper corner = 1, 1)" +
+           end + R"(
+      end
+      set Initial velocity = 0; -20)" +
+           (dim == 3 ? "; 0" : "") + R"(
+      set Material = j2
+      subsection J2
+        set Density = 1000
+        set Young's modulus = 1e8
+        set Yield stress = 2e5
+        set Hardening modulus = 1e5
+        set Saturation hardening = 1e5
+      end
+    end
+    subsection Grid
+      set Upper corner = )" +
+           (dim == 2 ? "2, 1.25" : "2, 1.25, 2") + R"(
+      set Cells = )" +
+           (dim == 2 ? "16, 10" : "16, 10, 16") + R"(
+    end
+    subsection Boundaries
+      set right = free
+      set top = free
+      )" + (dim == 3 ? "set front = free" : "") +
+           R"(
+    end
+    )" + method;
+  }
+
+
+
+  // The plastic work grows, and takes what the block brings along.
+  template <int dim>
+  void
+  test_impact(const std::string &method, const double tolerance)
+  {
+    SceneRun<dim> run(impact<dim>(method));
+    const double  brought = run.totals().all.kinetic_energy;
+    double        before = 0, alpha = 0;
+    run.advance_to(0.01, [&]() {
+      EXPECT_GE(run.ledger.plastic, before);
+      before = run.ledger.plastic;
+    });
+    const Totals<dim> totals = run.totals();
+    EXPECT_NEAR(totals.energy_drift, 0, tolerance) << method;
+    EXPECT_GT(totals.plastic_work, 0.3 * brought);
+    EXPECT_LT(totals.plastic_work, brought);
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      alpha = std::max(alpha, run.bodies[0]->variable(0)[p]);
+    EXPECT_GT(alpha, 0.05);
+  }
+} // namespace
+
+
+
+TEST(PlasticFlow, TakesTheEnergyOfAnImpact)
+{
+  for (const std::string order : stress_update_orders)
+    for (const std::string treatment : {"auto", "cell", "cell full", "node"})
+      test_impact<2>(
+        "subsection Method\n set Stress update = " + order +
+          "\nend\nsubsection Body block\n set Locking treatment = " +
+          treatment + "\nend\n",
+        0.02);
+  test_impact<3>("", 0.02);
+}
+
+
+
+TEST(PlasticFlow, GoesWithEveryKernel)
+{
+  for (const std::string kernel : {"quadratic", "cpdi"})
+    for (const std::string order : {"usl", "musl"})
+      test_impact<2>("subsection Method\n set Kernel = " + kernel +
+                       "\n set Stress update = " + order + "\nend\n",
+                     0.02);
+  test_impact<3>("subsection Method\n set Kernel = quadratic\nend\n", 0.02);
+}
+
+
+
+TEST(PlasticFlow, AutoNeverResistsAsElasticBending)
+{
+  SceneRun<2> run(impact<2>(""));
+  EXPECT_EQ(run.problem.bodies[0].treatment, Projection::assumed_strain);
+  EXPECT_EQ(run.problem.bodies[0].hourglass, HourglassResponse::incompressible);
+  SceneRun<2> splines(
+    impact<2>("subsection Method\n set Kernel = quadratic\nend\n"));
+  EXPECT_EQ(splines.problem.bodies[0].treatment, Projection::node);
+}
+
+
+
+TEST(PlasticFlow, VariablesHaveNames)
+{
+  SceneRun<2> run(impact<2>(R"(
+    subsection Body block
+      set Initial state = equivalent plastic strain: 0.1*x
+    end
+    subsection Output
+      set Fields = velocity, equivalent plastic strain
+    end
+    set Observables = here, most
+    subsection Observable here
+      set Type = state variable
+      set Variable = equivalent plastic strain
+      set Location = 0.5, 0.5
+    end
+    subsection Observable most
+      set Type = largest state variable
+      set Variable = equivalent plastic strain
+    end)"));
+  for (std::size_t p = 0; p < run.points().size; ++p)
+    EXPECT_NEAR(run.bodies[0]->variable(0)[p], 0.1 * run.position(p)[0], 1e-15);
+
+  Observables<2> observables(run.state());
+  const auto     row = observables.evaluate(run.state(), run.totals());
+  EXPECT_NEAR(row[0], 0.1 * 0.46875, 1e-15); // of the nearest point, the first
+  EXPECT_NEAR(row[1], 0.1 * 0.96875, 1e-15);
+
+  const auto picture = draw_points(run.state());
+  ASSERT_EQ(picture.fields.names.back(), "equivalent plastic strain");
+  const auto &patch = picture.patches[7];
+  EXPECT_NEAR(patch.data(patch.data.size(0) - 1, 0),
+              0.1 * patch.vertices[0][0],
+              1e-6);
+
+  const auto columns = statistics_columns(run.problem);
+  EXPECT_EQ(columns[columns.size() - 3].name, "plastic work");
+  EXPECT_EQ(columns[columns.size() - 3].unit, "J");
+  EXPECT_EQ(statistics_row(run.state(), run.totals(), row).size(),
+            columns.size());
+}
+
+
+
+TEST(PlasticFlow, InitialStateIsAdmissible)
+{
+  try
+    {
+      SceneRun<2> run(impact<2>(R"(
+        subsection Body block
+          set Initial state = equivalent plastic strain: 0.4 - x
+        end)"));
+      FAIL();
+    }
+  catch (const InputError &error)
+    {
+      const std::string message = error.what();
+      for (const std::string part :
+           {"'equivalent plastic strain'", "'block'", "at least 0"})
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+    }
+}
+
+
+
+// Sand that falls apart and comes together: the column of before is as high.
+TEST(PlasticFlow, SandSettlesUnderItsWeight)
+{
+  SceneRun<2> run(R"(
+    set Bodies = sand
+    subsection Body sand
+      subsection Box
+        set Lower corner = 0, 0.25
+        set Upper corner = 1, 1
+      end
+      set Material = drucker prager
+      subsection Drucker prager
+        set Density = 2000
+        set Young's modulus = 1e7
+        set Friction angle = 30
+      end
+    end
+    subsection Grid
+      set Upper corner = 1, 1.5
+      set Cells = 8, 12
+    end
+    subsection Loads
+      set Gravity = 0, -10
+    end
+    subsection Method
+      set Damping rate = 20
+    end)");
+  double      before = 0;
+  run.advance_to(1.5, [&]() {
+    EXPECT_GE(run.ledger.plastic, before);
+    before = run.ledger.plastic;
+  });
+  const Totals<2> totals = run.totals();
+  // 0.75 m high at rest, compressed by 1e-3
+  EXPECT_NEAR(totals.centre_of_mass[1], 0.375, 0.005);
+  EXPECT_LT(totals.all.kinetic_energy, 1e-3 * totals.all.mass * 10 * 0.25);
+}
