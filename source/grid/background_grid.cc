@@ -112,11 +112,16 @@ namespace limber
     }
     build_bins();
     complete_boundary();
-    if (has_splines())
+    if (description.kernel == KernelKind::quadratic)
       {
-        SplineNodes<dim> numbered = number_spline_nodes(*this);
-        spline_nodes              = std::move(numbered.nodes);
-        splines                   = std::move(numbered.cells);
+        QuadraticNodes<dim> numbered = number_quadratic_nodes(*this);
+        quadratic_nodes              = std::move(numbered.nodes);
+        quadratics                   = std::move(numbered.cells);
+      }
+    if (description.kernel == KernelKind::cubic)
+      {
+        cubics = find_cubic_cells(*this);
+        set_inward_vertices(*this, vertices);
       }
     // Refinement and numbering need for a while twice what stays.
     malloc_trim(0);
@@ -310,8 +315,10 @@ namespace limber
     GridView<dim> result;
     result.cells = geometry.data();
     result.bins  = bins;
-    if (has_splines())
-      result.splines = splines.data();
+    if (description.kernel == KernelKind::quadratic)
+      result.quadratics = quadratics.data();
+    if (description.kernel == KernelKind::cubic)
+      result.cubics = cubics.data();
     return result;
   }
 

@@ -40,10 +40,12 @@ namespace limber
         if (offset != unknown_node)
           work(offset / Layout::stride);
     };
-    if (&table == &grid.vertices)
-      of_all(grid.geometry[cell].node);
+    if (&table != &grid.vertices)
+      of_all(grid.quadratics[cell].node);
+    else if (grid.description.kernel == KernelKind::cubic)
+      of_all(grid.cubics[cell].node);
     else
-      of_all(grid.splines[cell].node);
+      of_all(grid.geometry[cell].node);
   }
 
 
@@ -107,7 +109,7 @@ namespace limber
   {
     GridView<dim> result = grid.view();
     if (&table == &grid.vertices)
-      result.splines = nullptr;
+      result.quadratics = nullptr;
     result.nodes         = values.data();
     result.occupied      = has_own_points.data();
     result.entered       = &entered;

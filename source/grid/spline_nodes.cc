@@ -26,6 +26,23 @@ namespace limber
 
 
 
+    /** Whether the cell ends at the lower (0) or upper (2) side along d. */
+    template <int dim>
+    bool
+    ends_at(const BackgroundGrid<dim> &grid,
+            const std::uint32_t        cell,
+            const int                  d,
+            const int                  end)
+    {
+      const CellGeometry<dim> &geometry = grid.geometry[cell];
+      const double             edge     = 1 / geometry.inverse_edge[d];
+      return end == 0 ?
+               geometry.origin[d] - grid.description.lower[d] < 0.5 * edge :
+               grid.description.upper[d] - geometry.origin[d] < 1.5 * edge;
+    }
+
+
+
     /**
      * Numbers the nodes. A node is known by a cell and where it lies in that:
      * in the middle, or in a face, an edge, a corner in the sides of the grid.
@@ -41,7 +58,8 @@ namespace limber
         , node_of_cell(grid.n_cells())
       {
         add_cells(0, grid.n_owned_cells());
-        nodes.n_owned = n_numbers;
+        nodes.n_owned      = n_numbers;
+        nodes.inward_share = 1;
         add_cells(grid.n_owned_cells(), grid.n_cells());
         nodes.sides.assign(n_numbers, 0);
         for (const auto &[key, node] : in_sides)
@@ -49,17 +67,17 @@ namespace limber
         share();
       }
 
-      std::vector<SplineCell<dim>>
+      std::vector<SplineCell<dim, 2>>
       cells() const
       {
-        std::vector<SplineCell<dim>> result(grid.n_cells());
+        std::vector<SplineCell<dim, 2>> result(grid.n_cells());
         for (std::uint32_t cell = 0; cell < result.size(); ++cell)
           {
-            SplineCell<dim> &spline = result[cell];
+            SplineCell<dim, 2> &spline = result[cell];
             for (int d = 0; d < dim; ++d)
               {
-                spline.lower[d] = ends_at(cell, d, 0) ? 1 : 0.5;
-                spline.upper[d] = ends_at(cell, d, 2) ? 1 : 0.5;
+                spline.lower[d] = ends_at(grid, cell, d, 0) ? 1 : 0.5;
+                spline.upper[d] = ends_at(grid, cell, d, 2) ? 1 : 0.5;
               }
             for (int i = 0; i < n_places; ++i)
               {
@@ -90,17 +108,6 @@ namespace limber
             in_sides[{cell, place}] = n_numbers++;
       }
 
-      /** Whether the cell ends at the lower (0) or upper (2) side along d. */
-      bool
-      ends_at(const std::uint32_t cell, const int d, const int end) const
-      {
-        const CellGeometry<dim> &geometry = grid.geometry[cell];
-        const double             edge     = 1 / geometry.inverse_edge[d];
-        return end == 0 ?
-                 geometry.origin[d] - grid.description.lower[d] < 0.5 * edge :
-                 grid.description.upper[d] - geometry.origin[d] < 1.5 * edge;
-      }
-
       std::vector<int>
       places_in_sides(const std::uint32_t cell) const
       {
@@ -110,7 +117,7 @@ namespace limber
             bool exists = place != middle;
             for (int d = 0; d < dim; ++d)
               if (const int end = digit(place, d); end != 1)
-                exists = exists && ends_at(cell, d, end);
+                exists = exists && ends_at(grid, cell, d, end);
             if (exists)
               result.push_back(place);
           }
@@ -128,7 +135,7 @@ namespace limber
           {
             const int end  = digit(i, d);
             double    step = end - 1;
-            if (end != 1 && ends_at(cell, d, end))
+            if (end != 1 && ends_at(grid, cell, d, end))
               {
                 place += (end - 1) * stride(d);
                 step = 0;
@@ -200,8 +207,8 @@ namespace limber
 
 
   template <int dim>
-  SplineNodes<dim>
-  number_spline_nodes(const BackgroundGrid<dim> &grid)
+  QuadraticNodes<dim>
+  number_quadratic_nodes(const BackgroundGrid<dim> &grid)
   {
     Numbers<dim> numbers(grid);
     auto         cells = numbers.cells();
@@ -210,8 +217,85 @@ namespace limber
 
 
 
-  template SplineNodes<2>
-  number_spline_nodes(const BackgroundGrid<2> &);
-  template SplineNodes<3>
-  number_spline_nodes(const BackgroundGrid<3> &);
+  // A node beyond the vertices of the cell is one of a neighbour's.
+  template <int dim>
+  std::vector<SplineCell<dim, 3>>
+  find_cubic_cells(const BackgroundGrid<dim> &grid)
+  {
+    std::vector<SplineCell<dim, 3>> result(grid.n_cells());
+    for (std::uint32_t cell = 0; cell < result.size(); ++cell)
+      {
+        const CellGeometry<dim> &geometry = grid.geometry[cell];
+        SplineCell<dim, 3>      &spline   = result[cell];
+        for (int d = 0; d < dim; ++d)
+          {
+            spline.lower[d] = ends_at(grid, cell, d, 0) ? 0 : 1. / 6;
+            spline.upper[d] = ends_at(grid, cell, d, 2) ? 0 : 1. / 6;
+          }
+        for (int i = 0; i < int(spline.node.size()); ++i)
+          {
+            std::array<double, dim> x; // in the middle of the neighbour
+            int                     vertex = 0;
+            for (int d = 0, rest = i; d < dim; ++d, rest /= 4)
+              {
+                const int    at    = rest % 4;
+                const double steps = at == 0 && spline.lower[d] != 0 ? -0.5 :
+                                     at == 3 && spline.upper[d] != 0 ? 1.5 :
+                                                                       0.5;
+                x[d] = geometry.origin[d] + steps / geometry.inverse_edge[d];
+                vertex |= (at < 2 ? 0 : 1) << d;
+              }
+            const std::uint32_t neighbour = grid.bins.cell_at(x);
+            spline.node[i]                = neighbour == invalid_cell ?
+                                              unknown_node :
+                                              grid.geometry[neighbour].node[vertex];
+          }
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  set_inward_vertices(const BackgroundGrid<dim> &grid, NodeTable<dim> &vertices)
+  {
+    // Of the mass of a node in a held side, 7/12 of that of one inside, 1/12 is
+    // what mirrored material would give to the node inward, for each direction.
+    vertices.inward_share = 1. / 7;
+    vertices.inward.clear();
+    const auto number = [](const std::uint32_t offset) {
+      return offset / NodeLayout<dim>::stride;
+    };
+    for (std::uint32_t cell = 0; cell < grid.n_cells(); ++cell)
+      for (int i = 0; i < 1 << dim; ++i)
+        {
+          const auto         &corners = grid.geometry[cell].node;
+          const std::uint32_t node    = number(corners[i]);
+          if (vertices.sides[node] == 0)
+            continue;
+          int across = 0; // directions in which it is in a side
+          for (int d = 0; d < dim; ++d)
+            if (ends_at(grid, cell, d, i >> d & 1 ? 2 : 0))
+              across |= 1 << d;
+          for (int directions = 0; directions < 1 << dim; ++directions)
+            vertices.inward[node][directions] =
+              number(corners[i ^ (directions & across)]);
+        }
+  }
+
+
+
+  template QuadraticNodes<2>
+  number_quadratic_nodes(const BackgroundGrid<2> &);
+  template QuadraticNodes<3>
+  number_quadratic_nodes(const BackgroundGrid<3> &);
+  template std::vector<SplineCell<2, 3>>
+  find_cubic_cells(const BackgroundGrid<2> &);
+  template std::vector<SplineCell<3, 3>>
+  find_cubic_cells(const BackgroundGrid<3> &);
+  template void
+  set_inward_vertices(const BackgroundGrid<2> &, NodeTable<2> &);
+  template void
+  set_inward_vertices(const BackgroundGrid<3> &, NodeTable<3> &);
 } // namespace limber

@@ -65,8 +65,7 @@ namespace limber
                         "its cells",
                         ", or 'Method/Kernel = linear', 'quadratic' or "
                         "'auto'"};
-      if (kernel == KernelKind::quadratic &&
-          treatment == Projection::assumed_strain)
+      if (is_spline(kernel) && treatment == Projection::assumed_strain)
         return Obstacle{"has an assumed strain with linear functions only",
                         ", or 'Method/Kernel = linear', or 'Locking treatment "
                         "= cell' or 'none'"};
@@ -125,7 +124,7 @@ namespace limber
     std::optional<Misfit>
     misfit(const KernelKind kernel, const Section &section, const bool liquid)
     {
-      if (kernel == KernelKind::quadratic)
+      if (is_spline(kernel))
         return misfit_of_splines(section);
       if (kernel == KernelKind::cpdi && !liquid)
         return misfit_of_domains(section);

@@ -21,7 +21,7 @@ namespace limber
         admissible::positive_integers(dim, true, "2").or_word("auto"),
         "Number of points along the edge of a cell, for all "
         "directions or for each; auto: 2, but 3 of solids "
-        "with quadratic kernels.");
+        "with splines.");
       declare_word(parameters,
                    "Placement",
                    "regular",
@@ -205,7 +205,7 @@ namespace limber
         points = section.numbers(entry);
       else
         // With two splines creep some ten times as much with every crossing.
-        points = {grid.kernel == KernelKind::quadratic && !body.is_liquid &&
+        points = {is_spline(grid.kernel) && !body.is_liquid &&
                       body.frame == Frame::current ?
                     3. :
                     2.};

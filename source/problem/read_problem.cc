@@ -54,7 +54,7 @@ namespace limber
             "Stress update 'auto' is 'usavg', which is of second order and in "
             "the initial frame costs no more than 'musl'.");
         }
-      else if (problem.grid.kernel == KernelKind::quadratic)
+      else if (is_spline(problem.grid.kernel))
         {
           problem.method.order = StressUpdateOrder::musl;
           problem.notes.push_back(

@@ -18,11 +18,13 @@ namespace limber
     // of the filter are reckoned from the tables they take.
     constexpr double of_program              = 165e6;
     constexpr double of_cell[]               = {400, 750};
-    constexpr double of_spline_cell[]        = {80, 170};
+    constexpr double of_quadratic_cell[]     = {80, 170};
+    constexpr double of_cubic_cell[]         = {96, 304};
     constexpr double of_coarse_cell[]        = {450, 900}; // on every rank
     constexpr double of_point[]              = {90, 125};
     constexpr double of_point_apic[]         = {32, 72};
-    constexpr double of_point_splines[]      = {20, 40}; // sums of its cell
+    constexpr double of_point_quadratic[]    = {20, 40}; // sums of its cell
+    constexpr double of_point_cubic[]        = {36, 96};
     constexpr double of_point_filtered[]     = {35, 60}; // FMPM, XPIC
     constexpr double of_point_reference[]    = {16, 24};
     constexpr double of_point_on_its_way[]   = {350, 450}; // to another rank
@@ -134,17 +136,23 @@ namespace limber
       SizeEstimate  size;
       size.cells             = product(problem.grid.cells);
       size.bytes_of_programs = of_program * ranks;
-      const bool splines     = problem.grid.kernel == KernelKind::quadratic;
+      const bool quadratic   = problem.grid.kernel == KernelKind::quadratic;
+      const bool cubic       = problem.grid.kernel == KernelKind::cubic;
       size.bytes_of_cells =
-        size.cells * (of_cell[k] + (splines ? of_spline_cell[k] : 0)) *
+        size.cells *
+          (of_cell[k] + (quadratic ? of_quadratic_cell[k] :
+                         cubic     ? of_cubic_cell[k] :
+                                     0)) *
           (in_parallel ? grid_built_anew : 1) +
         count_coarse(problem.grid.cells) * of_coarse_cell[k] * ranks;
 
       double per_point = of_point[k];
       if (problem.method.transfer == Transfer::apic)
         per_point += of_point_apic[k];
-      if (splines)
-        per_point += of_point_splines[k];
+      if (quadratic)
+        per_point += of_point_quadratic[k];
+      if (cubic)
+        per_point += of_point_cubic[k];
       if (filters_velocity(problem.method.transfer))
         per_point += of_point_filtered[k];
       if (writes_displacements(problem))

@@ -87,7 +87,9 @@ namespace limber
       const auto projection =
         strain_projection(law, projection_for<Law>(kind), response);
       if (kernel == KernelKind::quadratic)
-        result = make_spline_sweep<dim>(law, projection, frame);
+        result = make_quadratic_sweep<dim>(law, projection, frame);
+      else if (kernel == KernelKind::cubic)
+        result = make_cubic_sweep<dim>(law, projection, frame);
       else if (frame == Frame::initial)
         result = make_initial_frame_sweep<Linear<dim>>(law, projection);
       else if (kernel == KernelKind::cpdi)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
 #include <limber/time/full_mass_filter.h>
 #include <limber/transfer/grid_to_points.h>
 
@@ -13,6 +14,15 @@ namespace limber
     , boundaries(boundaries)
     , on_points(dim)
   {
+    // A rank may know a neighbour of a held node that lies in cells of others,
+    // and not the node, whose share of mass it would miss.
+    if (grid.description.kernel == KernelKind::cubic &&
+        dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
+      throw InputError(
+        "The transfers 'fmpm' and 'xpic' with 'Kernel = cubic' are for one "
+        "rank only. Usually a scene that ran on one was started with mpirun. "
+        "Set 'Method/Transfer = flip' or 'Kernel = quadratic', or run it on "
+        "one rank.");
     reinit();
   }
 
@@ -120,9 +130,9 @@ namespace limber
                       const unsigned int  directions) {
                     if (this->held(nodes, neighbour)[d] != 0)
                       return;
-                    const double *const own  = nodes.record(neighbour);
-                    const double        mass = nodes.record(node)[Layout::mass];
-                    const double        impulse =
+                    const double *const own = nodes.record(neighbour);
+                    const double mass = mass_inward(nodes, node, directions);
+                    const double impulse =
                       mass *
                       (own[Layout::mass] * record(node)[Layout::velocity + d] -
                        momentum(own, d)) /
@@ -154,7 +164,8 @@ namespace limber
                     double        impulse =
                       v[Layout::remapped + d] - mass * v[Layout::velocity + d];
                     if (this->held(nodes, neighbour)[d] == 0)
-                      impulse -= mass / lumped_mass(neighbour)[d] *
+                      impulse -= mass_inward(nodes, node, directions) /
+                                 lumped_mass(neighbour)[d] *
                                  (momentum(nodes.record(neighbour), d) -
                                   record(neighbour)[Layout::remapped + d]);
                     add_impulse(result, node, d, directions, impulse);
@@ -180,7 +191,7 @@ namespace limber
           v[d] = own[Layout::velocity + d] -
                  (former && held[d] == 0 ? own[Layout::increment + d] : 0);
       }
-    if (table.inward.empty())
+    if (table.inward_share == 0)
       return;
 
     // D v(1) = p, plus what held nodes bring along
@@ -193,14 +204,14 @@ namespace limber
       D += mass;
     };
     for (const std::uint32_t node : nodes.active_boundary_nodes())
-      if (const double mass = nodes.record(node)[Layout::mass]; mass > 0)
+      if (nodes.record(node)[Layout::mass] > 0)
         {
           const auto held = this->held(nodes, node);
           for (int d = 0; d < dim; ++d)
             if (held[d] != 0)
               add(table.inward.at(node)[held[d]],
                   d,
-                  mass,
+                  mass_inward(nodes, node, held[d]),
                   record(node)[Layout::velocity + d]);
         }
   }

@@ -29,33 +29,32 @@ namespace limber
 
 
 
-    template <bool affine, int dim>
+    template <bool affine, int dim, int degree>
     __attribute__((always_inline)) inline void
-    remap_momentum(const Quadratic<dim>,
+    remap_momentum(const Spline<dim, degree>,
                    const PointView<dim> &points,
                    const CellBatch      &batch,
                    const GridView<dim>  &grid)
     {
+      using Basis                    = Spline<dim, degree>;
       using Layout                   = NodeLayout<dim>;
       const CellGeometry<dim> &cell  = grid.cells[batch.cell];
-      const SplineCell<dim>   &nodes = grid.splines[batch.cell];
-      using Sums                     = SplineSums<dim, Layout::remapped, dim>;
+      const auto              &nodes = Basis::nodes_of(grid, batch.cell);
+      using Sums                     = SplineSums<Basis, Layout::remapped, dim>;
       Sums of_batch;
       for_each_pack<dim>(
         batch, [&](const auto &lanes) __attribute__((always_inline)) {
-          const auto                      xi = lanes.natural(points, cell);
-          const SplineWeights<dim, false> weights(cell, nodes, xi);
-          Sums                            sums;
-          sums.clear();
-          give_momentum<dim, affine>(points,
-                                     cell,
-                                     nodes,
-                                     lanes,
-                                     xi,
-                                     weights.value,
-                                     Layout::remapped,
-                                     sums);
-          of_batch.take(sums, lanes.first == batch.begin);
+          give_pack<Basis, Given<true, affine, false>>(points,
+                                                       cell,
+                                                       nodes,
+                                                       lanes,
+                                                       lanes.natural(points,
+                                                                     cell),
+                                                       Layout::remapped,
+                                                       {},
+                                                       lanes.first ==
+                                                         batch.begin,
+                                                       of_batch);
         });
       of_batch.add_to_nodes(nodes, grid.nodes);
     }
@@ -94,9 +93,9 @@ namespace limber
      * and D = sum N_i (x_i - x) (x_i - x), which is diagonal (Jiang et al.
      * 2015, sec. 5.3).
      */
-    template <int dim, class Lanes, class Nodal>
+    template <int dim, int degree, class Lanes, class Nodal>
     inline void
-    set_affine(const Quadratic<dim>,
+    set_affine(const Spline<dim, degree>,
                const PointView<dim>                  &points,
                const GridView<dim>                   &grid,
                const std::uint32_t                    cell,
@@ -104,11 +103,11 @@ namespace limber
                const std::array<PointPack<dim>, dim> &xi,
                const Nodal &)
     {
-      using Number                             = PointPack<dim>;
-      using Basis                              = Quadratic<dim>;
-      const CellGeometry<dim>        &geometry = grid.cells[cell];
-      const SplineCell<dim>          &nodes    = grid.splines[cell];
-      const SplineWeights<dim, false> weights(geometry, nodes, xi);
+      using Number                               = PointPack<dim>;
+      using Basis                                = Spline<dim, degree>;
+      const CellGeometry<dim>          &geometry = grid.cells[cell];
+      const auto                       &nodes    = Basis::nodes_of(grid, cell);
+      const SplineWeights<Basis, false> weights(geometry, nodes, xi);
       for (int e = 0; e < dim; ++e)
         {
           const auto              places = Basis::places(nodes, e);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/spline.h>
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/convected_transfer.h>
@@ -167,8 +168,10 @@ namespace limber
   {
     if (points.has_domains())
       return domains_to_grid(points, grid, what);
-    if (grid.splines != nullptr)
-      return points_to_splines(points, grid, what, sums);
+    if (grid.quadratics != nullptr)
+      return points_to_splines<Quadratic<dim>>(points, grid, what, sums);
+    if (grid.cubics != nullptr)
+      return points_to_splines<Cubic<dim>>(points, grid, what, sums);
     if (!what.force)
       return what.momentum ?
                choose_sums<dim, NoForce>(points, grid, what, sums) :

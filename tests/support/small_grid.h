@@ -81,9 +81,10 @@ namespace limber
 
 
     template <int dim, KernelKind kernel>
-    using BasisOf = std::conditional_t<kernel == KernelKind::quadratic,
-                                       Quadratic<dim>,
-                                       Linear<dim>>;
+    using BasisOf = std::conditional_t<
+      kernel == KernelKind::quadratic,
+      Quadratic<dim>,
+      std::conditional_t<kernel == KernelKind::cubic, Cubic<dim>, Linear<dim>>>;
 
 
 
@@ -92,8 +93,12 @@ namespace limber
     class SmallGrid
     {
     public:
-      using Basis                       = BasisOf<dim, kernel>;
-      static constexpr bool has_splines = kernel == KernelKind::quadratic;
+      using Basis = BasisOf<dim, kernel>;
+      // Of splines, 0 of linear functions
+      static constexpr int degree = kernel == KernelKind::quadratic ? 2 :
+                                    kernel == KernelKind::cubic     ? 3 :
+                                                                      0;
+      using Spline                = SplineCell<dim, degree == 0 ? 2 : degree>;
       // of the cell with all that does not vanish in it
       static constexpr int n_in_cell = Basis::n_nodes;
 
@@ -110,7 +115,7 @@ namespace limber
             bins.n[d]            = n_per_edge;
             n_cells *= n_per_edge;
             n_vertices *= n_per_edge + 1;
-            n_nodes *= n_per_edge + (has_splines ? 2 : 1);
+            n_nodes *= n_per_edge + (degree == 2 ? 2 : 1);
           }
         for (std::size_t c = 0; c < n_cells; ++c)
           {
@@ -131,21 +136,28 @@ namespace limber
               }
             cells.push_back(cell);
             bin_table.push_back(c);
-            if constexpr (has_splines)
+            if constexpr (degree > 0)
               {
-                SplineCell<dim> spline;
+                Spline spline;
                 for (int i = 0; i < n_in_cell; ++i)
                   {
                     std::int64_t node = 0;
                     for (int d = dim - 1; d >= 0; --d)
-                      node =
-                        node * (n_per_edge + 2) + at[d] + Basis::power(i, d);
+                      if (const auto k = at[d] + Basis::power(i, d);
+                          degree == 2)
+                        node = node * (n_per_edge + 2) + k;
+                      else // none beyond the sides
+                        node = node * (n_per_edge + 1) +
+                               std::clamp<std::int64_t>(k - 1, 0, n_per_edge);
                     spline.node[i] = node * NodeLayout<dim>::stride;
                   }
                 for (int d = 0; d < dim; ++d)
                   {
-                    spline.lower[d] = at[d] == 0 ? 1 : 0.5;
-                    spline.upper[d] = at[d] == n_per_edge - 1 ? 1 : 0.5;
+                    constexpr double inside  = inner_factor();
+                    constexpr double at_side = degree == 2 ? 1 : 0;
+                    spline.lower[d]          = at[d] == 0 ? at_side : inside;
+                    spline.upper[d] =
+                      at[d] == n_per_edge - 1 ? at_side : inside;
                   }
                 splines.push_back(spline);
               }
@@ -167,8 +179,10 @@ namespace limber
         result.cells = cells.data();
         result.nodes = nodes.data();
         result.bins  = bins;
-        if constexpr (has_splines)
-          result.splines = splines.data();
+        if constexpr (degree == 2)
+          result.quadratics = splines.data();
+        if constexpr (degree == 3)
+          result.cubics = splines.data();
         result.occupied = occupied.data();
         result.entered  = &entered;
         result.left     = &left;
@@ -224,21 +238,38 @@ namespace limber
         std::size_t rest = node;
         for (int d = 0; d < dim; ++d)
           {
-            const std::int64_t n     = bins.n[d] + (has_splines ? 2 : 1);
+            const std::int64_t n     = bins.n[d] + (degree == 2 ? 2 : 1);
             const std::int64_t index = rest % n;
             rest /= n;
             double at = index;
-            if (has_splines) // in the sides and at the centres of cells
+            if (degree == 2) // in the sides and at the centres of cells
               at = index == 0 ? 0 : (index == n - 1 ? bins.n[d] : index - 0.5);
             result[d] = lower[d] + edge[d] * at;
           }
         return result;
       }
 
+      /** The offsets of the nodes of a cell. */
+      const auto &
+      nodes_of(const std::uint32_t cell) const
+      {
+        if constexpr (degree > 0)
+          return splines[cell];
+        else
+          return cells[cell];
+      }
+
+      /** Of the first and the last spline of a cell away from sides. */
+      static constexpr double
+      inner_factor()
+      {
+        return degree == 2 ? 1. / 2 : 1. / 6;
+      }
+
       std::size_t
       node_number(const std::uint32_t cell, const int i) const
       {
-        return Basis::nodes_of(*this, cell).node[i] / NodeLayout<dim>::stride;
+        return nodes_of(cell).node[i] / NodeLayout<dim>::stride;
       }
 
       /** N_i at a place, of node i of a cell. */
@@ -277,7 +308,7 @@ namespace limber
       std::size_t                    n_cells, n_nodes, n_vertices;
       Vector<dim>                    lower, edge;
       std::vector<CellGeometry<dim>> cells;
-      std::vector<SplineCell<dim>>   splines;
+      std::vector<Spline>            splines;
       std::vector<double>            nodes, means, sums, next_sums;
       std::vector<std::uint32_t>     turn_of_sums;
       std::uint32_t                  turn = 1; // of the present sums
@@ -294,11 +325,28 @@ namespace limber
              const int           d,
              const bool          derivative = false) const
       {
-        if constexpr (has_splines)
+        if constexpr (degree > 0)
           {
             const int at =
               std::lround((cells[cell].origin[d] - lower[d]) / edge[d]);
-            return spline(at + Basis::power(i, d), 2, x[d], d, derivative);
+            const int  k     = at + Basis::power(i, d);
+            const auto plain = [&](const int number) {
+              return spline(number, degree, x[d], d, derivative);
+            };
+            if constexpr (degree == 2)
+              return plain(k);
+            // That of the node beyond a side acts on the two next to it, which
+            // give it the value of linear extrapolation.
+            const int last = bins.n[d] + 2;
+            if (k == 0 || k == last)
+              return 0;
+            return plain(k) +
+                   (k == 1 ? 2 * plain(0) :
+                    k == 2 ? -plain(0) :
+                             0) +
+                   (k == last - 1 ? 2 * plain(last) :
+                    k == last - 2 ? -plain(last) :
+                                    0);
           }
         else
           {
@@ -311,31 +359,34 @@ namespace limber
 
       /**
        * B-splines by the recursion of Cox and de Boor on the faces of the
-       * cells, the first and the last threefold as knots.
+       * cells. Of quadratic ones the first and the last are threefold knots; of
+       * cubic ones the grid goes on.
        */
       double
       spline(const int    i,
-             const int    degree,
+             const int    order,
              const double x,
              const int    d,
              const bool   derivative) const
       {
-        const auto knot = [&](const int k) {
+        const auto knot = [&](const std::int64_t k) {
           return lower[d] +
-                 edge[d] * std::clamp<std::int64_t>(k - 2, 0, bins.n[d]);
+                 edge[d] * (degree == 2 ?
+                              std::clamp<std::int64_t>(k - 2, 0, bins.n[d]) :
+                              k - 3);
         };
-        if (degree == 0)
+        if (order == 0)
           return knot(i) <= x && x < knot(i + 1) ? 1 : 0;
         double     result = 0;
         const auto add =
           [&](const int first, const double numerator, const double sign) {
-            const double width = knot(first + degree) - knot(first);
+            const double width = knot(first + order) - knot(first);
             if (width > 0)
-              result += (derivative ? sign * degree : numerator) / width *
-                        spline(first, degree - 1, x, d, false);
+              result += (derivative ? sign * order : numerator) / width *
+                        spline(first, order - 1, x, d, false);
           };
         add(i, x - knot(i), 1);
-        add(i + 1, knot(i + 1 + degree) - x, -1);
+        add(i + 1, knot(i + 1 + order) - x, -1);
         return result;
       }
     };

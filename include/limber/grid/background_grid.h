@@ -19,7 +19,7 @@ namespace limber
   /**
    * The background grid: a distributed mesh of rectangular cells, one scalar
    * Q1 space for everything on vertices and one DGQ0 space for everything in
-   * cells, which also numbers the splines of quadratic kernels. A vertex's or a
+   * cells, which also numbers quadratic splines. A vertex's or a
    * cell's local number is that of its degree of freedom on this rank: owned
    * ones first, then ghosts. From these the plain tables
    * of the sweeps are built, anew after each change of the mesh; the degrees
@@ -53,11 +53,12 @@ namespace limber
     const NodeTable<dim> &
     nodes() const
     {
-      return has_splines() ? spline_nodes : vertices;
+      return has_own_nodes() ? quadratic_nodes : vertices;
     }
 
+    /** Whether these are others than the vertices, which cubic splines have. */
     bool
-    has_splines() const
+    has_own_nodes() const
     {
       return description.kernel == KernelKind::quadratic;
     }
@@ -114,9 +115,10 @@ namespace limber
     // Cells that other ranks hold as well
     SharedRecords  shared_cells;
     NodeTable<dim> vertices; // of cells
-    // Only where the kernel is quadratic
-    NodeTable<dim>               spline_nodes;
-    std::vector<SplineCell<dim>> splines; // by cell
+    // Only where the kernel is quadratic, or cubic; by cell
+    NodeTable<dim>                  quadratic_nodes;
+    std::vector<SplineCell<dim, 2>> quadratics;
+    std::vector<SplineCell<dim, 3>> cubics;
 
   private:
     struct Numbering;

@@ -66,14 +66,18 @@ namespace limber
 
 
   /**
-   * The nodes of the quadratic splines that do not vanish in a cell, as
-   * offsets of their records; the first direction runs fastest.
+   * The nodes of the splines that do not vanish in a cell, as offsets of their
+   * records; the first direction runs fastest. Where there is none, beyond a
+   * side, that of the node in the side, and the function is zero.
    */
-  template <int dim>
+  template <int dim, int degree>
   struct SplineCell
   {
-    std::array<std::uint32_t, dim == 2 ? 9 : 27> node;
-    // Of each direction: 1/2, or 1 where the cell ends at a side of the grid.
+    static constexpr int n = degree + 1; // along a direction
+
+    std::array<std::uint32_t, dim == 2 ? n * n : n * n * n> node;
+    // Of each direction: factors of the first and the last function, others
+    // where the cell ends at a side of the grid (SplineFactors).
     std::array<double, dim> lower, upper;
   };
 
@@ -140,8 +144,9 @@ namespace limber
     const CellGeometry<dim> *cells = nullptr;
     double                  *nodes = nullptr;
     BinView<dim>             bins;
-    // By cell, where the functions of the nodes are splines; else null
-    const SplineCell<dim> *splines = nullptr;
+    // By cell, where the functions of the nodes are such splines; else null
+    const SplineCell<dim, 2> *quadratics = nullptr;
+    const SplineCell<dim, 3> *cubics     = nullptr;
 
     // Cells that a point has entered and that were empty before; their nodes
     // have to join the active ones.

@@ -65,6 +65,9 @@ namespace limber
     // side
     std::unordered_map<std::uint32_t, std::array<std::uint32_t, 1 << dim>>
       inward;
+    // The part of the mass of a node in a held side that joins the lumped mass
+    // of its neighbour inward in full_mass_filter.h, for each direction
+    double inward_share = 0;
   };
 } // namespace limber
 

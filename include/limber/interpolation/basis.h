@@ -3,7 +3,7 @@
 #define limber_interpolation_basis_h
 
 #include <limber/interpolation/linear.h>
-#include <limber/interpolation/quadratic.h>
+#include <limber/interpolation/spline.h>
 
 #include <type_traits>
 
@@ -27,8 +27,9 @@ namespace limber
   auto
   with_basis(const GridView<dim> &grid, const Work &work)
   {
-    return grid.splines != nullptr ? work(Quadratic<dim>()) :
-                                     work(Linear<dim>());
+    return grid.quadratics != nullptr ? work(Quadratic<dim>()) :
+           grid.cubics != nullptr     ? work(Cubic<dim>()) :
+                                        work(Linear<dim>());
   }
 } // namespace limber
 

@@ -202,15 +202,35 @@ namespace limber
     __attribute__((always_inline))
     NodalCoefficients(const GridView<dim> &grid, const std::uint32_t cell)
     {
-      const auto                       &nodes = Basis::nodes_of(grid, cell);
-      std::array<Lanes, Basis::n_nodes> a;
+      const auto &nodes = Basis::nodes_of(grid, cell);
+      const auto  read  = [&](const int i) __attribute__((always_inline))
+      {
+        return load<Lanes>(grid.nodes + nodes.node[i] + start);
+      };
+      const auto keep = [&](const int k, const Lanes &value)
+        __attribute__((always_inline))
+      {
+        store(value, &coefficients[k * width]);
+      };
+      if constexpr (Basis::n_nodes > 32) // than there are registers
+        Basis::template to_monomials_by_planes<Lanes>(
+          nodes,
+          read,
+          [&](const int k) __attribute__((always_inline)) {
+            return load<Lanes>(&coefficients[k * width]);
+          },
+          keep);
+      else
+        {
+          std::array<Lanes, Basis::n_nodes> a;
 #pragma GCC unroll 27
-      for (int i = 0; i < Basis::n_nodes; ++i)
-        a[i] = load<Lanes>(grid.nodes + nodes.node[i] + start);
-      Basis::to_monomials(a, nodes);
+          for (int i = 0; i < Basis::n_nodes; ++i)
+            a[i] = read(i);
+          Basis::to_monomials(a, nodes);
 #pragma GCC unroll 27
-      for (int i = 0; i < Basis::n_nodes; ++i)
-        store(a[i], &coefficients[i * width]);
+          for (int i = 0; i < Basis::n_nodes; ++i)
+            keep(i, a[i]);
+        }
     }
 
     /** Coefficients of one component, counted from the first slot. */

@@ -4,6 +4,8 @@
 
 #include <limber/interpolation/basis.h>
 
+#include <algorithm>
+
 namespace limber
 {
   /**
@@ -14,7 +16,7 @@ namespace limber
   template <int dim>
   struct Support
   {
-    static constexpr int most = Quadratic<dim>::n_nodes;
+    static constexpr int most = Cubic<dim>::n_nodes;
 
     int                                       n = 0;    // of nodes
     std::array<std::uint32_t, most>           node;     // local numbers
@@ -30,7 +32,7 @@ namespace limber
     template <int dim>
     struct Factors
     {
-      std::array<double, 3> value, slope;
+      std::array<double, 4> value, slope;
     };
 
     template <int dim>
@@ -40,15 +42,18 @@ namespace limber
       return {{{1 - xi, xi}}, {{-1, 1}}};
     }
 
-    template <int dim>
+    template <int dim, int degree>
     Factors<dim>
-    factors(const Quadratic<dim>,
-            const SplineCell<dim> &nodes,
-            const int              d,
-            const double           xi)
+    factors(const Spline<dim, degree>,
+            const SplineCell<dim, degree> &nodes,
+            const int                      d,
+            const double                   xi)
     {
-      const auto w = Quadratic<dim>::weights(nodes, d, xi);
-      return {w.value, w.slope};
+      const auto   w = Spline<dim, degree>::weights(nodes, d, xi);
+      Factors<dim> result{};
+      std::copy(w.value.begin(), w.value.end(), result.value.begin());
+      std::copy(w.slope.begin(), w.slope.end(), result.slope.begin());
+      return result;
     }
   } // namespace internal
 

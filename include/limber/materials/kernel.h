@@ -10,8 +10,15 @@ namespace limber
     automatic, // linear or quadratic, by bodies and frames
     linear,    // Q1 shape functions
     quadratic, // quadratic B-splines
+    cubic,     // cubic B-splines
     cpdi       // linear, averaged over convected domains of points
   };
+
+  inline constexpr bool
+  is_spline(const KernelKind kernel)
+  {
+    return kernel == KernelKind::quadratic || kernel == KernelKind::cubic;
+  }
 } // namespace limber
 
 #endif

@@ -87,12 +87,17 @@ namespace limber
 
 
 
-  /** All with splines, of any law, in a translation unit of their own. */
+  /** All with splines, of any law, each in a translation unit of its own. */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_spline_sweep(const AnyLaw           &law,
-                    const StrainProjection &projection,
-                    Frame                   frame);
+  make_quadratic_sweep(const AnyLaw           &law,
+                       const StrainProjection &projection,
+                       Frame                   frame);
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_cubic_sweep(const AnyLaw           &law,
+                   const StrainProjection &projection,
+                   Frame                   frame);
 
   /** The same for points with convected domains. */
   template <int dim>

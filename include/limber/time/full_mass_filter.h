@@ -23,9 +23,10 @@ namespace limber
    * points is gone after one step. What sides hold stays as it is.
    *
    * D is the lumped mass. Next to a side that holds a component, splines have
-   * that of mirrored material: the mass of the held node joins that of its
-   * neighbour inward. Without it the iteration would begin far off there, where
-   * p / m of a linear field is 3/4 instead of 1/2 a cell from the side.
+   * that of mirrored material: the mass of the held node, or a part of it
+   * (NodeTable::inward_share), joins that of its neighbour inward. Without it
+   * the iteration would begin far off there, where p / m of a linear field is
+   * 3/4 instead of 1/2 a cell from the side with quadratic splines.
    *
    * (Nairn and Hammerquist, CMAME 380, 2021; Hammerquist and Nairn, CMAME 318,
    * 2017 for XPIC)
@@ -93,6 +94,19 @@ namespace limber
     lumped_mass(const std::uint32_t node)
     {
       return lumped.data() + std::size_t(node) * dim;
+    }
+
+    /** What joins the lumped mass of the neighbour in these directions, kg. */
+    double
+    mass_inward(const NodalFields<dim> &nodes,
+                const std::uint32_t     node,
+                const unsigned int      directions) const
+    {
+      double result = nodes.record(node)[Layout::mass];
+      for (int d = 0; d < dim; ++d)
+        if (directions >> d & 1)
+          result *= table.inward_share;
+      return result;
     }
 
     /** See BoundaryConditions::held(); nothing holds nodes in the middle. */

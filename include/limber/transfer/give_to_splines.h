@@ -3,7 +3,8 @@
 #define limber_transfer_give_to_splines_h
 
 #include <limber/interpolation/batch_lanes.h>
-#include <limber/interpolation/quadratic.h>
+#include <limber/interpolation/spline.h>
+#include <limber/transfer/give_by_rows.h>
 
 namespace limber
 {
@@ -11,10 +12,10 @@ namespace limber
    * Weights of all nodes of a cell at the points of a pack, in memory, so that
    * each can be spread over the lanes of a record as it is loaded.
    */
-  template <int dim, bool slopes>
+  template <class Basis, bool slopes>
   struct SplineWeights
   {
-    using Basis                              = Quadratic<dim>;
+    static constexpr int dim                 = Basis::dim;
     using Number                             = PointPack<dim>;
     static constexpr int         width       = pack_width<Number>;
     static constexpr int         n           = Basis::n_nodes;
@@ -22,10 +23,10 @@ namespace limber
 
     __attribute__((always_inline))
     SplineWeights(const CellGeometry<dim>       &cell,
-                  const SplineCell<dim>         &nodes,
+                  const typename Basis::Cell    &nodes,
                   const std::array<Number, dim> &xi)
     {
-      std::array<typename Basis::template Weights<Number>, dim> w;
+      std::array<typename Basis::Factors::template Weights<Number>, dim> w;
 #pragma GCC unroll 3
       for (int d = 0; d < dim; ++d)
         {
@@ -79,11 +80,11 @@ namespace limber
    * of a local object, so that they stay in registers; those of a batch, which
    * work that is called apart has to know (for_each_pack), live in memory.
    */
-  template <int dim, unsigned int first, unsigned int n_slots>
+  template <class Basis, unsigned int first, unsigned int n_slots>
   class SplineSums
   {
   public:
-    using Basis                         = Quadratic<dim>;
+    static constexpr int dim            = Basis::dim;
     using Window                        = RecordWindow<dim, first, n_slots>;
     using Record                        = typename Window::Lanes;
     static constexpr unsigned int width = Window::width;
@@ -124,7 +125,7 @@ namespace limber
     }
 
     __attribute__((always_inline)) void
-    add_to_nodes(const SplineCell<dim> &cell, double *const nodes) const
+    add_to_nodes(const typename Basis::Cell &cell, double *const nodes) const
     {
 #pragma GCC unroll 27
       for (int i = 0; i < Basis::n_nodes; ++i)
@@ -140,57 +141,188 @@ namespace limber
 
 
   /**
-   * What the points of a pack give, as records of slots, to the sums of the
-   * nodes of their cell: m N_i and m N_i (v + C (x_i - x)), or the second
-   * alone where slots of the mass are not among those summed up.
+   * What the points of a pack give to all nodes alike but for N_i, as records:
+   * m and m v, or the second alone where slots of the mass are not among those
+   * summed up.
    */
-  template <int dim, bool affine, class Lanes, class Sums>
-  __attribute__((always_inline)) inline void
-  give_momentum(const PointView<dim>                  &points,
-                const CellGeometry<dim>               &cell,
-                const SplineCell<dim>                 &nodes,
-                const Lanes                           &lanes,
-                const std::array<PointPack<dim>, dim> &xi,
-                const double (&weights)[Quadratic<dim>::n_nodes][1 << dim],
-                const unsigned int momentum, // its first slot
-                Sums              &sums)
+  template <class Sums, int dim, class Lanes>
+  __attribute__((always_inline)) inline auto
+  momentum_records(const PointView<dim> &points,
+                   const Lanes          &lanes,
+                   const unsigned int    momentum) // its first slot
   {
-    using Number            = PointPack<dim>;
-    using Basis             = Quadratic<dim>;
-    using Record            = typename Sums::Record;
-    constexpr bool has_mass = Sums::start == 0;
+    using Number = PointPack<dim>;
 
     const Number                    mass = lanes.load(points.mass);
     std::array<Number, Sums::width> slots;
     set_zero(slots);
-    if constexpr (has_mass)
+    if constexpr (Sums::start == 0)
       slots[NodeLayout<dim>::mass] = mass;
     for (int d = 0; d < dim; ++d)
       slots[Sums::lane_of(momentum + d)] =
         mass * lanes.load(points.velocity[d]);
-    const auto records = records_of<Record>(slots);
-    for (int p = 0; p < lanes.n; ++p)
-      sums.add(weights, p, records[p]);
+    return records_of<typename Sums::Record>(slots);
+  }
 
-    if constexpr (affine)
-      for (int e = 0; e < dim; ++e)
-        {
-          alignas(64) double moments[Basis::n_nodes][1 << dim];
-          const auto         places = Basis::places(nodes, e);
-          for (int i = 0; i < Basis::n_nodes; ++i)
-            store(load<Number>(weights[i]) *
-                    ((places[Basis::power(i, e)] - xi[e]) /
-                     cell.inverse_edge[e]),
-                  moments[i]);
-          std::array<Number, Sums::width> of_affine;
-          set_zero(of_affine);
-          for (int d = 0; d < dim; ++d)
-            of_affine[Sums::lane_of(momentum + d)] =
-              mass * lanes.load(points.affine[d * dim + e]);
-          const auto added = records_of<Record>(of_affine);
-          for (int p = 0; p < lanes.n; ++p)
-            sums.add(moments, p, added[p]);
-        }
+
+
+  /** m C_e, to be given with N_i (x_i - x)_e. */
+  template <class Sums, int dim, class Lanes>
+  __attribute__((always_inline)) inline auto
+  affine_records(const PointView<dim> &points,
+                 const Lanes          &lanes,
+                 const unsigned int    momentum,
+                 const int             e)
+  {
+    using Number = PointPack<dim>;
+
+    const Number                    mass = lanes.load(points.mass);
+    std::array<Number, Sums::width> slots;
+    set_zero(slots);
+    for (int d = 0; d < dim; ++d)
+      slots[Sums::lane_of(momentum + d)] =
+        mass * lanes.load(points.affine[d * dim + e]);
+    return records_of<typename Sums::Record>(slots);
+  }
+
+
+
+  /** Forces - V t, to be given with the derivatives of N_i along e. */
+  template <class Sums, int dim>
+  __attribute__((always_inline)) inline auto
+  force_records(const SmallMatrix<dim, PointPack<dim>> &Vt, const int e)
+  {
+    std::array<PointPack<dim>, Sums::width> slots;
+    set_zero(slots);
+#pragma GCC unroll 3
+    for (int d = 0; d < dim; ++d)
+      slots[Sums::lane_of(NodeLayout<dim>::force + d)] = -Vt[d][e];
+    return records_of<typename Sums::Record>(slots);
+  }
+
+
+
+  /** What of a pack of points is given to the nodes. */
+  template <bool give_momentum, bool give_affine, bool give_force>
+  struct Given
+  {
+    static constexpr bool momentum = give_momentum, affine = give_affine,
+                          force = give_force;
+  };
+
+
+
+  /**
+   * Add to the sums of a batch what a pack of its points gives: m N_i and
+   * m N_i (v + C (x_i - x)), and with @p Vt (J) the force - V t grad N_i. Sums
+   * of quadratic splines stay in registers while one point after the other adds
+   * to them; those of cubic ones, which would not, are done row by row.
+   */
+  template <class Basis, class What, class Sums, class Lanes>
+  __attribute__((always_inline)) inline void
+  give_pack(const PointView<Basis::dim>                         &points,
+            const CellGeometry<Basis::dim>                      &cell,
+            const typename Basis::Cell                          &nodes,
+            const Lanes                                         &lanes,
+            const std::array<PointPack<Basis::dim>, Basis::dim> &xi,
+            const unsigned int momentum, // its first slot
+            const SmallMatrix<Basis::dim, PointPack<Basis::dim>> &Vt,
+            const bool begins, // the sums of the batch
+            Sums      &of_batch)
+  {
+    constexpr int dim = Basis::dim;
+    using Number      = PointPack<dim>;
+    // Distances of the nodes from the points along e, m
+    const auto arms = [&](const int e) __attribute__((always_inline))
+    {
+      const auto                   places = Basis::places(nodes, e);
+      std::array<Number, Basis::n> result;
+      for (int i = 0; i < Basis::n; ++i)
+        result[i] = (places[i] - xi[e]) / cell.inverse_edge[e];
+      return result;
+    };
+    if constexpr (Basis::degree == 2)
+      {
+        const SplineWeights<Basis, What::force> weights(cell, nodes, xi);
+        Sums                                    sums;
+        sums.clear();
+        if constexpr (What::momentum)
+          {
+            const auto records =
+              momentum_records<Sums>(points, lanes, momentum);
+            for (int p = 0; p < lanes.n; ++p)
+              sums.add(weights.value, p, records[p]);
+          }
+        if constexpr (What::affine)
+          for (int e = 0; e < dim; ++e)
+            {
+              alignas(64) double moments[Basis::n_nodes][1 << dim];
+              const auto         arm = arms(e);
+              for (int i = 0; i < Basis::n_nodes; ++i)
+                store(load<Number>(weights.value[i]) * arm[Basis::power(i, e)],
+                      moments[i]);
+              const auto added =
+                affine_records<Sums>(points, lanes, momentum, e);
+              for (int p = 0; p < lanes.n; ++p)
+                sums.add(moments, p, added[p]);
+            }
+        if constexpr (What::force)
+#pragma GCC unroll 3
+          for (int e = 0; e < dim; ++e)
+            {
+              const auto records = force_records<Sums, dim>(Vt, e);
+              for (int p = 0; p < lanes.n; ++p)
+                sums.add(weights.gradient[e], p, records[p]);
+            }
+        of_batch.take(sums, begins);
+      }
+    else
+      {
+        using Factors = RowFactors<Basis, What::force>;
+        typename Factors::OfDirections values, slopes;
+#pragma GCC unroll 3
+        for (int d = 0; d < dim; ++d)
+          {
+            const auto w = Basis::weights(nodes, d, xi[d]);
+            values[d]    = w.value;
+            slopes[d]    = w.slope;
+#pragma GCC unroll 4
+            for (Number &slope : slopes[d])
+              slope *= cell.inverse_edge[d];
+          }
+        std::array<typename Sums::Record, Factors::width> alike;
+        std::array<decltype(alike), dim>                  along;
+        if constexpr (What::momentum)
+          alike = momentum_records<Sums>(points, lanes, momentum);
+        if constexpr (What::force)
+#pragma GCC unroll 3
+          for (int e = 0; e < dim; ++e)
+            along[e] = force_records<Sums, dim>(Vt, e);
+        add_by_rows<Basis, What::momentum, What::force>(Factors(values, slopes),
+                                                        alike,
+                                                        along,
+                                                        lanes.n,
+                                                        begins,
+                                                        of_batch.sums);
+        if constexpr (What::affine)
+          {
+            auto moments = values;
+            for (int e = 0; e < dim; ++e)
+              {
+                const auto arm = arms(e);
+                for (int i = 0; i < Basis::n; ++i)
+                  moments[e][i] *= arm[i];
+                along[e] = affine_records<Sums>(points, lanes, momentum, e);
+              }
+            add_by_rows<Basis, false, true>(RowFactors<Basis, true>(values,
+                                                                    moments),
+                                            alike,
+                                            along,
+                                            lanes.n,
+                                            false,
+                                            of_batch.sums);
+          }
+      }
   }
 } // namespace limber
 

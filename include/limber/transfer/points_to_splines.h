@@ -6,13 +6,16 @@
 
 namespace limber
 {
-  /** What points_to_grid() does where the functions are quadratic splines. */
-  template <int dim>
+  /**
+   * What points_to_grid() does where the functions are splines, those of
+   * @p Basis; each degree in a translation unit of its own.
+   */
+  template <class Basis>
   std::size_t
-  points_to_splines(const PointView<dim> &points,
-                    const GridView<dim>  &grid,
-                    const GiveToGrid     &what,
-                    const CellSums<dim>  *sums);
+  points_to_splines(const PointView<Basis::dim> &points,
+                    const GridView<Basis::dim>  &grid,
+                    const GiveToGrid            &what,
+                    const CellSums<Basis::dim>  *sums);
 } // namespace limber
 
 #endif

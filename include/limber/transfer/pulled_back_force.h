@@ -54,15 +54,17 @@ namespace limber
 
 
 
-  template <int dim>
-  class PulledBackForce<Quadratic<dim>>
+  template <int dim, int degree>
+  class PulledBackForce<Spline<dim, degree>>
   {
+    using Basis = Spline<dim, degree>;
+
   public:
     __attribute__((always_inline))
     PulledBackForce(const GridView<dim> &grid, const std::uint32_t cell)
       : grid(grid)
       , cell(grid.cells[cell])
-      , nodes(grid.splines[cell])
+      , nodes(Basis::nodes_of(grid, cell))
     {
       of_batch.clear();
     }
@@ -73,22 +75,9 @@ namespace limber
         const std::array<PointPack<dim>, dim>  &xi,
         const Lanes                            &lanes)
     {
-      const SplineWeights<dim, true> weights(cell, nodes, xi);
-      Sums                           sums;
-      sums.clear();
-#pragma GCC unroll 3
-      for (int e = 0; e < dim; ++e)
-        {
-          std::array<PointPack<dim>, Sums::width> slots;
-          set_zero(slots);
-#pragma GCC unroll 3
-          for (int d = 0; d < dim; ++d)
-            slots[Sums::lane_of(NodeLayout<dim>::force + d)] = -VP[d][e];
-          const auto records = records_of<typename Sums::Record>(slots);
-          for (int p = 0; p < lanes.n; ++p)
-            sums.add(weights.gradient[e], p, records[p]);
-        }
-      of_batch.take(sums, false);
+      // nothing is asked of the points but their stress
+      give_pack<Basis, Given<false, false, true>>(
+        PointView<dim>(), cell, nodes, lanes, xi, 0, VP, false, of_batch);
     }
 
     __attribute__((always_inline)) void
@@ -98,12 +87,12 @@ namespace limber
     }
 
   private:
-    using Sums = SplineSums<dim, NodeLayout<dim>::force, dim>;
+    using Sums = SplineSums<Basis, NodeLayout<dim>::force, dim>;
 
-    const GridView<dim>     &grid;
-    const CellGeometry<dim> &cell;
-    const SplineCell<dim>   &nodes;
-    Sums                     of_batch;
+    const GridView<dim>        &grid;
+    const CellGeometry<dim>    &cell;
+    const typename Basis::Cell &nodes;
+    Sums                        of_batch;
   };
 } // namespace limber
 

@@ -81,6 +81,7 @@ namespace
   };
 
   constexpr KernelKind quadratic = KernelKind::quadratic;
+  constexpr KernelKind cubic     = KernelKind::cubic;
 
   using Cases = testing::Types<Case<2, Projection::none>,
                                Case<2, Projection::cell>,
@@ -107,7 +108,19 @@ namespace
                                Case<3, Projection::cell_shear, quadratic>,
                                Case<3, Projection::cell_full, quadratic>,
                                Case<3, Projection::node, quadratic>,
-                               Case<3, Projection::hybrid, quadratic>>;
+                               Case<3, Projection::hybrid, quadratic>,
+                               Case<2, Projection::none, cubic>,
+                               Case<2, Projection::cell, cubic>,
+                               Case<2, Projection::cell_shear, cubic>,
+                               Case<2, Projection::cell_full, cubic>,
+                               Case<2, Projection::node, cubic>,
+                               Case<2, Projection::hybrid, cubic>,
+                               Case<3, Projection::none, cubic>,
+                               Case<3, Projection::cell, cubic>,
+                               Case<3, Projection::cell_shear, cubic>,
+                               Case<3, Projection::cell_full, cubic>,
+                               Case<3, Projection::node, cubic>,
+                               Case<3, Projection::hybrid, cubic>>;
   TYPED_TEST_SUITE(Strain, Cases);
 } // namespace
 
@@ -221,9 +234,8 @@ TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
   std::vector<Sums> sums(this->grid.n_cells);
   for (std::size_t p = 0; p < points.size; ++p)
     {
-      Sums       &sum = sums[points.cell[p]];
-      const auto &nodes =
-        TestFixture::Basis::nodes_of(this->grid, points.cell[p]);
+      Sums       &sum   = sums[points.cell[p]];
+      const auto &nodes = this->grid.nodes_of(points.cell[p]);
       Matrix<dim> L{};
       for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
         {
@@ -281,13 +293,13 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
         return i + (last - 2 * Basis::power(i, across)) * Basis::stride(across);
       };
       // one cell with a few points, and its mirror image
-      CellGeometry<dim> cell;
-      SplineCell<dim>   spline;
+      CellGeometry<dim>                  cell;
+      typename TestFixture::Grid::Spline spline;
       for (int d = 0; d < dim; ++d)
         {
           cell.origin[d]       = 0;
           cell.inverse_edge[d] = 1 + 0.5 * d;
-          spline.lower[d] = spline.upper[d] = 0.5;
+          spline.lower[d] = spline.upper[d] = TestFixture::Grid::inner_factor();
         }
       for (int i = 0; i < 1 << dim; ++i)
         cell.node[i] = i * Layout::stride;
@@ -338,9 +350,12 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
         CellSums<dim> view;
         view.now = moments.data();
         GridView<dim> grid;
-        grid.cells   = &cell;
-        grid.splines = &spline;
-        grid.nodes   = records.data();
+        grid.cells = &cell;
+        if constexpr (TestFixture::Grid::degree == 2)
+          grid.quadratics = &spline;
+        if constexpr (TestFixture::Grid::degree == 3)
+          grid.cubics = &spline;
+        grid.nodes = records.data();
         const NodalCoefficients<Basis, Layout::velocity, dim> velocities(grid,
                                                                          0);
         const auto                              velocity = velocities.field(0);

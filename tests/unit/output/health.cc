@@ -162,6 +162,7 @@ namespace limber::test
     EXPECT_EQ(of(KernelKind::linear, true, 3), Verdict::bad);
     EXPECT_EQ(of(KernelKind::quadratic, true, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::quadratic, true, 3), Verdict::good);
+    EXPECT_EQ(of(KernelKind::cubic, true, 3), Verdict::good);
     EXPECT_EQ(of(KernelKind::cpdi, false, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpdi, true, 2), Verdict::good);
   }

@@ -169,6 +169,9 @@ namespace
   template <class Law, int dim, Projection kind>
   using OnSplines = FrameCase<Law, dim, kind, KernelKind::quadratic>;
 
+  template <class Law, int dim, Projection kind>
+  using OnCubics = FrameCase<Law, dim, kind, KernelKind::cubic>;
+
   using Cases =
     testing::Types<FrameCase<LinearElastic, 2, Projection::none>,
                    FrameCase<LinearElastic, 2, Projection::cell>,
@@ -187,7 +190,11 @@ namespace
                    OnSplines<NeoHookean, 2, Projection::none>,
                    OnSplines<NeoHookean, 2, Projection::cell>,
                    OnSplines<NeoHookean, 3, Projection::none>,
-                   OnSplines<NeoHookean, 3, Projection::cell>>;
+                   OnSplines<NeoHookean, 3, Projection::cell>,
+                   OnCubics<LinearElastic, 2, Projection::cell>,
+                   OnCubics<NeoHookean, 2, Projection::none>,
+                   OnCubics<NeoHookean, 3, Projection::none>,
+                   OnCubics<NeoHookean, 3, Projection::cell>>;
   TYPED_TEST_SUITE(InitialFrame, Cases);
 } // namespace
 

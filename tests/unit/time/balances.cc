@@ -225,7 +225,7 @@ TEST(Balances, MovingAndStickingFloorsTakeTheBlockAlong)
 TEST(Balances, AFloorTakesNoEnergyInTheInitialFrame)
 {
   for (const std::string order : {"musl", "usavg"})
-    for (const std::string kernel : {"linear", "quadratic"})
+    for (const std::string kernel : {"linear", "quadratic", "cubic"})
       {
         SCOPED_TRACE(order + ", " + kernel);
         SceneRun<2>  run(block_on_floor,

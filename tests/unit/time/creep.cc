@@ -136,6 +136,8 @@ TEST(Creep, OfABarUnderTensionThatMovesThroughTheGrid)
   // smooth functions
   EXPECT_LT(std::abs(creep_per_cell("quadratic", 2)), 0.01);
   EXPECT_LT(std::abs(creep_per_cell("quadratic", 3)), 0.001);
+  EXPECT_LT(std::abs(creep_per_cell("cubic", 2)), 0.001);
+  EXPECT_LT(std::abs(creep_per_cell("cubic", 3)), 0.0005);
 }
 
 

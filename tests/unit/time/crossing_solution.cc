@@ -152,6 +152,14 @@ TEST(CrossingSolution, SplinesAreOfSecondOrder)
 
 
 
+TEST(CrossingSolution, CubicSplinesAreOfSecondOrder)
+{
+  expect_order("cubic", "flip", {8, 16}, 1.8);
+  expect_order("cubic", "fmpm", {4, 8}, 1.8);
+}
+
+
+
 TEST(CrossingSolution, ConvectedDomainsAreOfSecondOrder)
 {
   EXPECT_LT(crossing_error("cpdi", "flip", 8), 0.12);

@@ -122,8 +122,8 @@ namespace
 
 
 
-// Table B4: a = 0.1354 and 0.260 with FLIP; with the full mass waves are as
-// good as the functions of the nodes are.
+// Table B4: a = 0.1354, 0.260 and 0.333 with FLIP; with the full mass waves are
+// as good as the functions of the nodes are.
 TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
 {
   struct Expected
@@ -136,8 +136,12 @@ TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
        {// the walls take from points what they bring, an error of order 1 / N
         Expected{{"linear", "flip"}, 0.1354, 0.006, {64}},
         Expected{{"quadratic", "flip"}, 0.260, 0.010},
+        // the mass of the functions next to a wall is not that of mirrored
+        // material, an error of order 1 / N as well
+        Expected{{"cubic", "flip"}, 0.333, 0.012, {32}},
         Expected{{"linear", "fmpm 4"}, -0.052, 0.008},
         Expected{{"quadratic", "fmpm 4"}, 0.0104, 0.004},
+        Expected{{"cubic", "fmpm 4"}, 0.002, 0.004},
         Expected{{"quadratic", "xpic 4"}, 0.125, 0.02}})
     for (const unsigned int n : cells)
       {
@@ -155,7 +159,7 @@ TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
 // No node sees velocities +1 and -1 of the points of a cell.
 TEST(Dispersion, NullSpaceIsGoneAfterOneStep)
 {
-  for (const string kernel : {"linear", "quadratic"})
+  for (const string kernel : {"linear", "quadratic", "cubic"})
     for (const string order : {"1", "2", "4", "16"})
       {
         SCOPED_TRACE(kernel + ", FMPM(" + order + ")");
@@ -175,17 +179,21 @@ TEST(Dispersion, NullSpaceIsGoneAfterOneStep)
 
 
 
-// Dense points: S = (2 + c) / 3 and (33 + 26 c + c2) / 60. A step so short that
-// stress does nothing leaves only the transfer.
+// Dense points: S = (2 + c) / 3, (33 + 26 c + c2) / 60 and (1208 + 1191 c +
+// 120 c2 + c3) / 2520. A step so short that stress does nothing leaves only the
+// transfer.
 TEST(Dispersion, FmpmLosesOfAWaveWhatItsOrderSays)
 {
   constexpr unsigned int n = 32;
   const double theta       = dealii::numbers::PI / 8; // a wave of sixteen cells
-  for (const string kernel : {"linear", "quadratic"})
+  for (const string kernel : {"linear", "quadratic", "cubic"})
     {
-      const double c = std::cos(theta), c2 = std::cos(2 * theta);
+      const double c = std::cos(theta), c2 = std::cos(2 * theta),
+                   c3 = std::cos(3 * theta);
       const double S =
-        kernel == "linear" ? (2 + c) / 3 : (33 + 26 * c + c2) / 60;
+        kernel == "linear"    ? (2 + c) / 3 :
+        kernel == "quadratic" ? (33 + 26 * c + c2) / 60 :
+                                (1208 + 1191 * c + 120 * c2 + c3) / 2520;
       for (const unsigned int k : {1u, 2u, 3u})
         {
           SCOPED_TRACE(kernel + ", FMPM(" + std::to_string(k) + ")");
@@ -206,7 +214,7 @@ TEST(Dispersion, FmpmLosesOfAWaveWhatItsOrderSays)
 
 
 // nu = (p + 1) / 12 h^2 / dt with dense points, p being the degree, and with 2
-// points per edge 3/16 or 1/4; for waves along the bar as for shear.
+// points per edge 3/16, 1/4 or 1/3; for waves along the bar as for shear.
 TEST(Dispersion, PicIsAViscosity)
 {
   const double theta = dealii::numbers::PI / 16;
@@ -219,7 +227,9 @@ TEST(Dispersion, PicIsAViscosity)
        {Expected{"linear", "2", 3. / 16},
         Expected{"linear", "8, 1", 1. / 6},
         Expected{"quadratic", "2", 1. / 4},
-        Expected{"quadratic", "8, 1", 1. / 4}})
+        Expected{"quadratic", "8, 1", 1. / 4},
+        Expected{"cubic", "2", 1. / 3},
+        Expected{"cubic", "8, 1", 1. / 3}})
     for (const int component : {0, 1})
       {
         SCOPED_TRACE(kernel + ", " + points +

@@ -103,7 +103,7 @@ namespace
           {
             // a node of each cell: its lowest corner, or its middle
             const auto          &geometry = grid.cells[cell];
-            const bool           splines  = grid.splines != nullptr;
+            const bool           splines  = grid.quadratics != nullptr;
             dealii::Tensor<1, 2> place;
             for (int d = 0; d < 2; ++d)
               place[d] = geometry.origin[d] + (splines ? 0.5 : 0);
@@ -111,7 +111,7 @@ namespace
               continue;
             const double *const record =
               grid.nodes +
-              (splines ? grid.splines[cell].node[4] : geometry.node[0]);
+              (splines ? grid.quadratics[cell].node[4] : geometry.node[0]);
             for (int d = 0; d < 2; ++d, ++n)
               sum += std::pow(record[Layout::mass] *
                                 record[Layout::increment + d] / step,
@@ -138,6 +138,8 @@ TEST(ForceNoise, OfAStressedBlockThatMovesThroughTheGrid)
       const double crossing = 2. / (points * points);
       EXPECT_GT(linear, 0.25 * crossing);
       EXPECT_LT(linear, 4 * crossing);
-      EXPECT_LT(force_noise("quadratic", points), 0.2 * linear);
+      const double quadratic = force_noise("quadratic", points);
+      EXPECT_LT(quadratic, 0.2 * linear);
+      EXPECT_LT(force_noise("cubic", points), 0.2 * quadratic);
     }
 }

@@ -59,7 +59,7 @@ namespace
 // points to an edge of cells: USL does not bear nodes of hardly any mass.
 TEST(FullMass, MomentumIsKeptInFlight)
 {
-  for (const string kernel : {"linear", "quadratic"})
+  for (const string kernel : {"linear", "quadratic", "cubic"})
     for (const string transfer : {"fmpm", "xpic"})
       for (const string order : {"1", "2", "4"})
         {
@@ -83,7 +83,7 @@ TEST(FullMass, MomentumIsKeptInFlight)
 // Into the corner of two sides, of which one may hold everything.
 TEST(FullMass, ImpulsesOfSidesExplainTheMomentum)
 {
-  for (const string kernel : {"linear", "quadratic"})
+  for (const string kernel : {"linear", "quadratic", "cubic"})
     for (const string transfer : {"fmpm", "xpic"})
       for (const string order : {"1", "2", "4"})
         for (const string side : {"slip", "no slip", "friction", "velocity"})
@@ -117,7 +117,7 @@ TEST(FullMass, ImpulsesOfSidesExplainTheMomentum)
 // On the floor under its weight.
 TEST(FullMass, ReactionOfARestingBlockIsItsWeight)
 {
-  for (const string kernel : {"linear", "quadratic"})
+  for (const string kernel : {"linear", "quadratic", "cubic"})
     for (const string transfer : {"fmpm", "xpic"})
       for (const string side : {"slip", "no slip"})
         {
@@ -151,7 +151,7 @@ TEST(FullMass, ReactionOfARestingBlockIsItsWeight)
 TEST(FullMass, LossesAreThoseOfSidesAtRest)
 {
   constexpr double W = 3e-9;
-  for (const string kernel : {"linear", "quadratic"})
+  for (const string kernel : {"linear", "quadratic", "cubic"})
     for (const string transfer : {"fmpm", "xpic"})
       for (const string order : {"1", "2", "4"})
         {

@@ -63,7 +63,7 @@ namespace
 
 TEST(Leapfrog, LookingChangesNothing)
 {
-  for (const std::string kernel : {"linear", "quadratic"})
+  for (const std::string kernel : {"linear", "quadratic", "cubic"})
     for (const std::string order : {"usl", "musl", "usavg"})
       {
         SCOPED_TRACE(kernel + ", " + order);
@@ -88,7 +88,7 @@ TEST(Leapfrog, LookingChangesNothing)
 
 TEST(Leapfrog, BothEndsAreOfSecondOrderInTime)
 {
-  for (const std::string kernel : {"linear", "quadratic"})
+  for (const std::string kernel : {"linear", "quadratic", "cubic"})
     {
       SCOPED_TRACE(kernel);
       std::vector<std::vector<dealii::Point<2>>> ends;

@@ -86,7 +86,9 @@ namespace
   using Cases = testing::Types<Case<2, KernelKind::linear>,
                                Case<3, KernelKind::linear>,
                                Case<2, KernelKind::quadratic>,
-                               Case<3, KernelKind::quadratic>>;
+                               Case<3, KernelKind::quadratic>,
+                               Case<2, KernelKind::cubic>,
+                               Case<3, KernelKind::cubic>>;
   TYPED_TEST_SUITE(PointsToGrid, Cases);
 } // namespace
 

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_transfer_points_to_splines_sweep_h
+#define limber_transfer_points_to_splines_sweep_h
+
 #include <limber/interpolation/cell_means.h>
 #include <limber/interpolation/nodal_means.h>
 #include <limber/transfer/give_to_splines.h>
@@ -8,7 +11,7 @@
 
 namespace limber
 {
-  namespace
+  namespace internal
   {
     /** A body gives no forces. */
     struct NoForce
@@ -81,16 +84,16 @@ namespace limber
 
 
     /** Stress that acts on the means of gradients over a cell. */
-    template <int dim, class Sums>
+    template <class Basis, class Sums>
     __attribute__((always_inline)) inline void
-    add_means(const CellGeometry<dim>         &cell,
-              const SplineCell<dim>           &nodes,
-              const CellMeans<Quadratic<dim>> &means,
-              const StressSums<dim>           &stress,
-              Sums                            &sums)
+    add_means(const CellGeometry<Basis::dim> &cell,
+              const typename Basis::Cell     &nodes,
+              const CellMeans<Basis>         &means,
+              const StressSums<Basis::dim>   &stress,
+              Sums                           &sums)
     {
-      using Basis  = Quadratic<dim>;
-      using Record = typename Sums::Record;
+      constexpr int dim = Basis::dim;
+      using Record      = typename Sums::Record;
       std::array<Record, dim> columns{};
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
@@ -111,7 +114,7 @@ namespace limber
 
 
 
-    template <int dim, bool momentum, bool affine, class Force>
+    template <class Basis, bool momentum, bool affine, class Force, int dim>
     std::size_t
     sweep(const PointView<dim> &points,
           const GridView<dim>  &grid,
@@ -120,18 +123,16 @@ namespace limber
     {
       using Layout = NodeLayout<dim>;
       using Number = PointPack<dim>;
-      using Basis  = Quadratic<dim>;
       // mass, force and momentum lie next to each other
       constexpr unsigned int first   = momentum ? Layout::mass : Layout::force;
       constexpr unsigned int n_slots = momentum ? 1 + 2 * dim : dim;
-      using Sums                     = SplineSums<dim, first, n_slots>;
-      using Record                   = typename Sums::Record;
+      using Sums                     = SplineSums<Basis, first, n_slots>;
 
       return for_each_batch(
         points, [&](const CellBatch &batch) __attribute__((always_inline)) {
-          const CellGeometry<dim>         &cell  = grid.cells[batch.cell];
-          const SplineCell<dim>           &nodes = grid.splines[batch.cell];
-          Sums                             of_batch;
+          const CellGeometry<dim> &cell  = grid.cells[batch.cell];
+          const auto              &nodes = Basis::nodes_of(grid, batch.cell);
+          Sums                     of_batch;
           [[maybe_unused]] StressSums<dim> on_means;
           if constexpr (Force::any)
             for (auto &row : on_means)
@@ -139,53 +140,37 @@ namespace limber
 
           for_each_pack<dim>(
             batch, [&](const auto &lanes) __attribute__((always_inline)) {
-              const auto xi = lanes.natural(points, cell);
-              const SplineWeights<dim, Force::any> weights(cell, nodes, xi);
-              Sums                                 to_nodes;
-              to_nodes.clear();
-              if constexpr (momentum)
-                give_momentum<dim, affine>(points,
-                                           cell,
-                                           nodes,
-                                           lanes,
-                                           xi,
-                                           weights.value,
-                                           Layout::momentum,
-                                           to_nodes);
+              const auto               xi = lanes.natural(points, cell);
+              SmallMatrix<dim, Number> Vt;
               if constexpr (Force::any)
-                {
-                  const auto t = Force::template at_points<dim>(
-                    points, cell, lanes, xi, what, on_means);
-#pragma GCC unroll 3
-                  for (int e = 0; e < dim; ++e)
-                    {
-                      std::array<Number, Sums::width> slots;
-                      set_zero(slots);
-#pragma GCC unroll 3
-                      for (int d = 0; d < dim; ++d)
-                        slots[Sums::lane_of(Layout::force + d)] = -t[d][e];
-                      const auto records = records_of<Record>(slots);
-                      for (int p = 0; p < lanes.n; ++p)
-                        to_nodes.add(weights.gradient[e], p, records[p]);
-                    }
-                }
-              of_batch.take(to_nodes, lanes.first == batch.begin);
+                Vt = Force::template at_points<dim>(
+                  points, cell, lanes, xi, what, on_means);
+              give_pack<Basis, Given<momentum, affine, Force::any>>(
+                points,
+                cell,
+                nodes,
+                lanes,
+                xi,
+                Layout::momentum,
+                Vt,
+                lanes.first == batch.begin,
+                of_batch);
             });
 
           if constexpr (Force::any)
             if constexpr (Force::has_means)
-              add_means<dim>(cell,
-                             nodes,
-                             CellMeans<Basis>(sums, batch.cell),
-                             on_means,
-                             of_batch);
+              add_means<Basis>(cell,
+                               nodes,
+                               CellMeans<Basis>(sums, batch.cell),
+                               on_means,
+                               of_batch);
           of_batch.add_to_nodes(nodes, grid.nodes);
         });
     }
 
 
 
-    template <int dim, class Force>
+    template <class Basis, class Force, int dim>
     std::size_t
     choose_sums(const PointView<dim> &points,
                 const GridView<dim>  &grid,
@@ -194,15 +179,15 @@ namespace limber
     {
       if constexpr (Force::any)
         if (!what.momentum)
-          return sweep<dim, false, false, Force>(points, grid, what, sums);
+          return sweep<Basis, false, false, Force>(points, grid, what, sums);
       return what.affine ?
-               sweep<dim, true, true, Force>(points, grid, what, sums) :
-               sweep<dim, true, false, Force>(points, grid, what, sums);
+               sweep<Basis, true, true, Force>(points, grid, what, sums) :
+               sweep<Basis, true, false, Force>(points, grid, what, sums);
     }
 
 
 
-    template <int dim, bool deviator>
+    template <class Basis, bool deviator, int dim>
     std::size_t
     choose_projection(const PointView<dim> &points,
                       const GridView<dim>  &grid,
@@ -210,7 +195,7 @@ namespace limber
                       const CellSums<dim>  *sums)
     {
       const auto with = [&](const auto kind) {
-        return choose_sums<dim, StressForce<decltype(kind)::value, deviator>>(
+        return choose_sums<Basis, StressForce<decltype(kind)::value, deviator>>(
           points, grid, what, sums);
       };
       using P = Projection;
@@ -234,36 +219,31 @@ namespace limber
         }
       throw std::logic_error("no such projection with splines");
     }
-  } // namespace
+  } // namespace internal
 
 
 
-  template <int dim>
+  template <class Basis>
   std::size_t
-  points_to_splines(const PointView<dim> &points,
-                    const GridView<dim>  &grid,
-                    const GiveToGrid     &what,
-                    const CellSums<dim>  *sums)
+  points_to_splines(const PointView<Basis::dim> &points,
+                    const GridView<Basis::dim>  &grid,
+                    const GiveToGrid            &what,
+                    const CellSums<Basis::dim>  *sums)
   {
     if (!what.force)
-      return what.momentum ?
-               choose_sums<dim, NoForce>(points, grid, what, sums) :
-               0;
+      return what.momentum ? internal::choose_sums<Basis, internal::NoForce>(
+                               points, grid, what, sums) :
+                             0;
     return points.deviator[0] != nullptr ?
-             choose_projection<dim, true>(points, grid, what, sums) :
-             choose_projection<dim, false>(points, grid, what, sums);
+             internal::choose_projection<Basis, true>(points,
+                                                      grid,
+                                                      what,
+                                                      sums) :
+             internal::choose_projection<Basis, false>(points,
+                                                       grid,
+                                                       what,
+                                                       sums);
   }
-
-
-
-  template std::size_t
-  points_to_splines(const PointView<2> &,
-                    const GridView<2> &,
-                    const GiveToGrid &,
-                    const CellSums<2> *);
-  template std::size_t
-  points_to_splines(const PointView<3> &,
-                    const GridView<3> &,
-                    const GiveToGrid &,
-                    const CellSums<3> *);
 } // namespace limber
+
+#endif

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/batch_lanes.h>
-#include <limber/interpolation/quadratic.h>
+#include <limber/interpolation/spline.h>
 
 #include <gtest/gtest.h>
 #include <support/small_grid.h>
@@ -12,13 +12,22 @@ using namespace limber::testing_support;
 
 namespace
 {
-  template <class Dimension>
-  class QuadraticFunctions : public testing::Test
+  template <int dimension, KernelKind kernel_kind>
+  struct Case
+  {
+    static constexpr int        dim    = dimension;
+    static constexpr KernelKind kernel = kernel_kind;
+  };
+
+
+
+  template <class Case>
+  class Splines : public testing::Test
   {
   public:
-    static constexpr int dim = Dimension::value;
-    using Basis              = Quadratic<dim>;
-    using Grid               = SmallGrid<dim, KernelKind::quadratic>;
+    static constexpr int dim = Case::dim;
+    using Grid               = SmallGrid<dim, Case::kernel>;
+    using Basis              = typename Grid::Basis;
 
     /** Of all nodes of a cell at natural coordinates: N_i, dN_i / dxi_d. */
     struct AtPlace
@@ -28,7 +37,7 @@ namespace
     };
 
     AtPlace
-    products(const SplineCell<dim> &cell, const Vector<dim> &xi) const
+    products(const typename Basis::Cell &cell, const Vector<dim> &xi) const
     {
       AtPlace result;
       for (int i = 0; i < Basis::n_nodes; ++i)
@@ -51,15 +60,17 @@ namespace
     Random random;
   };
 
-  using Dimensions = testing::Types<std::integral_constant<int, 2>,
-                                    std::integral_constant<int, 3>>;
-  TYPED_TEST_SUITE(QuadraticFunctions, Dimensions);
+  using Cases = testing::Types<Case<2, KernelKind::quadratic>,
+                               Case<3, KernelKind::quadratic>,
+                               Case<2, KernelKind::cubic>,
+                               Case<3, KernelKind::cubic>>;
+  TYPED_TEST_SUITE(Splines, Cases);
 } // namespace
 
 
 
 // In the middle of the grid, at its sides, and in a grid of one cell.
-TYPED_TEST(QuadraticFunctions, AreBSplinesWithOpenKnotsAtTheSides)
+TYPED_TEST(Splines, AreBSplinesAlsoAtTheSides)
 {
   constexpr int dim = TestFixture::dim;
   for (const int n : {1, 2, 5})
@@ -89,7 +100,7 @@ TYPED_TEST(QuadraticFunctions, AreBSplinesWithOpenKnotsAtTheSides)
 
 
 
-TYPED_TEST(QuadraticFunctions, HaveConstantsAndLinearFieldsExactly)
+TYPED_TEST(Splines, HaveConstantsAndLinearFieldsExactly)
 {
   constexpr int dim = TestFixture::dim;
   for (const int n : {1, 2, 5})
@@ -133,7 +144,7 @@ TYPED_TEST(QuadraticFunctions, HaveConstantsAndLinearFieldsExactly)
 
 
 // What jumps at the face of a cell makes points creep that cross it.
-TYPED_TEST(QuadraticFunctions, HaveNoJumpInTheGradientBetweenCells)
+TYPED_TEST(Splines, HaveNoJumpInTheGradientBetweenCells)
 {
   constexpr int              dim = TestFixture::dim;
   typename TestFixture::Grid grid(4);
@@ -176,7 +187,7 @@ TYPED_TEST(QuadraticFunctions, HaveNoJumpInTheGradientBetweenCells)
 
 
 
-TYPED_TEST(QuadraticFunctions, MonomialsHaveTheValuesOfTheProducts)
+TYPED_TEST(Splines, MonomialsHaveTheValuesOfTheProducts)
 {
   constexpr int dim = TestFixture::dim;
   using Basis       = typename TestFixture::Basis;
@@ -221,7 +232,7 @@ TYPED_TEST(QuadraticFunctions, MonomialsHaveTheValuesOfTheProducts)
 
 
 // sum_i b_i a_i is the same whether a are nodal values or coefficients.
-TYPED_TEST(QuadraticFunctions, ToNodesIsTheTransposeOfToMonomials)
+TYPED_TEST(Splines, ToNodesIsTheTransposeOfToMonomials)
 {
   using Basis = typename TestFixture::Basis;
   for (const int n : {1, 2, 5})

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/interpolation/quadratic.h>
+#include <limber/interpolation/spline.h>
 #include <limber/stress/make_sweep.h>
 
 namespace limber
 {
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_spline_sweep(const AnyLaw           &any,
-                    const StrainProjection &projection,
-                    const Frame             frame)
+  make_quadratic_sweep(const AnyLaw           &any,
+                       const StrainProjection &projection,
+                       const Frame             frame)
   {
     return std::visit(
       [&](const auto &law) {
@@ -22,7 +22,7 @@ namespace limber
 
 
   template std::unique_ptr<const StressUpdate<2>>
-  make_spline_sweep(const AnyLaw &, const StrainProjection &, Frame);
+  make_quadratic_sweep(const AnyLaw &, const StrainProjection &, Frame);
   template std::unique_ptr<const StressUpdate<3>>
-  make_spline_sweep(const AnyLaw &, const StrainProjection &, Frame);
+  make_quadratic_sweep(const AnyLaw &, const StrainProjection &, Frame);
 } // namespace limber

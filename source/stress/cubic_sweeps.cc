@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/spline.h>
+#include <limber/stress/make_sweep.h>
+
+namespace limber
+{
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_cubic_sweep(const AnyLaw           &any,
+                   const StrainProjection &projection,
+                   const Frame             frame)
+  {
+    return std::visit(
+      [&](const auto &law) {
+        return frame == Frame::initial ?
+                 make_initial_frame_sweep<Cubic<dim>>(law, projection) :
+                 make_sweep<Cubic<dim>>(law, projection);
+      },
+      any);
+  }
+
+
+
+  template std::unique_ptr<const StressUpdate<2>>
+  make_cubic_sweep(const AnyLaw &, const StrainProjection &, Frame);
+  template std::unique_ptr<const StressUpdate<3>>
+  make_cubic_sweep(const AnyLaw &, const StrainProjection &, Frame);
+} // namespace limber
