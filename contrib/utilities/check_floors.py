@@ -25,7 +25,7 @@ FLOORS = [
     ["transfer"],
     ["stress"],
     ["state"],
-    ["time", "output"],
+    ["time", "output", "adaptation"],
     ["simulation"],
     ["study"],
 ]

@@ -226,6 +226,25 @@ namespace limber
 
 
     Admissible
+    integer_from_to(const unsigned int lower,
+                    const unsigned int upper,
+                    const std::string &example)
+    {
+      return Admissible(
+        [lower, upper](const std::string &value) {
+          if (value != "0" && !is_positive_integer(value))
+            return false;
+          const double number = *to_number(value);
+          return number >= lower && number <= upper;
+        },
+        "an integer from " + std::to_string(lower) + " to " +
+          std::to_string(upper),
+        example);
+    }
+
+
+
+    Admissible
     numbers(const unsigned int count, const std::string &example)
     {
       return Admissible(

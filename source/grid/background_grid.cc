@@ -23,6 +23,14 @@
 
 namespace limber
 {
+  namespace
+  {
+    // Of places against the edges of cells, of their length
+    constexpr double tolerance = 1e-6;
+  } // namespace
+
+
+
   /** deal.II's numbers of nodes and cells, from which the tables are made. */
   template <int dim>
   struct BackgroundGrid<dim>::Numbering
@@ -71,26 +79,31 @@ namespace limber
     , communicator(communicator)
     , triangulation(
         communicator,
-        dealii::Triangulation<dim>::limit_level_difference_at_vertices)
+        dealii::Triangulation<dim>::limit_level_difference_at_vertices,
+        // Where cells are divided with points in them, these stay where they
+        // are until balance() moves them.
+        has_levels() ? Mesh::no_automatic_repartitioning :
+                       Mesh::default_setting)
   {
     order_trees_quickly();
     std::vector<unsigned int> coarse(description.cells.begin(),
                                      description.cells.end());
-    unsigned int              refinements = 0;
     while (std::all_of(coarse.begin(), coarse.end(), [](const unsigned int n) {
       return n % 2 == 0;
     }))
       {
         for (unsigned int &n : coarse)
           n /= 2;
-        ++refinements;
+        ++global_refinements;
       }
     dealii::GridGenerator::subdivided_hyper_rectangle(triangulation,
                                                       coarse,
                                                       description.lower,
                                                       description.upper,
                                                       /*colorize=*/true);
-    triangulation.refine_global(refinements);
+    triangulation.refine_global(global_refinements);
+    if (has_levels())
+      triangulation.repartition();
     rebuild();
   }
 
@@ -140,6 +153,7 @@ namespace limber
     vertices.sides.assign(nodes.locally_owned_size() + nodes.n_ghost_indices(),
                           0);
     cell_numbers.assign(triangulation.n_active_cells(), invalid_cell);
+    levels.assign(has_levels() ? geometry.size() : 0, 0);
 
     double                                       smallest = 1e300;
     std::vector<dealii::types::global_dof_index> corners(1 << dim), self(1);
@@ -151,6 +165,8 @@ namespace limber
           own->get_dof_indices(self);
           const std::uint32_t number = cells.global_to_local(self[0]);
           cell_numbers[cell->active_cell_index()] = number;
+          if (has_levels())
+            levels[number] = level_of(cell);
 
           CellGeometry<dim> &entry = geometry[number];
           const auto         lower = cell->vertex(0);
@@ -181,61 +197,183 @@ namespace limber
 
 
 
+  // Bins are the cells of the scene's lattice, over the box around the cells of
+  // this rank; those that are divided have a block each.
   template <int dim>
   void
   BackgroundGrid<dim>::build_bins()
   {
     bins = {};
+    bin_blocks.clear();
     if (geometry.empty())
       return;
 
-    // Bins as fine as the finest cell of this rank, over the box around its
-    // cells.
     std::array<double, dim> upper;
     for (int d = 0; d < dim; ++d)
       {
-        bins.lower[d] = 1e300;
-        upper[d]      = -1e300;
+        bins.lower[d]        = 1e300;
+        upper[d]             = -1e300;
+        bins.inverse_edge[d] = has_levels() ? 1 / description.edge(d) : 0;
         for (const auto &cell : geometry)
           {
             bins.lower[d] = std::min(bins.lower[d], cell.origin[d]);
             upper[d] =
               std::max(upper[d], cell.origin[d] + 1 / cell.inverse_edge[d]);
-            bins.inverse_edge[d] =
-              std::max(bins.inverse_edge[d], cell.inverse_edge[d]);
+            if (!has_levels())
+              bins.inverse_edge[d] =
+                std::max(bins.inverse_edge[d], cell.inverse_edge[d]);
           }
-        bins.n[d] =
-          std::lround((upper[d] - bins.lower[d]) * bins.inverse_edge[d]);
+        if (has_levels()) // the box may begin within a cell of the lattice
+          bins.lower[d] =
+            description.lower[d] +
+            std::floor(tolerance + (bins.lower[d] - description.lower[d]) *
+                                     bins.inverse_edge[d]) /
+              bins.inverse_edge[d];
+        bins.n[d] = std::lround(std::ceil(
+          (upper[d] - bins.lower[d]) * bins.inverse_edge[d] - tolerance));
       }
 
     std::size_t size = 1;
     for (int d = 0; d < dim; ++d)
       size *= bins.n[d];
     bin_table.assign(size, invalid_cell);
-    bins.table        = bin_table.data();
-    bins.one_per_cell = true;
-
+    bins.one_per_cell = !has_levels();
+    bins.per_edge     = 1 << finest_level();
     for (std::uint32_t c = 0; c < geometry.size(); ++c)
+      put_into_bins(c);
+    bins.table  = bin_table.data();
+    bins.blocks = bin_blocks.data();
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  BackgroundGrid<dim>::finest_level() const
+  {
+    return levels.empty() ? 0 : *std::max_element(levels.begin(), levels.end());
+  }
+
+
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::put_into_bins(const std::uint32_t cell)
+  {
+    std::size_t             bin = 0;
+    std::array<double, dim> begin; // in places of a block
+    for (int d = dim - 1; d >= 0; --d)
       {
-        std::array<std::int64_t, 3> first{}, count{{1, 1, 1}};
-        for (int d = 0; d < dim; ++d)
-          {
-            first[d] = std::lround((geometry[c].origin[d] - bins.lower[d]) *
-                                   bins.inverse_edge[d]);
-            count[d] =
-              std::lround(bins.inverse_edge[d] / geometry[c].inverse_edge[d]);
-            bins.one_per_cell = bins.one_per_cell && count[d] == 1;
-          }
-        for (std::int64_t k = 0; k < count[2]; ++k)
-          for (std::int64_t j = 0; j < count[1]; ++j)
-            for (std::int64_t i = 0; i < count[0]; ++i)
-              {
-                std::int64_t bin = first[1] + j;
-                if constexpr (dim == 3)
-                  bin += (first[2] + k) * bins.n[1];
-                bin_table[bin * bins.n[0] + first[0] + i] = c;
-              }
+        const double at =
+          (geometry[cell].origin[d] - bins.lower[d]) * bins.inverse_edge[d];
+        const double first = std::floor(at + tolerance);
+        begin[d]           = (at - first) * bins.per_edge;
+        bin                = bin * bins.n[d] + std::size_t(first);
       }
+    if (level_of(cell) == 0)
+      {
+        bin_table[bin] = cell;
+        return;
+      }
+
+    std::size_t in_block = 1;
+    for (int d = 0; d < dim; ++d)
+      in_block *= bins.per_edge;
+    if (bin_table[bin] == invalid_cell)
+      {
+        bin_table[bin] =
+          BinView<dim>::first_block + bin_blocks.size() / in_block;
+        bin_blocks.resize(bin_blocks.size() + in_block, invalid_cell);
+      }
+    std::uint32_t *const block =
+      bin_blocks.data() +
+      (bin_table[bin] - BinView<dim>::first_block) * in_block;
+    const std::size_t width = bins.per_edge >> level_of(cell);
+    std::size_t       n     = 1;
+    for (int d = 0; d < dim; ++d)
+      n *= width;
+    for (std::size_t i = 0; i < n; ++i)
+      {
+        std::size_t place = 0, stride = 1, rest = i;
+        for (int d = 0; d < dim; ++d, rest /= width, stride *= bins.per_edge)
+          place += (std::lround(begin[d]) + rest % width) * stride;
+        block[place] = cell;
+      }
+  }
+
+
+
+  template <int dim>
+  typename RefinedCells<dim>::Place
+  BackgroundGrid<dim>::place_of(const Cell &cell) const
+  {
+    typename RefinedCells<dim>::Place result;
+    for (int d = 0; d < dim; ++d)
+      result[d] = std::lround((cell->vertex(0)[d] - description.lower[d]) /
+                              description.edge(d) * (1u << level_of(cell)));
+    return result;
+  }
+
+
+
+  template <int dim>
+  typename RefinedCells<dim>::Place
+  BackgroundGrid<dim>::place_at(const std::array<double, dim> &x,
+                                const unsigned int             level) const
+  {
+    typename RefinedCells<dim>::Place result;
+    for (int d = 0; d < dim; ++d)
+      {
+        const double n  = description.cells[d] << level;
+        const double at = (x[d] - description.lower[d]) /
+                          (description.upper[d] - description.lower[d]) * n;
+        result[d] =
+          static_cast<std::uint32_t>(std::min(std::max(0., at), n - 1));
+      }
+    return result;
+  }
+
+
+
+  // A parent belongs to the mesh where any of its children does.
+  template <int dim>
+  RefinedCells<dim>
+  BackgroundGrid<dim>::divided_cells() const
+  {
+    RefinedCells<dim> result = no_divided_cells();
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() && level_of(cell) > 0)
+        result.divide(level_of(cell) - 1, place_of(cell->parent()));
+    result.sum_over_ranks(communicator);
+    return result;
+  }
+
+
+
+  template <int dim>
+  bool
+  BackgroundGrid<dim>::mark_towards(const RefinedCells<dim> &mesh)
+  {
+    clear_marks();
+    bool any = false;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      {
+        if (!cell->is_locally_owned())
+          continue;
+        const unsigned int level = level_of(cell);
+        if (mesh.is_divided(level, place_of(cell)))
+          cell->set_refine_flag();
+        else if (level > 0 &&
+                 !mesh.is_divided(level - 1, place_of(cell->parent())))
+          cell->set_coarsen_flag();
+        else
+          continue;
+        any = true;
+      }
+    if (dealii::Utilities::MPI::max(any ? 1 : 0, communicator) == 0)
+      return false;
+    triangulation.prepare_coarsening_and_refinement();
+    return true;
   }
 
 
@@ -277,14 +415,16 @@ namespace limber
 
 
   // No cell around a master beyond the ghost layer is known here; its owner
-  // tells on which sides it lies, and where.
+  // tells on which sides it lies, and where. And a ghost cell could have a
+  // hanging node on its far side that only its owner sees to be one; in a mesh
+  // that RefinedCells::grade() has made this cannot be.
   template <int dim>
   void
   BackgroundGrid<dim>::complete_boundary()
   {
     if (dealii::Utilities::MPI::max(vertices.hanging.size(), communicator) == 0)
       return;
-    constexpr unsigned int stride = 1 + dim;
+    constexpr unsigned int hangs = 1 + dim, stride = 2 + dim;
     LazyArray<double>      values(vertices.n() * stride);
     for (const auto &[node, place] : vertices.places)
       if (node < vertices.n_owned)
@@ -293,17 +433,39 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             values[node * stride + 1 + d] = place[d];
         }
+    for (const HangingNode &hanging : vertices.hanging)
+      if (hanging.node < vertices.n_owned)
+        values[hanging.node * stride + hangs] = 1;
     const ExchangePlan plan(vertices.shared);
     RecordExchange     exchange(stride);
     exchange.start(plan, values.data(), 0, stride);
     exchange.finish(values.data());
+    for (const HangingNode &hanging : vertices.hanging)
+      values[hanging.node * stride + hangs] = 0;
     for (std::uint32_t node = vertices.n_owned; node < vertices.n(); ++node)
-      if (values[node * stride] != 0)
-        {
-          vertices.sides[node] = std::uint8_t(values[node * stride]);
-          for (int d = 0; d < dim; ++d)
-            vertices.places[node][d] = values[node * stride + 1 + d];
-        }
+      {
+        AssertThrow(values[node * stride + hangs] == 0,
+                    dealii::ExcMessage("A rank does not know that a node of a "
+                                       "ghost cell is a hanging one."));
+        if (values[node * stride] == 0)
+          continue;
+        vertices.sides[node] = std::uint8_t(values[node * stride]);
+        for (int d = 0; d < dim; ++d)
+          vertices.places[node][d] = values[node * stride + 1 + d];
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::clear_marks()
+  {
+    for (const auto &cell : triangulation.active_cell_iterators())
+      {
+        cell->clear_refine_flag();
+        cell->clear_coarsen_flag();
+      }
   }
 
 

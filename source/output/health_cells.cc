@@ -55,6 +55,7 @@ namespace limber
 
 
 
+    /** Cells of a finer level count as part of the coarse one they are in. */
     template <int dim>
     CellCounts
     count_own(const State<dim> &state, const MaterialBody<dim> &body)
@@ -69,8 +70,7 @@ namespace limber
           const auto &cell = state.grid.geometry[points.cell[p]];
           std::array<unsigned int, dim> at;
           for (int d = 0; d < dim; ++d)
-            at[d] =
-              std::lround((cell.origin[d] - grid.lower[d]) / grid.edge(d));
+            at[d] = (cell.origin[d] - grid.lower[d]) / grid.edge(d) + 1e-6;
           const std::uint64_t place = place_of<dim>(at, grid.cells);
           auto               &cells = counts.cells;
           if (!cells.empty() && cells.back().first == place)

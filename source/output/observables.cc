@@ -29,26 +29,28 @@ namespace limber
 
 
 
-    /** The largest coordinate times the sign on this rank, half a spacing in.
-     */
+    /** The largest coordinate times the sign on this rank; a point is half a
+     * spacing of its size in. */
     template <int dim>
     double
     extreme_of_body(const MaterialBody<dim>    &body,
                     const GridDescription<dim> &grid,
                     const Observable<dim>      &observable)
     {
-      const unsigned int   axis    = observable.axis;
-      const double         sign    = observable.positive ? 1 : -1;
-      const PointView<dim> points  = body.points.view();
-      double               largest = -std::numeric_limits<double>::infinity();
+      const unsigned int   axis   = observable.axis;
+      const double         sign   = observable.positive ? 1 : -1;
+      const PointView<dim> points = body.points.view();
+      const double         spacing =
+        grid.edge(axis) / body.description.points_per_cell_edge[axis];
+      double largest = -std::numeric_limits<double>::infinity();
       for (std::size_t p = 0; p < points.size; ++p)
-        if (sign * points.position[axis][p] > largest &&
-            is_within(points, p, observable))
-          largest = sign * points.position[axis][p];
-      const double spacing = (grid.upper[axis] - grid.lower[axis]) /
-                             grid.cells[axis] /
-                             body.description.points_per_cell_edge[axis];
-      return largest + 0.5 * spacing;
+        {
+          const double end = sign * points.position[axis][p] +
+                             0.5 * spacing / (1u << body.points.size_class(p));
+          if (end > largest && is_within(points, p, observable))
+            largest = end;
+        }
+      return largest;
     }
 
 

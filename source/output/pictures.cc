@@ -393,6 +393,8 @@ namespace limber
     Picture<dim, dim> picture;
     picture.fields.add("mass", "kg", 1);
     picture.fields.add("velocity", "m/s", dim);
+    if (state.grid.has_levels())
+      picture.fields.add("level", "", 1);
     unsigned int component = picture.fields.names.size();
     for (const auto &body : state.bodies)
       if (is_projected(*body))
@@ -404,6 +406,10 @@ namespace limber
         }
     add_cells(state.grid, picture);
     add_nodal_values(state, picture);
+    if (state.grid.has_levels())
+      for (unsigned int c = 0; c < picture.patches.size(); ++c)
+        for (unsigned int i = 0; i < 1 << dim; ++i)
+          picture.patches[c].data(1 + dim, i) = state.grid.level_of(c);
 
     PointStress<dim> stress(state);
     for (const auto &body : state.bodies)

@@ -36,7 +36,9 @@ namespace limber
   std::string
   to_json(const Summary &summary)
   {
-    json::Members verbs, memory;
+    json::Members verbs, memory, adaptation;
+    for (const auto &[name, value] : summary.adaptation)
+      adaptation.emplace_back(name, json::number(value));
     for (const auto &[name, share] : summary.verbs)
       verbs.emplace_back(name, json::number(share));
     for (const auto &[name, share] : summary.memory)
@@ -68,6 +70,7 @@ namespace limber
               {"momentum_error", json::number(summary.momentum_error)},
               {"verbs", json::object(verbs)},
               {"memory", json::object(memory)},
+              {"adaptation", json::object(adaptation)},
               {"checks", json::array(checks)},
               {"health", json::array(health)},
               {"warnings", json::array(warnings)}})

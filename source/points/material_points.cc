@@ -48,6 +48,8 @@ namespace limber
       field.reserve(n + padding);
     cell.reserve(n);
     ids.reserve(n);
+    if (layout.size_class)
+      size_classes.reserve(n);
   }
 
 
@@ -81,6 +83,8 @@ namespace limber
       }
     this->cell.push_back(cell);
     ids.push_back(p);
+    if (layout.size_class)
+      size_classes.push_back(char(grid.level_of(cell)));
   }
 
 
@@ -225,7 +229,8 @@ namespace limber
   MaterialPoints<dim>::append(
     const std::vector<std::uint32_t>       &new_cells,
     const std::vector<std::uint64_t>       &new_ids,
-    const std::vector<std::vector<double>> &new_fields)
+    const std::vector<std::vector<double>> &new_fields,
+    const std::vector<char>                &new_size_classes)
   {
     const std::size_t before = size();
     resize(before + new_cells.size());
@@ -235,6 +240,9 @@ namespace limber
       std::copy(new_fields[f].begin(),
                 new_fields[f].end(),
                 fields[f].begin() + before);
+    std::copy(new_size_classes.begin(),
+              new_size_classes.end(),
+              size_classes.begin() + (layout.size_class ? before : 0));
     ++n_reorderings;
   }
 
@@ -296,6 +304,11 @@ namespace limber
       std::vector<std::uint64_t> scratch(size());
       reorder(ids, scratch);
     }
+    if (layout.size_class)
+      {
+        std::vector<char> scratch(size());
+        reorder(size_classes, scratch);
+      }
     std::vector<std::uint32_t> scratch(size());
     reorder(cell, scratch);
     return cells;
@@ -348,6 +361,8 @@ namespace limber
       field[to] = field[from];
     cell[to] = cell[from];
     ids[to]  = ids[from];
+    if (layout.size_class)
+      size_classes[to] = size_classes[from];
   }
 
 
@@ -358,7 +373,9 @@ namespace limber
   {
     for (const auto &field : fields)
       *record++ = field[p];
-    *record = ids[p]; // exact: there are fewer than 2^53
+    *record++ = ids[p]; // exact: there are fewer than 2^53
+    if (layout.size_class)
+      *record = size_classes[p];
   }
 
 
@@ -369,7 +386,9 @@ namespace limber
   {
     for (auto &field : fields)
       field[p] = *record++;
-    ids[p] = *record;
+    ids[p] = *record++;
+    if (layout.size_class)
+      size_classes[p] = char(*record);
   }
 
 
@@ -478,6 +497,77 @@ namespace limber
 
 
 
+  // Shifted alike to both sides, nearly as far as the cell reaches: the centre
+  // of mass stays, and with it whatever is linear in each direction within the
+  // cell. On a face of the cell round-off would decide where a point is.
+  template <int dim>
+  void
+  MaterialPoints<dim>::split(const std::vector<std::size_t> &which,
+                             const std::array<double, dim>  &spacing,
+                             std::uint64_t                   next_id)
+  {
+    constexpr unsigned int n_children = 1 << dim;
+    constexpr double       share      = 0.9;
+    std::size_t            last       = size();
+    resize(last + which.size() * (n_children - 1));
+    const PointView<dim> points = view();
+    for (const std::size_t p : which)
+      {
+        const CellGeometry<dim> &geometry = grid.geometry[cell[p]];
+        std::array<double, dim>  shift;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double below = points.position[d][p] - geometry.origin[d];
+            const double above = 1 / geometry.inverse_edge[d] - below;
+            shift[d] =
+              std::max(0.,
+                       std::min({0.25 * spacing[d] / (1u << size_classes[p]),
+                                 share * below,
+                                 share * above}));
+          }
+        points.mass[p] /= n_children;
+        ++size_classes[p];
+        for (unsigned int child = 1; child < n_children; ++child, ++last)
+          {
+            move(p, last);
+            ids[last] = next_id++;
+          }
+        const auto place_child = [&](const std::size_t  q,
+                                     const unsigned int child) {
+          for (int d = 0; d < dim; ++d)
+            {
+              const double way = child >> d & 1 ? shift[d] : -shift[d];
+              points.position[d][q] += way;
+              if (layout.has_reference())
+                fields[fields.size() - dim + d][q] += way;
+            }
+        };
+        place_child(p, 0);
+        for (unsigned int child = 1; child < n_children; ++child)
+          place_child(last - n_children + child, child);
+      }
+    ++n_reorderings;
+  }
+
+
+
+  template <int dim>
+  void
+  MaterialPoints<dim>::find_cells()
+  {
+    const PointView<dim> points = view();
+    for (std::size_t p = 0; p < size(); ++p)
+      {
+        std::array<double, dim> x;
+        for (int d = 0; d < dim; ++d)
+          x[d] = points.place[d][p];
+        cell[p] = grid.bins.cell_at(x);
+      }
+    ++n_reorderings;
+  }
+
+
+
   template <int dim>
   void
   MaterialPoints<dim>::resize(const std::size_t n)
@@ -493,6 +583,8 @@ namespace limber
       }
     cell.resize(n);
     ids.resize(n);
+    if (layout.size_class)
+      size_classes.resize(n);
   }
 
 

@@ -204,7 +204,10 @@ namespace limber
     choose_frame(const Section &root, Body<dim> &body, Problem<dim> &problem)
     {
       const Section section  = root.subsection("Body " + body.name);
-      const auto    obstacle = obstacle_to_initial_frame(section, root);
+      auto          obstacle = obstacle_to_initial_frame(section, root);
+      if (!obstacle && problem.grid.levels > 0)
+        obstacle = Obstacle{"does not go with cells of several sizes yet",
+                            ", or 'Grid/Levels = 0'"};
       if (body.frame == Frame::initial && obstacle)
         throw InputError("The frame 'initial' in " + section.where("Frame") +
                          " " + obstacle->cause + ". Set 'Frame = current'" +
@@ -239,6 +242,9 @@ namespace limber
                     "Time integration",
                     time_integration_words()) == TimeIntegration::semi_implicit)
         return say("'linear', which semi-implicit steps are made for");
+      if (problem.grid.levels > 0)
+        return say("'linear', as splines need cells of one size "
+                   "('Grid/Levels')");
       for (const auto &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);

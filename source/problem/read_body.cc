@@ -234,7 +234,7 @@ namespace limber
           for (unsigned int d = 0; d < dim; ++d)
             {
               const double spacing = (grid.upper[d] - grid.lower[d]) /
-                                     grid.cells[d] /
+                                     (grid.cells[d] << grid.levels) /
                                      body.points_per_cell_edge[d];
               square += edge[d] / spacing * edge[d] / spacing;
             }

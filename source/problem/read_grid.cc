@@ -6,7 +6,9 @@
 namespace limber
 {
   void
-  declare_grid(Parameters &parameters, const unsigned int dim)
+  declare_grid(Parameters                     &parameters,
+               const unsigned int              dim,
+               const std::vector<std::string> &refinements)
   {
     parameters.enter_subsection("Grid");
     parameters.declare("Lower corner",
@@ -24,6 +26,7 @@ namespace limber
       admissible::positive_integers(dim, false, for_each_direction(dim, "10")),
       "Number of cells in each direction; their edges are h = (upper - lower) "
       "/ cells, m.");
+    declare_levels(parameters, dim, refinements);
     parameters.leave_subsection();
   }
 
@@ -31,7 +34,7 @@ namespace limber
 
   template <int dim>
   GridDescription<dim>
-  read_grid(const Section &section)
+  read_grid(const Section &section, const std::vector<std::string> &bodies)
   {
     GridDescription<dim> grid;
     grid.lower = read_point<dim>(section, "Lower corner");
@@ -49,13 +52,14 @@ namespace limber
                            ". Usually the corners are swapped. Increase every "
                            "component, for instance by 1.");
       }
+    read_levels(section, bodies, grid);
     return grid;
   }
 
 
 
   template GridDescription<2>
-  read_grid<2>(const Section &);
+  read_grid<2>(const Section &, const std::vector<std::string> &);
   template GridDescription<3>
-  read_grid<3>(const Section &);
+  read_grid<3>(const Section &, const std::vector<std::string> &);
 } // namespace limber

@@ -113,7 +113,7 @@ namespace limber
     problem.end_step = static_cast<unsigned long>(root.number("End step"));
     if (root.text("Memory limit") != "auto")
       problem.memory_limit = 1e9 * root.number("Memory limit");
-    problem.grid = read_grid<dim>(root.subsection("Grid"));
+    problem.grid = read_grid<dim>(root.subsection("Grid"), root.list("Bodies"));
     read_boundaries(root.subsection("Boundaries"), problem);
     read_volume_loads(loads, problem);
     read_bodies(root, problem);
@@ -127,6 +127,7 @@ namespace limber
     read_exact_solution(root.subsection("Exact solution"), problem);
     read_observables(root, problem);
     read_checks(root, problem);
+    check_levels(root, problem);
     problem.fixed_entries = fixed_entries(scene.parameters());
     return problem;
   }
@@ -150,6 +151,14 @@ namespace limber
       subsection Body block
         subsection Box
           set Lower corner = 0.2, 0
+          set Upper corner = 0.8, 0.5
+        end
+      end
+      subsection Grid
+        set Levels = 1
+        set Refine = corner
+        subsection Refine corner
+          set Lower corner = 0.6, 0
           set Upper corner = 0.8, 0.5
         end
       end

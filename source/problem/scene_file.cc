@@ -127,6 +127,7 @@ namespace limber
     {
       SceneNames result;
       result.bodies      = reader.names({}, "Bodies", "Body ");
+      result.refinements = reader.names({"Grid"}, "Refine", "Refine ");
       result.face_loads  = reader.names({"Loads"}, "Face loads", "Face load ");
       result.observables = reader.names({}, "Observables", "Observable ");
       result.checks      = reader.names({}, "Checks", "Check ");
@@ -188,7 +189,7 @@ namespace limber
     {
       declare_top_level(parameters);
       declare_bodies(parameters, dim, names);
-      declare_grid(parameters, dim);
+      declare_grid(parameters, dim, names.refinements);
       declare_boundaries(parameters, dim);
       declare_loads(parameters, dim, names.face_loads);
       declare_method(parameters);

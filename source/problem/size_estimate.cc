@@ -100,6 +100,33 @@ namespace limber
 
 
 
+    /**
+     * At most so many coarse cells make as much as the finer ones that are
+     * wanted within a box add to them; where formulas decide, by the volume of
+     * their boxes.
+     */
+    template <int dim>
+    double
+    added_by_levels(const GridDescription<dim> &grid,
+                    const Corners<dim>         &within)
+    {
+      double result = 0;
+      for (const Refinement<dim> &refinement : grid.refinements)
+        {
+          double cells = std::pow(2., dim * double(refinement.level)) - 1;
+          for (int d = 0; d < dim; ++d)
+            cells *=
+              std::max(0.,
+                       std::min(within.second[d], refinement.box.second[d]) -
+                         std::max(within.first[d], refinement.box.first[d])) /
+              grid.edge(d);
+          result += cells;
+        }
+      return result;
+    }
+
+
+
     template <int dim>
     double
     count_points(const Body<dim> &body, const GridDescription<dim> &grid)
@@ -109,7 +136,13 @@ namespace limber
       double cell = 1;
       for (int d = 0; d < dim; ++d)
         cell *= grid.edge(d);
-      return volume_of(*body.shape) / cell * product(body.points_per_cell_edge);
+      const double volume = volume_of(*body.shape);
+      const double finest =
+        volume / cell * std::pow(2., dim * double(grid.levels));
+      return std::min(finest,
+                      volume / cell +
+                        added_by_levels(grid, body.shape->bounding_box())) *
+             product(body.points_per_cell_edge);
     }
 
 
@@ -134,7 +167,10 @@ namespace limber
       const bool    in_parallel = ranks > 1;
       const bool    pictures    = problem.output.time_interval > 0;
       SizeEstimate  size;
-      size.cells             = product(problem.grid.cells);
+      size.cells =
+        product(problem.grid.cells) +
+        added_by_levels<dim>(problem.grid,
+                             {problem.grid.lower, problem.grid.upper});
       size.bytes_of_programs = of_program * ranks;
       const bool quadratic   = problem.grid.kernel == KernelKind::quadratic;
       const bool cubic       = problem.grid.kernel == KernelKind::cubic;

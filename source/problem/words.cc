@@ -25,6 +25,22 @@ namespace limber
 
 
 
+  const Words<RefinementCriterion> &
+  criterion_words()
+  {
+    static const Words<RefinementCriterion> words = {
+      {"region", RefinementCriterion::region, "all cells"},
+      {"body",
+       RefinementCriterion::body,
+       "cells with points of the bodies in 'Bodies'"},
+      {"surface",
+       RefinementCriterion::surface,
+       "cells with points that are near an empty one"}};
+    return words;
+  }
+
+
+
   const Words<KernelKind> &
   kernel_words()
   {

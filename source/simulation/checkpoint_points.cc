@@ -18,7 +18,21 @@ namespace limber
 
 
 
-    /** The place of a cell in the lattice of the scene, x fastest. */
+    /** How many of the finest cells there can be along an axis. */
+    template <int dim>
+    std::uint64_t
+    finest_cells(const BackgroundGrid<dim> &grid, const int d)
+    {
+      return std::uint64_t(grid.description.cells[d])
+             << grid.description.levels;
+    }
+
+
+
+    /**
+     * The place of a cell, or of its first corner, in the lattice of the finest
+     * cells, x fastest.
+     */
     template <int dim>
     std::uint64_t
     place_in_lattice(const BackgroundGrid<dim> &grid, const std::uint32_t cell)
@@ -26,9 +40,11 @@ namespace limber
       const CellGeometry<dim> &geometry = grid.geometry[cell];
       std::uint64_t            result   = 0;
       for (int d = dim - 1; d >= 0; --d)
-        result = result * grid.description.cells[d] +
-                 std::lround((geometry.origin[d] - grid.description.lower[d]) *
-                             geometry.inverse_edge[d]);
+        result =
+          result * finest_cells(grid, d) +
+          std::lround((geometry.origin[d] - grid.description.lower[d]) *
+                      geometry.inverse_edge[d] *
+                      (1u << (grid.description.levels - grid.level_of(cell))));
       return result;
     }
 
@@ -39,8 +55,8 @@ namespace limber
     size_of_lattice(const BackgroundGrid<dim> &grid)
     {
       std::uint64_t result = 1;
-      for (const unsigned int n : grid.description.cells)
-        result *= n;
+      for (int d = 0; d < dim; ++d)
+        result *= finest_cells(grid, d);
       return result;
     }
 
@@ -53,10 +69,13 @@ namespace limber
     {
       const GridDescription<dim> &box = grid.description;
       std::array<double, dim>     centre;
-      for (int d = 0; d < dim; ++d, place /= box.cells[d - 1])
-        centre[d] = box.lower[d] + (box.upper[d] - box.lower[d]) *
-                                     (place % box.cells[d] + 0.5) /
-                                     box.cells[d];
+      for (int d = 0; d < dim; ++d)
+        {
+          const std::uint64_t n = finest_cells(grid, d);
+          centre[d]             = box.lower[d] +
+                      (box.upper[d] - box.lower[d]) * (place % n + 0.5) / n;
+          place /= n;
+        }
       const std::uint32_t cell = grid.bins.cell_at(centre);
       return cell < grid.n_owned_cells() ? cell : invalid_cell;
     }
@@ -200,7 +219,13 @@ namespace limber
         for (const double mass : fields[2 * dim])
           if (!(mass > 0))
             refuse(names[2 * dim], "values that are not positive");
-        points.append(own.cell, ids, fields);
+        std::vector<char> size_classes;
+        if (points.has_size_classes())
+          size_classes = pick<char>("size class", begin, own);
+        for (const char level : size_classes)
+          if (level < 0 || unsigned(level) > grid.description.levels)
+            refuse("size class", "levels that the grid does not have");
+        points.append(own.cell, ids, fields, size_classes);
       }
 
       void
@@ -238,6 +263,8 @@ namespace limber
   {
     std::vector<std::string> result = {array_name(body, "cell"),
                                        array_name(body, "id")};
+    if (points.has_size_classes())
+      result.push_back(array_name(body, "size class"));
     for (const std::string &field : points.field_names())
       result.push_back(array_name(body, field));
     return result;
@@ -258,6 +285,10 @@ namespace limber
       cells[p] = place_in_lattice(grid, view.cell[p]);
     file.write(array_name(body, "cell"), cells.data(), view.size);
     file.write(array_name(body, "id"), points.all_ids().data(), view.size);
+    if (points.has_size_classes())
+      file.write(array_name(body, "size class"),
+                 points.all_size_classes().data(),
+                 view.size);
     const auto names = points.field_names();
     for (unsigned int f = 0; f < names.size(); ++f)
       file.write(array_name(body, names[f]), points.field(f).data(), view.size);

@@ -51,7 +51,7 @@ namespace limber
     /** The run of a file; throws where the bytes are none. */
     template <int dim>
     RunState<dim>
-    read_state(const ArrayFile &file)
+    unpacked_state(const ArrayFile &file)
     {
       try
         {
@@ -208,7 +208,10 @@ namespace limber
 
   template <int dim>
   RunState<dim>
-  Checkpoints<dim>::load(const RunState<dim> &start, Bodies &bodies)
+  Checkpoints<dim>::load(
+    const RunState<dim>                              &start,
+    Bodies                                           &bodies,
+    const std::function<void(const RunState<dim> &)> &adopt_mesh)
   {
     const auto n_at_start = count_points(bodies);
     Survey     survey; // on the first rank
@@ -223,12 +226,19 @@ namespace limber
                       [&]() { candidate = next_candidate(survey); });
         good =
           dealii::Utilities::MPI::broadcast(grid.communicator, candidate.name);
-        RunState<dim>     state;
-        const std::string damage = damage_on_any_rank(grid.communicator, [&]() {
-          state = read_file(good_file(), n_at_start, start, bodies);
+        RunState<dim> state;
+        std::string   damage = damage_on_any_rank(grid.communicator, [&]() {
+          state = read_state(good_file(), start);
           if (first)
             check_statistics(good_file(), state.statistics_length);
         });
+        if (damage.empty())
+          {
+            adopt_mesh(state);
+            damage = damage_on_any_rank(grid.communicator, [&]() {
+              read_bodies(good_file(), n_at_start, state, bodies);
+            });
+          }
         if (damage.empty())
           {
             run = candidate.seal.run;
@@ -244,19 +254,40 @@ namespace limber
 
   template <int dim>
   RunState<dim>
-  Checkpoints<dim>::read_file(const std::string              &path,
-                              const std::vector<std::size_t> &n_at_start,
-                              const RunState<dim>            &start,
-                              Bodies                         &bodies) const
+  Checkpoints<dim>::read_state(const std::string   &path,
+                               const RunState<dim> &start) const
   {
     const ArrayFile file(path, ArrayFile::Mode::read);
     const auto      scene = read_all<char>(file, "scene");
     compare_entries({scene.begin(), scene.end()}, problem.fixed_entries);
-    const RunState<dim> state = read_state<dim>(file);
+    const RunState<dim> state = unpacked_state<dim>(file);
     if (const std::string fault = fault_of(state, start); !fault.empty())
       throw DamagedFile(path, fault);
+    if (grid.has_levels())
+      try
+        {
+          RefinedCells<dim> mesh = grid.no_divided_cells();
+          mesh.set(state.adaptation.mesh);
+          mesh.set(state.adaptation.wanted);
+        }
+      catch (const std::invalid_argument &)
+        {
+          throw DamagedFile(path, "has a mesh in 'run' that is none");
+        }
+    return state;
+  }
 
-    std::size_t n = 0;
+
+
+  template <int dim>
+  void
+  Checkpoints<dim>::read_bodies(const std::string              &path,
+                                const std::vector<std::size_t> &n_at_start,
+                                const RunState<dim>            &state,
+                                Bodies                         &bodies) const
+  {
+    const ArrayFile file(path, ArrayFile::Mode::read);
+    std::size_t     n = 0;
     for (unsigned int b = 0; b < bodies.size(); ++b)
       {
         if (bodies[b]->points.has_reference() &&
@@ -268,16 +299,21 @@ namespace limber
             " does not know where the points were at the start. Usually the "
             "run was begun without pictures. Leave 'displacement' out of "
             "'Output/Fields'.");
-        n += read_points(file, grid, b, n_at_start[b], bodies[b]->points);
+        // as many numbers as points have had
+        n += read_points(file,
+                         grid,
+                         b,
+                         grid.has_levels() ? state.adaptation.next_id[b] :
+                                             n_at_start[b],
+                         bodies[b]->points);
       }
     const std::size_t wanted =
-      std::accumulate(n_at_start.begin(), n_at_start.end(), std::size_t(0)) -
-      state.ledger.lost_points;
+      std::accumulate(n_at_start.begin(), n_at_start.end(), std::size_t(0)) +
+      state.adaptation.points_added - state.ledger.lost_points;
     if (n != wanted)
       throw DamagedFile(path,
                         "has " + std::to_string(n) + " points instead of " +
                           std::to_string(wanted));
-    return state;
   }
 
 

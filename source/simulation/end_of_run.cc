@@ -209,7 +209,7 @@ namespace limber
                                {"points", share(memory_with_points - memory_with_grid)},
                                {"nodes and buffers",
                                 share(largest_memory() - memory_with_points)}};
-    summary.bytes_per_point = summary.memory_bytes / n_points_at_start;
+    summary.bytes_per_point = summary.memory_bytes / points_ever();
     summary.energy_drift    = totals.energy_drift;
     summary.momentum_error  = totals.momentum_error;
     summary.lost_points     = sum(state.ledger.lost_points, communicator);
@@ -220,6 +220,17 @@ namespace limber
       all += seconds = sum(seconds, communicator);
     for (auto &[name, share_of_step] : summary.verbs)
       share_of_step /= std::max(all, 1e-300);
+
+    if (grid.has_levels())
+      {
+        const AdaptationState &adapted = adaptation.state();
+        summary.adaptation = {{"times asked", double(adapted.times_asked)},
+                              {"mesh changes", double(adapted.mesh_changes)},
+                              {"points split", double(adapted.points_split)},
+                              {"seconds",
+                               sum(adaptation.seconds(), communicator)}};
+        summary.levels     = adaptation.report();
+      }
 
     summary.checks = checks.results();
     for (const auto &[text, count] : console.warning_counts())
@@ -264,6 +275,13 @@ namespace limber
          << " ns per point and step, energy drift " << summary.energy_drift
          << ", momentum error " << summary.momentum_error << ", "
          << summary.lost_points << " points lost\n";
+    if (!summary.levels.empty())
+      {
+        text << summary.levels << "  adaptation:";
+        for (const auto &[name, value] : summary.adaptation)
+          text << " " << name << " " << value
+               << (name == "seconds" ? "\n" : ",");
+      }
     for (const auto &[verb, share] : summary.verbs)
       text << "  " << std::left << std::setw(18) << verb << std::right
            << std::setw(6) << std::fixed << std::setprecision(1) << 100 * share

@@ -13,7 +13,11 @@ namespace limber
   void
   Simulation<dim>::resume()
   {
-    resumed    = checkpoints.load(present_state(), bodies);
+    resumed    = checkpoints.load(present_state(),
+                               bodies,
+                               [&](const RunState<dim> &former) {
+                                 adaptation.restore(former.adaptation);
+                               });
     state.step = saved_step = resumed->step;
     state.time              = resumed->time;
     state.step_size         = resumed->step_size;
@@ -57,6 +61,7 @@ namespace limber
     now.step_size         = state.step_size;
     now.ledger            = state.ledger.sum_over_ranks(communicator);
     now.integrator        = integrator->state();
+    now.adaptation        = adaptation.state();
     now.balance           = balance_of_start.state();
     now.observables       = observables.state();
     now.checks            = checks.state();

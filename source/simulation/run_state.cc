@@ -98,13 +98,25 @@ namespace limber
 
 
 
+  template <class Archive>
+  void
+  serialize(Archive &archive, AdaptationState &state, const unsigned int)
+  {
+    archive &state.mesh &state.wanted &state.next_id &state.points_added &state
+      .way &state.steps &state.times_asked &state.mesh_changes &state
+      .points_split;
+  }
+
+
+
   template <class Archive, int dim>
   void
   serialize(Archive &archive, RunState<dim> &state, const unsigned int)
   {
     archive &state.step &state.time &state.step_size &state.ledger &state
-      .integrator &state.balance &state.observables &state.checks &state
-      .pictures &state.next_pictures &state.statistics_length &state.warnings;
+      .integrator &state.adaptation &state.balance &state.observables &state
+      .checks &state.pictures &state.next_pictures &state
+      .statistics_length                           &state.warnings;
   }
 
 
@@ -224,6 +236,8 @@ namespace limber
         if (a.tracked[i].body != b.tracked[i].body)
           return false;
       return a.crossings.size() == b.crossings.size() &&
+             state.adaptation.next_id.size() ==
+               start.adaptation.next_id.size() &&
              state.checks.size() == start.checks.size() &&
              state.integrator.face_pieces.size() ==
                start.integrator.face_pieces.size();

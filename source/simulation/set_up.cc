@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/adaptation/criteria.h>
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/interpolation/basis.h>
@@ -125,67 +126,158 @@ namespace limber
 
 
 
+  namespace
+  {
+    template <int dim>
+    using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
+
+
+
+    /** The body without points. */
+    template <int dim>
+    std::unique_ptr<MaterialBody<dim>>
+    make_body(const Problem<dim>        &problem,
+              const Body<dim>           &body,
+              const BackgroundGrid<dim> &grid)
+    {
+      // A liquid shears its points' domains without end.
+      const KernelKind kernel =
+        problem.grid.kernel == KernelKind::cpdi && body.is_liquid ?
+          KernelKind::linear :
+          problem.grid.kernel;
+      const auto &fields = problem.output.fields;
+      auto        stress = make_stress_update<dim>(body.law,
+                                            body.material,
+                                            body.treatment,
+                                            body.hourglass,
+                                            body.frame,
+                                            kernel);
+      PointLayout layout;
+      layout.deviator      = stress->has_deviator();
+      layout.n_history     = stress->n_history();
+      layout.volumetric    = stress->volumetric();
+      layout.affine        = problem.method.transfer == Transfer::apic;
+      layout.crossings     = !body.is_liquid && body.frame == Frame::current;
+      layout.domains       = kernel == KernelKind::cpdi;
+      layout.initial_frame = body.frame == Frame::initial;
+      layout.size_class    = grid.has_levels();
+      layout.reference =
+        problem.output.time_interval > 0 &&
+        std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+      return std::unique_ptr<MaterialBody<dim>>(
+        new MaterialBody<dim>{body,
+                              std::move(stress),
+                              MaterialPoints<dim>(grid, layout),
+                              std::nullopt,
+                              std::nullopt,
+                              std::nullopt});
+    }
+
+
+
+    template <int dim>
+    void
+    fill_with_points(const Problem<dim>        &problem,
+                     const BackgroundGrid<dim> &grid,
+                     MaterialBody<dim>         &body)
+    {
+      const StressUpdate<dim> &law = *body.stress;
+      seed<dim>(
+        body.description,
+        grid,
+        [&](const dealii::Point<dim> &place) {
+          return body.description.density() /
+                 law.volume_ratio_at_rest(
+                   initial_pressure(problem, body.description, law, place));
+        },
+        body.points);
+      set_initial_state(problem, body);
+
+      if (body.points.n_global() == 0)
+        throw InputError("The body '" + body.description.name +
+                         "' holds no material point: no place that "
+                         "'Points per cell edge' puts into the cells lies "
+                         "in its shape. In 'Body " +
+                         body.description.name +
+                         "', enlarge the shape, or set 'Points per cell "
+                         "edge' to 4, or refine 'Grid/Cells'.");
+    }
+
+
+
+    /**
+     * A body that a coarse cell is wider than has no surface for the grid, and
+     * what it weighs depends on where the cell lies.
+     */
+    template <int dim>
+    void
+    refuse_thin_body(const BackgroundGrid<dim> &grid,
+                     const MaterialBody<dim>   &body)
+    {
+      const PointView<dim> points = body.points.view();
+      const Corners<dim>   box    = body.description.shape->bounding_box();
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          double widest = 0;
+          for (std::size_t p = 0; p < points.size; ++p)
+            widest =
+              std::max(widest,
+                       1 / grid.geometry[points.cell[p]].inverse_edge[d]);
+          widest = dealii::Utilities::MPI::max(widest, grid.communicator);
+          const double extent = box.second[d] - box.first[d];
+          if (extent < (1 - 1e-6) * widest &&
+              widest > 1.5 * grid.description.finest_edge(d))
+            throw InputError(
+              "Body " + in_quotes(body.description.name) + " is " +
+              brief(extent) + " m thin along " + std::string(1, "xyz"[d]) +
+              ", thinner than the cells of " + brief(widest) +
+              " m that hold part of it. Usually the finer cells of "
+              "'Grid/Refine' do not cover it. Enlarge the refinement, or set "
+              "more 'Grid/Cells'.");
+        }
+    }
+
+
+
+    // Points follow the size of cells, and criteria may look at points; a
+    // change of the mesh divides cells once at most.
+    template <int dim>
+    void
+    seed_on_wanted_mesh(const Problem<dim>  &problem,
+                        BackgroundGrid<dim> &grid,
+                        Bodies<dim>         &bodies)
+    {
+      for (;;)
+        {
+          for (auto &body : bodies)
+            fill_with_points(problem, grid, *body);
+          if (!grid.has_levels())
+            return;
+          // What has been divided stays, so that this comes to an end.
+          const RefinedCells<dim> present = grid.divided_cells();
+          RefinedCells<dim>       wanted  = wanted_mesh(grid, bodies, 0);
+          wanted.join(present);
+          if (wanted == present)
+            break;
+          for (auto &body : bodies)
+            body->points.clear();
+          change_mesh(grid, bodies, wanted);
+        }
+      for (const auto &body : bodies)
+        refuse_thin_body(grid, *body);
+    }
+  } // namespace
+
+
+
   template <int dim>
   std::vector<std::unique_ptr<MaterialBody<dim>>>
   set_up_bodies(const Problem<dim> &problem, BackgroundGrid<dim> &grid)
   {
-    std::vector<std::unique_ptr<MaterialBody<dim>>> bodies;
-    const auto &fields = problem.output.fields;
-
+    Bodies<dim> bodies;
     for (const Body<dim> &body : problem.bodies)
-      {
-        // A liquid shears its points' domains without end.
-        const KernelKind kernel =
-          problem.grid.kernel == KernelKind::cpdi && body.is_liquid ?
-            KernelKind::linear :
-            problem.grid.kernel;
-        auto        stress = make_stress_update<dim>(body.law,
-                                              body.material,
-                                              body.treatment,
-                                              body.hourglass,
-                                              body.frame,
-                                              kernel);
-        PointLayout layout;
-        layout.deviator      = stress->has_deviator();
-        layout.n_history     = stress->n_history();
-        layout.volumetric    = stress->volumetric();
-        layout.affine        = problem.method.transfer == Transfer::apic;
-        layout.crossings     = !body.is_liquid && body.frame == Frame::current;
-        layout.domains       = kernel == KernelKind::cpdi;
-        layout.initial_frame = body.frame == Frame::initial;
-        layout.reference =
-          problem.output.time_interval > 0 &&
-          std::find(fields.begin(), fields.end(), "displacement") !=
-            fields.end();
-
-        const StressUpdate<dim> &law = *stress;
-        bodies.push_back(std::unique_ptr<MaterialBody<dim>>(
-          new MaterialBody<dim>{body,
-                                std::move(stress),
-                                MaterialPoints<dim>(grid, layout),
-                                std::nullopt,
-                                std::nullopt,
-                                std::nullopt}));
-        seed<dim>(
-          body,
-          grid,
-          [&](const dealii::Point<dim> &place) {
-            return body.density() /
-                   law.volume_ratio_at_rest(
-                     initial_pressure(problem, body, law, place));
-          },
-          bodies.back()->points);
-        set_initial_state(problem, *bodies.back());
-
-        if (bodies.back()->points.n_global() == 0)
-          throw InputError("The body '" + body.name +
-                           "' holds no material point: no place that "
-                           "'Points per cell edge' puts into the cells lies "
-                           "in its shape. In 'Body " +
-                           body.name +
-                           "', enlarge the shape, or set 'Points per cell "
-                           "edge' to 4, or refine 'Grid/Cells'.");
-      }
+      bodies.push_back(make_body(problem, body, grid));
+    seed_on_wanted_mesh(problem, grid, bodies);
 
     if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
       balance(grid, bodies);
@@ -212,41 +304,8 @@ namespace limber
 
 
 
-  template <int dim>
-  void
-  balance(BackgroundGrid<dim>                             &grid,
-          std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
-  {
-    for (auto &body : bodies)
-      body->points.prepare_mesh_change();
-
-    // A cell without points takes memory but no time.
-    using Cell        = typename dealii::Triangulation<dim>::cell_iterator;
-    using Status      = typename dealii::Triangulation<dim>::CellStatus;
-    const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
-      unsigned int n = 0;
-      if (cell->is_active() && cell->is_locally_owned())
-        for (const auto &body : bodies)
-          n += body->points.n_in_cell(cell);
-      return 1 + 100 * n;
-    };
-    const auto connection = grid.triangulation.signals.weight.connect(weight);
-    grid.triangulation.repartition();
-    connection.disconnect();
-
-    grid.rebuild();
-    for (auto &body : bodies)
-      body->points.finish_mesh_change();
-  }
-
-
-
   template std::vector<std::unique_ptr<MaterialBody<2>>>
   set_up_bodies(const Problem<2> &, BackgroundGrid<2> &);
   template std::vector<std::unique_ptr<MaterialBody<3>>>
   set_up_bodies(const Problem<3> &, BackgroundGrid<3> &);
-  template void
-  balance(BackgroundGrid<2> &, std::vector<std::unique_ptr<MaterialBody<2>>> &);
-  template void
-  balance(BackgroundGrid<3> &, std::vector<std::unique_ptr<MaterialBody<3>>> &);
 } // namespace limber

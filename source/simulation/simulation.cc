@@ -46,6 +46,7 @@ namespace limber
     , state{problem, grid, nodes, bodies, 0, 0, 0, {}}
     , integrator(
         make_integrator<dim>({problem, grid, nodes, bodies, state.ledger}))
+    , adaptation(problem, grid, bodies)
     , balance_of_start(state)
     , health(state)
     , observables(state)
@@ -71,7 +72,8 @@ namespace limber
     std::ostringstream text;
     text << totals.points << " points of " << bodies.size()
          << (bodies.size() == 1 ? " body in " : " bodies in ") << totals.cells
-         << " cells of " << grid.smallest_edge << " m; first step "
+         << " cells of " << (grid.has_levels() ? "at least " : "")
+         << grid.smallest_edge << " m; first step "
          << integrator->longest_step() << " s, to end time " << problem.end_time
          << " s";
     console.say(text.str());
@@ -134,6 +136,7 @@ namespace limber
 
         if (integrator->reorganise())
           rebalance_if_it_pays();
+        adapt_if_due();
         if (!(integrator->longest_step() > smallest_step * first_step))
           refuse_step(first_step);
         const double step = integrator->advance(state.time, next_step());
@@ -299,11 +302,11 @@ namespace limber
 
     const auto lost =
       dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);
-    totals.points = n_points_at_start - lost;
-    if (lost > problem.method.lost_points_limit * n_points_at_start)
+    totals.points = points_ever() - lost;
+    if (lost > problem.method.lost_points_limit * points_ever())
       {
         throw ComputationError(std::to_string(lost) + " of " +
-                                 std::to_string(n_points_at_start) +
+                                 std::to_string(points_ever()) +
                                  " points are lost at time " +
                                  brief(state.time) + " s" +
                                  (first.empty() ? "." : ": " + first + "."),
@@ -326,6 +329,52 @@ namespace limber
     balance(grid, bodies);
     integrator->reinit();
     steps_waited = 0;
+  }
+
+
+
+  // Ranks that have got many more points than others wait for these no longer
+  // than until here.
+  template <int dim>
+  void
+  Simulation<dim>::adapt_if_due()
+  {
+    constexpr double largest_imbalance = 1.1;
+    if (!adaptation.is_due(integrator->largest_displacement()))
+      return;
+    integrator->synchronise();
+    typename Adaptation<dim>::KeptPoints kept(bodies.size());
+    for (const auto &point : observables.state().tracked)
+      kept[point.body].insert(point.id);
+    const IntegratorState<dim> now = integrator->state();
+    for (std::size_t i = 0; i < now.face_pieces.size(); ++i)
+      for (const auto &piece : now.face_pieces[i])
+        for (std::size_t b = 0; b < bodies.size(); ++b)
+          if (problem.bodies[b].name == problem.loads.faces[i].body)
+            kept[b].insert(piece.carrier);
+
+    if (!adaptation.adapt(state.time, kept))
+      return;
+    integrator->reinit();
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 &&
+        integrator->imbalance() > largest_imbalance)
+      {
+        balance(grid, bodies);
+        integrator->reinit();
+      }
+    totals.points =
+      points_ever() -
+      dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);
+  }
+
+
+
+  // Those of the start, and those that others have become.
+  template <int dim>
+  unsigned long
+  Simulation<dim>::points_ever() const
+  {
+    return n_points_at_start + adaptation.state().points_added;
   }
 
 

@@ -177,6 +177,12 @@ stopped by signal n.
                 const AdviseOptions            &options)
     {
       const Problem<dim> problem = read_problem<dim>(scene);
+      if (problem.grid.levels > 0)
+        throw InputError("'limber advise' looks for a coarser lattice and "
+                         "does not know cells of several sizes, which " +
+                         in_quotes(path) +
+                         " has ('Grid/Levels'). Ask about the scene with "
+                         "'--set Grid/Levels=0 --set Grid/Refine='.");
       check_size(problem, Task::run, this_machine());
       const auto           found = find_advice<dim>(scene,
                                           problem,

@@ -132,6 +132,15 @@ namespace limber
 
 
   template <int dim>
+  double
+  ExplicitIntegrator<dim>::largest_displacement() const
+  {
+    return extremes.displacement;
+  }
+
+
+
+  template <int dim>
   bool
   ExplicitIntegrator<dim>::points_were_lost() const
   {
@@ -183,7 +192,7 @@ namespace limber
     if (method.time_step > 0)
       return method.time_step;
 
-    const double h    = parts.grid.smallest_edge;
+    const double h    = relocation.smallest_edge();
     double       step = method.courant_number * h / (wave_speed + point_speed);
     // explicit viscosity
     if (viscosity > 0)

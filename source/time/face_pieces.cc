@@ -123,7 +123,7 @@ namespace limber
   {
     std::array<double, dim> spacing;
     for (unsigned int d = 0; d < dim; ++d)
-      spacing[d] = grid.edge(d) / body.points_per_cell_edge[d];
+      spacing[d] = grid.finest_edge(d) / body.points_per_cell_edge[d];
     std::vector<FacePiece<dim>> pieces;
     std::vector<Facet<dim>>     facets;
 

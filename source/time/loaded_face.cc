@@ -61,7 +61,10 @@ namespace limber
 
 
 
-    /** By local number of a cell, the pieces in it and in its neighbours. */
+    /**
+     * By local number of a cell, the pieces in it and in its neighbours,
+     * whichever their size.
+     */
     template <int dim>
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
     pieces_near_cells(const std::vector<FacePiece<dim>> &pieces,
@@ -69,23 +72,24 @@ namespace limber
     {
       std::unordered_map<std::uint32_t, std::vector<unsigned int>> result;
       const unsigned int n_neighbours = dim == 2 ? 9 : 27;
+      const auto        &box          = grid.description;
       for (unsigned int i = 0; i < pieces.size(); ++i)
-        for (unsigned int k = 0; k < n_neighbours; ++k)
-          {
-            std::array<double, dim> x;
-            unsigned int            rest = k;
-            for (unsigned int d = 0; d < dim; ++d)
-              {
-                const auto &box = grid.description;
-                x[d]            = pieces[i].reference[d] +
-                       (int(rest % 3) - 1) * (box.upper[d] - box.lower[d]) /
-                         box.cells[d];
-                rest /= 3;
-              }
-            const std::uint32_t cell = grid.bins.cell_at(x);
-            if (cell < grid.n_owned_cells())
-              result[cell].push_back(i);
-          }
+        for (unsigned int level = 0; level <= box.levels; ++level)
+          for (unsigned int k = 0; k < n_neighbours; ++k)
+            {
+              std::array<double, dim> x;
+              unsigned int            rest = k;
+              for (unsigned int d = 0; d < dim; ++d)
+                {
+                  x[d] = pieces[i].reference[d] +
+                         (int(rest % 3) - 1) * (box.upper[d] - box.lower[d]) /
+                           (box.cells[d] << level);
+                  rest /= 3;
+                }
+              const std::uint32_t cell = grid.bins.cell_at(x);
+              if (cell < grid.n_owned_cells())
+                result[cell].push_back(i);
+            }
       return result;
     }
 

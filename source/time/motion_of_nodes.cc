@@ -135,7 +135,7 @@ namespace limber
       parts.ledger.gravity_impulse[d] += total_mass * gravity_step[d];
 
     fastest_node = std::isfinite(all) ? std::sqrt(checked_speed) * step /
-                                          parts.grid.smallest_edge :
+                                          relocation.smallest_edge() :
                                         1e300;
     lap(Verb::advance_nodes);
   }
@@ -194,7 +194,7 @@ namespace limber
     throw ComputationError("The run is unstable: a node moves by " +
                              brief(cells) + " cells in one step of " +
                              brief(step) + " s, at " +
-                             brief(cells * parts.grid.smallest_edge / step) +
+                             brief(cells * relocation.smallest_edge() / step) +
                              " m/s," + where,
                            FailureKind::growing_energy);
   }

@@ -24,6 +24,7 @@ namespace limber
     , loads(loads)
     , parallel(
         dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
+    , largest_inverse_edge(1 / parts.grid.smallest_edge)
   {}
 
 
@@ -35,6 +36,31 @@ namespace limber
     travelled = 0;
     sort_points(/*agree=*/true);
     gather_cells();
+    if (parts.grid.has_levels())
+      largest_inverse_edge =
+        dealii::Utilities::MPI::max(find_largest_inverse_edge(),
+                                    parts.grid.communicator);
+  }
+
+
+
+  // Fine cells without points do not limit the step.
+  template <int dim>
+  double
+  Relocation<dim>::find_largest_inverse_edge() const
+  {
+    double result = 0;
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points = body->points.view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          if (points.cell[p] != invalid_cell &&
+              (p == 0 || points.cell[p] != points.cell[p - 1]))
+            for (const double inverse :
+                 parts.grid.geometry[points.cell[p]].inverse_edge)
+              result = std::max(result, inverse);
+      }
+    return result;
   }
 
 
@@ -51,6 +77,8 @@ namespace limber
     for (const auto &body : parts.bodies)
       most_points += body->points.size();
     most_excess_batches = excess_batches;
+    if (parts.grid.has_levels())
+      largest_inverse_edge = find_largest_inverse_edge();
     if (!parallel)
       return;
     double *const all[] = {&extremes.speed_squared,
@@ -61,7 +89,8 @@ namespace limber
                            &any_entered_shared,
                            &any_entered_ghosts,
                            &most_points,
-                           &most_excess_batches};
+                           &most_excess_batches,
+                           &largest_inverse_edge};
     constexpr int n     = std::size(all);
     double        values[n];
     for (int k = 0; k < n; ++k)
@@ -141,8 +170,10 @@ namespace limber
   Relocation<dim>::reorganise(const double displacement)
   {
     bool exchanged = bring_points_home();
-    // The next step may be somewhat longer than the last one.
-    if (parallel && travelled + 1.5 * displacement > travel_limit)
+    // The next step may be somewhat longer than the last one, and one that
+    // begins in a cell of twice the size counts half.
+    const double allowance = parts.grid.has_levels() ? 2.5 : 1.5;
+    if (parallel && travelled + allowance * displacement > travel_limit)
       {
         exchange_points();
         exchanged = true;

@@ -41,9 +41,6 @@ namespace limber
         const double strength = body->description.chequerboard_control;
         if (!(strength > 0) || body->implicit)
           continue;
-        const double share =
-          std::min(strength * wave_speed * step / parts.grid.smallest_edge,
-                   1. / (1 << dim));
         gather_chequerboards<dim>(vertices.owned_occupied_cells(),
                                   vertices.view(),
                                   body->cell_sums->view());
@@ -54,12 +51,16 @@ namespace limber
                       0.);
         vertices.start_sum(0, n_chequerboard_slots<dim>);
         vertices.finish_sum();
+        // The others of a change of size have cells that are not of one size.
+        for (const HangingNode &hanging : parts.grid.vertices.hanging)
+          for (const auto &[master, weight] : hanging.masters)
+            std::fill_n(vertices.record(master), NodeLayout<dim>::stride, 0.);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
           find_chequerboard_shifts<dim>(*cells,
                                         vertices.view(),
                                         body->cell_sums->view(),
-                                        share,
+                                        strength * wave_speed * step,
                                         body->cell_shift.data());
         vertices.clear();
       }
@@ -87,10 +88,16 @@ namespace limber
 
     for (const std::uint32_t node : nodes.active_nodes())
       std::fill_n(nodes.record(node) + Layout::hourglass_force, dim, 0.);
+    lend_to_hanging_nodes();
     limber::resist_hourglass<dim>(nodes.owned_occupied_cells(),
                                   nodes.view(),
                                   resisting,
                                   step);
+    for (const HangingNode &hanging : nodes.table.hanging)
+      {
+        nodes.record(hanging.node)[Layout::mass] = 0;
+        std::fill_n(nodes.record(hanging.node) + Layout::momentum, dim, 0.);
+      }
     nodes.start_sum(Layout::hourglass_force, Layout::hourglass_force + dim);
     nodes.finish_sum();
     for (const std::uint32_t node : nodes.active_nodes())
@@ -109,6 +116,39 @@ namespace limber
                 step * force * record[Layout::momentum + d] / mass;
             record[Layout::force + d] += force;
           }
+      }
+  }
+
+
+
+  // A cell with a hanging corner moves as its masters say. The mass only limits
+  // the resistance; around a master the cells of a change of size have more
+  // corners that hang on it than those of a lattice have in it, up to five
+  // quarters in 2d and 20 instead of 8 in 3d, most of them by hanging nodes.
+  template <int dim>
+  void
+  Stabilization<dim>::lend_to_hanging_nodes()
+  {
+    using Layout           = NodeLayout<dim>;
+    constexpr double share = 1. / (1 << (dim - 1));
+    for (const HangingNode &hanging : parts.nodes.table.hanging)
+      {
+        double                 mass = 1e300;
+        dealii::Tensor<1, dim> velocity;
+        for (const auto &[master, weight] : hanging.masters)
+          {
+            const double *const from = parts.nodes.record(master);
+            mass = std::min(mass, share * from[Layout::mass]);
+            for (int d = 0; d < dim; ++d)
+              velocity[d] += weight * from[Layout::momentum + d] /
+                             std::max(from[Layout::mass], 1e-300);
+          }
+        // Whether it is active or not, its masters have given to it.
+        double *const to = parts.nodes.record(hanging.node);
+        std::fill_n(to + Layout::hourglass_force, dim, 0.);
+        to[Layout::mass] = mass;
+        for (int d = 0; d < dim; ++d)
+          to[Layout::momentum + d] = mass * velocity[d];
       }
   }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/transfer/chequerboard.h>
 
+#include <algorithm>
+
 namespace limber
 {
   namespace
@@ -57,7 +59,7 @@ namespace limber
   find_chequerboard_shifts(const std::vector<std::uint32_t> &cells,
                            const GridView<dim>              &grid,
                            const CellSums<dim>              &sums,
-                           const double                      share,
+                           const double                      way,
                            double *const                     shift)
   {
     constexpr double all = 1 << dim;
@@ -67,6 +69,11 @@ namespace limber
         shift[cell]       = 0;
         if (!(mass > 0))
           continue;
+        const auto  &inverse_edge = grid.cells[cell].inverse_edge;
+        const double share =
+          std::min(way * *std::max_element(inverse_edge.begin(),
+                                           inverse_edge.end()),
+                   1 / all);
         for (int a = 0; a < 1 << dim; ++a)
           {
             const double *const node = grid.nodes + grid.cells[cell].node[a];

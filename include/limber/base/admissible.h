@@ -101,6 +101,12 @@ namespace limber
     Admissible
     non_negative_integer(const std::string &example = "0");
 
+    /** From lower to upper, both included. */
+    Admissible
+    integer_from_to(const unsigned int lower,
+                    const unsigned int upper,
+                    const std::string &example);
+
     /** Exactly so many numbers, separated by commas. */
     Admissible
     numbers(const unsigned int count, const std::string &example);

@@ -10,14 +10,15 @@
 
 #include <limber/grid/grid_view.h>
 #include <limber/grid/node_table.h>
-#include <limber/problem/problem.h>
+#include <limber/grid/refined_cells.h>
 
 #include <vector>
 
 namespace limber
 {
   /**
-   * The background grid: a distributed mesh of rectangular cells, one scalar
+   * The background grid: a distributed mesh of rectangular cells, those of the
+   * scene's lattice or finer ones made of them, one scalar
    * Q1 space for everything on vertices and one DGQ0 space for everything in
    * cells, which also numbers quadratic splines. A vertex's or a
    * cell's local number is that of its degree of freedom on this rank: owned
@@ -29,10 +30,13 @@ namespace limber
   class BackgroundGrid
   {
   public:
+    using Mesh = dealii::parallel::distributed::Triangulation<dim>;
+
     /**
-     * Build the mesh of the scene. Cell counts are split into few coarse
+     * Build the lattice of the scene. Cell counts are split into few coarse
      * cells and as many global refinements as the counts have factors of two
-     * in common, since every rank stores all coarse cells.
+     * in common, since every rank stores all coarse cells. Where the scene has
+     * levels, none of its cells is divided yet.
      */
     BackgroundGrid(const GridDescription<dim> &description,
                    MPI_Comm                    communicator);
@@ -48,6 +52,60 @@ namespace limber
     {
       return cell_numbers[cell->active_cell_index()];
     }
+
+    using Cell = typename dealii::Triangulation<dim>::cell_iterator;
+
+    /** How often a cell of the scene has been halved to make this one. */
+    unsigned int
+    level_of(const Cell &cell) const
+    {
+      return cell->level() - global_refinements;
+    }
+
+    /** The same of a cell by its local number. */
+    unsigned int
+    level_of(const std::uint32_t cell) const
+    {
+      return has_levels() ? levels[cell] : 0;
+    }
+
+    /** Its place in the lattice of its level. */
+    typename RefinedCells<dim>::Place
+    place_of(const Cell &cell) const;
+
+    /** The cell of this level, if it were there, that holds a place. */
+    typename RefinedCells<dim>::Place
+    place_at(const std::array<double, dim> &x, unsigned int level) const;
+
+    /** Whether cells may differ in size. */
+    bool
+    has_levels() const
+    {
+      return description.levels > 0;
+    }
+
+    /** No wishes yet; see RefinedCells. */
+    RefinedCells<dim>
+    no_divided_cells() const
+    {
+      return {description.cells, description.levels};
+    }
+
+    /** The mesh as it is; collective. */
+    RefinedCells<dim>
+    divided_cells() const;
+
+    /**
+     * Mark the owned cells that have to be divided, or joined with their
+     * siblings, to come one level closer to a graded mesh. Returns whether
+     * there are any on any rank; collective.
+     */
+    bool
+    mark_towards(const RefinedCells<dim> &mesh);
+
+    /** Take back what it has marked. */
+    void
+    clear_marks();
 
     /** The nodes whose functions interpolate: vertices, or of splines. */
     const NodeTable<dim> &
@@ -102,14 +160,14 @@ namespace limber
       return ghost_cells[cell - n_owned_cells()];
     }
 
-    const GridDescription<dim>                        description;
-    const MPI_Comm                                    communicator;
-    dealii::parallel::distributed::Triangulation<dim> triangulation;
-    const dealii::MappingCartesian<dim>               mapping;
+    const GridDescription<dim>          description;
+    const MPI_Comm                      communicator;
+    Mesh                                triangulation;
+    const dealii::MappingCartesian<dim> mapping;
 
     // Tables, by local number
     std::vector<CellGeometry<dim>> geometry;
-    std::vector<std::uint32_t>     bin_table;
+    std::vector<std::uint32_t>     bin_table, bin_blocks;
     BinView<dim>                   bins;
     double                         smallest_edge = 0; // m, over all ranks
     // Cells that other ranks hold as well
@@ -130,11 +188,17 @@ namespace limber
     void
     build_bins();
     void
+    put_into_bins(std::uint32_t cell);
+    unsigned int
+    finest_level() const;
+    void
     build_hanging_nodes(const Numbering &numbering);
     void
     complete_boundary();
 
-    unsigned int               cells_owned = 0;
+    unsigned int               global_refinements = 0; // to the lattice
+    unsigned int               cells_owned        = 0;
+    std::vector<std::uint8_t>  levels; // by local number, where there are any
     std::vector<std::uint32_t> cell_numbers; // by active cell index
     std::vector<CellElsewhere> ghost_cells;
   };

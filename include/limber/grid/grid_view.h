@@ -84,17 +84,25 @@ namespace limber
 
 
   /**
-   * From a place to the cell that holds it: a table over equal bins, as fine
-   * as the finest cell. Places outside the table give invalid_cell.
+   * From a place to the cell that holds it: a table over equal bins, the cells
+   * of the lattice of the scene. Where a bin is divided into finer cells, the
+   * table leads to a block of places, as fine as the finest cell. Places
+   * outside the table give invalid_cell.
    */
   template <int dim>
   struct BinView
   {
+    // An entry from this one on, but for invalid_cell, is a block.
+    static constexpr std::uint32_t first_block = 0x80000000u;
+
     std::array<double, dim>       lower{};
     std::array<double, dim>       inverse_edge{};
     std::array<std::int64_t, dim> n{};
     const std::uint32_t          *table = nullptr;
     bool one_per_cell = false; // whether each bin is a cell of its own
+    // Blocks one after the other, of so many places along each edge
+    const std::uint32_t *blocks   = nullptr;
+    std::int64_t         per_edge = 1;
 
     std::uint32_t
     cell_at(const std::array<double, dim> &x) const
@@ -107,7 +115,7 @@ namespace limber
             return invalid_cell;
           index = index * n[d] + static_cast<std::int64_t>(bin);
         }
-      return table[index];
+      return cell_in(table[index], x);
     }
 
     /**
@@ -125,7 +133,7 @@ namespace limber
           index             = index * n[d] +
                   static_cast<std::int64_t>(std::min(std::max(0., bin), last));
         }
-      return table[index];
+      return cell_in(table[index], x);
     }
 
     /** Where the box ends, m. */
@@ -133,6 +141,26 @@ namespace limber
     upper(const int d) const
     {
       return lower[d] + n[d] / inverse_edge[d];
+    }
+
+  private:
+    std::uint32_t
+    cell_in(const std::uint32_t entry, const std::array<double, dim> &x) const
+    {
+      if (entry < first_block || entry == invalid_cell)
+        return entry;
+      std::int64_t index = entry - first_block;
+      for (int d = dim - 1; d >= 0; --d)
+        {
+          const double bin   = (x[d] - lower[d]) * inverse_edge[d];
+          const double first = std::min(std::max(0., std::floor(bin)),
+                                        static_cast<double>(n[d] - 1));
+          const double place = (bin - first) * static_cast<double>(per_edge);
+          const double last  = static_cast<double>(per_edge - 1);
+          index              = index * per_edge + static_cast<std::int64_t>(
+                                       std::min(std::max(0., place), last));
+        }
+      return blocks[index];
     }
   };
 

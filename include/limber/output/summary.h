@@ -36,6 +36,11 @@ namespace limber
     std::vector<std::pair<std::string, double>> memory;
     // Share of the time that each verb of the step took
     std::vector<std::pair<std::string, double>> verbs;
+    // How often criteria were asked, the mesh changed, points split, and the
+    // time that it took, s; cells and points by level, in lines. Empty where
+    // all cells are equal.
+    std::vector<std::pair<std::string, double>> adaptation;
+    std::string                                 levels;
     std::vector<CheckResult>                    checks;
     std::vector<HealthLine>                     health;
     std::vector<std::string>                    warnings;

@@ -23,6 +23,7 @@ namespace limber
     bool         crossings  = false; // how many cells it has entered
     bool         domains    = false; // convected domains (CPDI)
     bool         reference  = false; // reference position, for displacements
+    bool         size_class = false; // the level of cells they are made for
     // Functions of the initial places: also the reference position and F.
     bool initial_frame = false;
 
@@ -66,8 +67,8 @@ namespace limber
     reserve(std::size_t n);
 
     /**
-     * A new point in an owned cell, by local number; mass in kg, half edges of
-     * its domain as columns in m.
+     * A new point in an owned cell, by local number, and of its size; mass in
+     * kg, half edges of its domain as columns in m.
      */
     void
     add(std::uint32_t                 cell,
@@ -100,6 +101,29 @@ namespace limber
     id(const std::size_t p) const
     {
       return ids[p];
+    }
+
+    /**
+     * The level of the cells whose size the point has: cells of this level
+     * would hold as many of its kind as 'Points per cell edge' says.
+     */
+    unsigned int
+    size_class(const std::size_t p) const
+    {
+      return layout.size_class ? size_classes[p] : 0;
+    }
+
+    bool
+    has_size_classes() const
+    {
+      return layout.size_class;
+    }
+
+    /** Of all points; empty where all are of one size. */
+    const std::vector<char> &
+    all_size_classes() const
+    {
+      return size_classes;
     }
 
     /** Where the point was at the start; needs has_reference(). */
@@ -140,21 +164,40 @@ namespace limber
     hand_over();
 
     /**
-     * Before and after the mesh is changed or partitioned anew; in between
-     * there are no arrays. Collective.
+     * Before and after the mesh is partitioned anew; in between there are no
+     * arrays. Collective.
      */
     void
     prepare_mesh_change();
     void
     finish_mesh_change();
 
-    /** Points in an owned cell, while the mesh changes. */
+    /**
+     * After cells have been divided or joined, with the points in cells of this
+     * rank and none of these given away: the numbers of their cells.
+     */
+    void
+    find_cells();
+
+    /** Points in an owned cell, while the mesh is partitioned. */
     unsigned int
     n_in_cell(const typename dealii::Triangulation<dim>::active_cell_iterator
                 &cell) const
     {
       return carrier->n_particles_in_cell(cell);
     }
+
+    /**
+     * Let each of these points become 2^dim of half its size, side by side in
+     * its cell, that share its mass and are otherwise what it was. So sums over
+     * points and, as linear functions see them, over nodes do not change. With
+     * @p spacing of points of size class 0, m. One keeps the number, the others
+     * get numbers from @p next_id on.
+     */
+    void
+    split(const std::vector<std::size_t> &which,
+          const std::array<double, dim>  &spacing,
+          std::uint64_t                   next_id);
 
     /** What a point carries, as "mass" or "velocity x", in a fixed order. */
     std::vector<std::string>
@@ -184,11 +227,15 @@ namespace limber
     void
     clear();
 
-    /** Points with a number already, in owned cells; a vector per field. */
+    /**
+     * Points with a number already, in owned cells; a vector per field, and
+     * size classes where there are any.
+     */
     void
     append(const std::vector<std::uint32_t>       &new_cells,
            const std::vector<std::uint64_t>       &new_ids,
-           const std::vector<std::vector<double>> &new_fields);
+           const std::vector<std::vector<double>> &new_fields,
+           const std::vector<char>                &new_size_classes = {});
 
   private:
     void
@@ -198,11 +245,12 @@ namespace limber
     std::vector<std::uint32_t>
     occupied_cells() const;
 
-    // A point as consecutive numbers: its fields, then its id.
+    // A point as consecutive numbers: its fields, its id, its size class if
+    // there are any.
     std::size_t
     record_size() const
     {
-      return fields.size() + 1;
+      return fields.size() + (layout.size_class ? 2 : 1);
     }
     void
     write_record(std::size_t p, double *record) const;
@@ -218,6 +266,7 @@ namespace limber
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;
+    std::vector<char>                size_classes; // or empty
     unsigned long                    n_reorderings = 0;
 
     // Only while the mesh changes

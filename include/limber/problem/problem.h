@@ -152,14 +152,71 @@ namespace limber
     }
   };
 
+  /** What cells are asked for that may have to become finer. */
+  enum class RefinementCriterion
+  {
+    region, // where they are
+    body,   // whether they hold points of some bodies
+    surface // how far it is from them to an empty cell
+  };
+
+  /** Where cells of a level are wanted: a criterion, within a region. */
+  template <int dim>
+  struct Refinement
+  {
+    std::string              name;
+    RefinementCriterion      criterion = RefinementCriterion::region;
+    unsigned int             level     = 1; // wanted there
+    Corners<dim>             box;           // m
+    Formula<dim>             where; // 1 component, positive inside; empty: all
+    bool                     depends_on_time = false; // the formula
+    std::vector<std::string> bodies;                  // of the criterion 'body'
+    int                      distance = 1;            // of 'surface', in cells
+
+    /** Whether a place in the box is inside at this time, s. */
+    bool
+    contains(const dealii::Point<dim> &place, const double time) const
+    {
+      return where.empty() || where.value(place, time) > 0;
+    }
+
+    /** Whether cells change in the run because of it. */
+    bool
+    is_moving() const
+    {
+      return criterion != RefinementCriterion::region || depends_on_time;
+    }
+  };
+
   template <int dim>
   struct GridDescription
   {
     dealii::Point<dim>            lower, upper;
     std::array<unsigned int, dim> cells{};
     KernelKind                    kernel = KernelKind::linear;
+    // How often cells may be halved; 0: all are as the scene has them
+    unsigned int                 levels = 0;
+    std::vector<Refinement<dim>> refinements;
+    unsigned int adapt_every = 0; // steps; 0: as far as points have gone
 
-    /** Edge of a cell, m. */
+    /** Whether a region moves with time, whatever the points do. */
+    bool
+    has_moving_formula() const
+    {
+      for (const Refinement<dim> &refinement : refinements)
+        if (refinement.depends_on_time)
+          return true;
+      return false;
+    }
+
+    /** Edge of a cell of the finest level, m. */
+    double
+    finest_edge(const unsigned int direction) const
+    {
+      return edge(direction) / (1u << levels);
+    }
+
+    /** Edge of a cell, m; of the coarsest level. */
     double
     edge(const unsigned int direction) const
     {

@@ -20,7 +20,8 @@ namespace limber
    */
   struct SceneNames
   {
-    std::vector<std::string> bodies, face_loads, observables, checks;
+    std::vector<std::string> bodies, refinements, face_loads, observables,
+      checks;
     // Parts of a body's shape, where it is a union, by name of the body.
     std::map<std::string, std::vector<std::string>> shapes;
   };
@@ -90,11 +91,36 @@ namespace limber
   // Grid, boundaries, loads (source/problem/read_grid.cc, read_loads.cc)
 
   void
-  declare_grid(Parameters &parameters, const unsigned int dim);
+  declare_grid(Parameters                     &parameters,
+               const unsigned int              dim,
+               const std::vector<std::string> &refinements);
 
   template <int dim>
   GridDescription<dim>
-  read_grid(const Section &section);
+  read_grid(const Section &section, const std::vector<std::string> &bodies);
+
+  // Levels of the grid (source/problem/read_levels.cc)
+
+  /** Within the section 'Grid'. */
+  void
+  declare_levels(Parameters                     &parameters,
+                 const unsigned int              dim,
+                 const std::vector<std::string> &refinements);
+
+  /**
+   * From the section 'Grid'; needs its corners and cells, and the names of the
+   * bodies.
+   */
+  template <int dim>
+  void
+  read_levels(const Section                  &section,
+              const std::vector<std::string> &bodies,
+              GridDescription<dim>           &grid);
+
+  /** Refuses what does not go with cells of unequal size; needs all else. */
+  template <int dim>
+  void
+  check_levels(const Section &root, const Problem<dim> &problem);
 
   void
   declare_boundaries(Parameters &parameters, const unsigned int dim);

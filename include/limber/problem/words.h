@@ -36,6 +36,9 @@ namespace limber
   const Words<std::string> &
   shape_words();
 
+  const Words<RefinementCriterion> &
+  criterion_words();
+
   /** From the list of laws. */
   const Words<LawDescription> &
   law_words();

@@ -5,6 +5,7 @@
 #include <limber/simulation/run_state.h>
 #include <limber/simulation/seal.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,12 +35,15 @@ namespace limber
 
     /**
      * Replace all points, those of the start, by the ones of the good file, or
-     * of the other where that is damaged. @p start: the state at the start.
+     * of the other where that is damaged. @p start: the state at the start;
+     * @p adopt_mesh makes the mesh that of the state, before points are read.
      * Throws InputError where there is no checkpoint or it belongs to another
      * scene, FileError where none can be used.
      */
     RunState<dim>
-    load(const RunState<dim> &start, Bodies &bodies);
+    load(const RunState<dim>                              &start,
+         Bodies                                           &bodies,
+         const std::function<void(const RunState<dim> &)> &adopt_mesh);
 
     /** What load() has found wrong; empty: nothing. On the first rank. */
     const std::string &
@@ -61,10 +65,12 @@ namespace limber
                const RunState<dim> &state,
                const Bodies        &bodies) const;
     RunState<dim>
-    read_file(const std::string              &path,
-              const std::vector<std::size_t> &n_at_start,
-              const RunState<dim>            &start,
-              Bodies                         &bodies) const;
+    read_state(const std::string &path, const RunState<dim> &start) const;
+    void
+    read_bodies(const std::string              &path,
+                const std::vector<std::size_t> &n_at_start,
+                const RunState<dim>            &state,
+                Bodies                         &bodies) const;
     void
     check_statistics(const std::string &path, std::uint64_t length) const;
 

@@ -2,6 +2,7 @@
 #ifndef limber_simulation_run_state_h
 #define limber_simulation_run_state_h
 
+#include <limber/adaptation/adaptation.h>
 #include <limber/output/checks.h>
 #include <limber/output/observables.h>
 #include <limber/output/writer.h>
@@ -26,6 +27,7 @@ namespace limber
     ObservablesState<dim>               observables;
     std::vector<CheckedValue>           checks;
     WriterState                         pictures;
+    AdaptationState                     adaptation;
     double                              next_pictures     = 0; // s
     std::uint64_t                       statistics_length = 0; // bytes
     std::map<std::string, unsigned int> warnings;

@@ -2,6 +2,7 @@
 #ifndef limber_simulation_simulation_h
 #define limber_simulation_simulation_h
 
+#include <limber/adaptation/adaptation.h>
 #include <limber/base/console.h>
 #include <limber/base/exceptions.h>
 #include <limber/base/memory.h>
@@ -90,6 +91,10 @@ namespace limber
     void
     rebalance_if_it_pays();
     void
+    adapt_if_due();
+    unsigned long
+    points_ever() const;
+    void
     show_progress();
     void
     finish(const std::string &verdict,
@@ -117,6 +122,7 @@ namespace limber
     NodalFields<dim> nodes;
     State<dim>       state;
     const std::unique_ptr<Integrator<dim>> integrator;
+    Adaptation<dim>                        adaptation;
     Balance<dim>                           balance_of_start;
     const Health<dim>                      health;
     Observables<dim>                       observables;

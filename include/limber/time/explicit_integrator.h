@@ -64,6 +64,8 @@ namespace limber
     restore(const IntegratorState<dim> &former) override;
     double
     imbalance() const override;
+    double
+    largest_displacement() const override;
     bool
     points_were_lost() const override;
     const std::vector<LostPointOfBody<dim>> &

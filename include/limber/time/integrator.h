@@ -113,6 +113,10 @@ namespace limber
     virtual double
     imbalance() const = 0;
 
+    /** Largest way of a point in the last step, in edges of its cell. */
+    virtual double
+    largest_displacement() const = 0;
+
     /** Whether any rank has lost points in the last step. */
     virtual bool
     points_were_lost() const = 0;

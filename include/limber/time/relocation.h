@@ -66,6 +66,13 @@ namespace limber
     double
     imbalance() const;
 
+    /** Of the cells that hold points, over all ranks, m. */
+    double
+    smallest_edge() const
+    {
+      return 1 / largest_inverse_edge;
+    }
+
     bool
     points_were_lost() const
     {
@@ -87,6 +94,8 @@ namespace limber
     exchange_points();
     void
     gather_cells();
+    double
+    find_largest_inverse_edge() const;
 
     const RunParts<dim> parts;
     ExternalLoads<dim> &loads;
@@ -100,6 +109,9 @@ namespace limber
     double any_entered_ghosts  = 0;
     double most_points         = 0; // on one rank
     double most_excess_batches = 0; // on one rank, see below
+
+    // Of cells that hold points, over all ranks, 1/m
+    double largest_inverse_edge = 0;
 
     // Sum of largest displacements since ranks exchanged points, in cells
     double travelled = 0;

@@ -39,6 +39,8 @@ namespace limber
   private:
     double
     speed_of_resistance(const MaterialBody<dim> &body, double step) const;
+    void
+    lend_to_hanging_nodes();
 
     const RunParts<dim> parts;
     // Refilled in each step, which then allocates nothing

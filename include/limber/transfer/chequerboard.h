@@ -42,15 +42,15 @@ namespace limber
 
   /**
    * From the complete sums on the nodes: write to shift[cell] what the
-   * volumetric variable of the points in each of these cells gets for
-   * @p share = beta.
+   * volumetric variable of the points in each of these cells gets for beta =
+   * way / h in cells with shortest edges h, but at most 2^-dim.
    */
   template <int dim>
   void
   find_chequerboard_shifts(const std::vector<std::uint32_t> &cells,
                            const GridView<dim>              &grid,
                            const CellSums<dim>              &sums,
-                           double                            share,
+                           double                            way,
                            double                           *shift);
 } // namespace limber
 

@@ -568,6 +568,68 @@ namespace
 
 
 
+  const std::string fine_corner = R"(
+    subsection Grid
+      set Levels = 2
+      set Refine = corner
+      subsection Refine corner
+        set Upper corner = 1, 1
+      end
+    end
+    )";
+
+  const std::vector<BadScene> bad_levels = {
+    {"RefinementWithoutLevels",
+     {"Grid/Levels=0"},
+     {"'corner'", "'Levels", "one level only"},
+     fine_corner},
+    {"LevelsWithoutRefinement",
+     {"Grid/Levels=1"},
+     {"'Refine", "nothing says where"}},
+    {"TooManyLevels", {"Grid/Levels=5"}, {"'Levels'", "0 to 4"}, fine_corner},
+    {"LevelsBeyondTheForest",
+     {"Grid/Cells=268435456, 268435456"},
+     {"'Levels = 2'", "28", "29", "p4est"},
+     fine_corner},
+    {"LevelBeyondTheFinest",
+     {"Grid/Refine corner/Level=3"},
+     {"'Level", "3", "'Grid/Levels = 2'"},
+     fine_corner},
+    {"RefinementWithoutBounds",
+     {"Grid/Refine corner/Upper corner="},
+     {"'corner'", "no bounds"},
+     fine_corner},
+    {"RefinementUpsideDown",
+     {"Grid/Refine corner/Lower corner=2, 0"},
+     {"'Upper corner'", "swapped"},
+     fine_corner},
+    {"RefinementThatIsNotFinite",
+     {"Grid/Refine corner/Where=1/(x-x)"},
+     {"not finite", "'Where'"},
+     fine_corner},
+    {"SplinesOnLevels",
+     {"Method/Kernel=quadratic"},
+     {"'quadratic'", "'Kernel'", "several sizes", "'Kernel = linear'"},
+     fine_corner},
+    {"DomainsOnLevels",
+     {"Method/Kernel=cpdi"},
+     {"'cpdi'", "several sizes", "'Kernel = linear'"},
+     fine_corner},
+    {"FilterOnLevels",
+     {"Method/Transfer=fmpm"},
+     {"'fmpm'", "'Transfer'", "'Transfer = flip'"},
+     fine_corner},
+    {"FittedPointsOnLevels",
+     {"Body beam/Placement=fitted"},
+     {"'fitted'", "'Placement'", "'Placement = cut'"},
+     fine_corner},
+    {"HistoryOfCrossingsOnLevels",
+     {"Body water/History=crossing"},
+     {"'crossing'", "'History = relax'"},
+     fine_corner}};
+
+
+
   std::string
   name_of_scene(const testing::TestParamInfo<BadScene> &info)
   {
@@ -582,6 +644,10 @@ INSTANTIATE_TEST_SUITE_P(Forms,
 INSTANTIATE_TEST_SUITE_P(Frames,
                          BadScenes,
                          testing::ValuesIn(bad_frames),
+                         name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Levels,
+                         BadScenes,
+                         testing::ValuesIn(bad_levels),
                          name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Bodies,
                          BadScenes,

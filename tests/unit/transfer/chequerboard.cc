@@ -66,8 +66,12 @@ namespace
         }
       std::fill(grid.nodes.begin(), grid.nodes.end(), 0.);
       gather_chequerboards<dim>(cells, grid.view(), grid.cell_sums());
-      find_chequerboard_shifts<dim>(
-        cells, grid.view(), grid.cell_sums(), share, shift.data());
+      find_chequerboard_shifts<dim>(cells,
+                                    grid.view(),
+                                    grid.cell_sums(),
+                                    share * *std::min_element(grid.edge.begin(),
+                                                              grid.edge.end()),
+                                    shift.data());
     }
 
     /** In the middle, with a ring of neighbours whose nodes all count. */

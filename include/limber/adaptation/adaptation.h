@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_adaptation_adaptation_h
+#define limber_adaptation_adaptation_h
+
+#include <limber/adaptation/mesh_change.h>
+
+#include <string>
+#include <unordered_set>
+#include <vector>
+
+namespace limber
+{
+  /** What an adaptation takes from step to step; plain, for checkpoints. */
+  struct AdaptationState
+  {
+    // The mesh, and what criteria wanted when they were last asked; see
+    // RefinedCells::numbers()
+    std::vector<std::uint64_t> mesh, wanted;
+    // Of each body, numbers that its points have had, and points made beyond
+    // those of the start
+    std::vector<std::uint64_t> next_id;
+    std::uint64_t              points_added = 0;
+    double                     way          = 0; // see Adaptation::is_due()
+    std::uint64_t              steps        = 0; // since criteria were asked
+    // For the report
+    std::uint64_t times_asked = 0, mesh_changes = 0, points_split = 0;
+  };
+
+
+
+  /**
+   * Lets the mesh follow what the scene's refinements want, and points follow
+   * the mesh: one in a cell of a finer level than it was made for becomes 2^dim
+   * of half its size. Every member function is collective but those that only
+   * tell something.
+   */
+  template <int dim>
+  class Adaptation
+  {
+  public:
+    using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
+    // Numbers of points of each body that have to stay what they are
+    using KeptPoints = std::vector<std::unordered_set<std::uint64_t>>;
+
+    /** Of a scene set up; does nothing where it has no levels. */
+    Adaptation(const Problem<dim>  &problem,
+               BackgroundGrid<dim> &grid,
+               Bodies              &bodies);
+
+    /**
+     * To be called once per step, with the largest way of a point in the last
+     * one, in edges of its cell: whether it is time to ask the criteria again.
+     */
+    bool
+    is_due(double displacement);
+
+    /**
+     * Ask the criteria at @p time, change the mesh and split points; returns
+     * whether anything has changed, and then fields of nodes and cells have to
+     * adopt the mesh.
+     */
+    bool
+    adapt(double time, const KeptPoints &kept);
+
+    /** Make the mesh that of a checkpoint; points are lost. */
+    void
+    restore(const AdaptationState &former);
+
+    const AdaptationState &
+    state() const
+    {
+      return memory;
+    }
+
+    /** Time that adapting has taken on this rank, s. */
+    double
+    seconds() const
+    {
+      return seconds_spent;
+    }
+
+    /** "points and cells by level ...", of all ranks, for the report. */
+    std::string
+    report() const;
+
+  private:
+    bool
+    split_points(const RefinedCells<dim> &mesh, const KeptPoints &kept);
+
+    const Problem<dim>  &problem;
+    BackgroundGrid<dim> &grid;
+    Bodies              &bodies;
+    AdaptationState      memory;
+    double               seconds_spent = 0;
+  };
+} // namespace limber
+
+#endif

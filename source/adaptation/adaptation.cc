@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/adaptation/adaptation.h>
+#include <limber/adaptation/criteria.h>
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/base/timing.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace limber
+{
+  namespace
+  {
+    // Fine cells reach two of their edges beyond what has to be fine, and
+    // points may go most of that way before criteria are asked again.
+    constexpr double longest_way = 1.5;
+
+    // Where the time alone moves a region nobody knows how fast.
+    constexpr std::uint64_t steps_of_formulas = 50;
+  } // namespace
+
+
+
+  template <int dim>
+  Adaptation<dim>::Adaptation(const Problem<dim>  &problem,
+                              BackgroundGrid<dim> &grid,
+                              Bodies              &bodies)
+    : problem(problem)
+    , grid(grid)
+    , bodies(bodies)
+  {
+    if (!grid.has_levels())
+      return;
+    if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
+      for (const Refinement<dim> &refinement : grid.description.refinements)
+        if (refinement.is_moving())
+          throw InputError(
+            "The refinement " + in_quotes(refinement.name) +
+            " of 'Grid/Refine' moves in the run, which this version does on "
+            "one rank only. Run without mpirun, or set 'Criterion = region' "
+            "and leave 't' out of 'Where'.");
+    memory.mesh = memory.wanted = grid.divided_cells().numbers();
+    for (const auto &body : bodies)
+      memory.next_id.push_back(body->points.n_global());
+  }
+
+
+
+  template <int dim>
+  bool
+  Adaptation<dim>::is_due(const double displacement)
+  {
+    if (!grid.has_levels())
+      return false;
+    memory.way += displacement;
+    ++memory.steps;
+    if (grid.description.adapt_every > 0)
+      return memory.steps >= grid.description.adapt_every;
+    return memory.way + displacement > longest_way ||
+           (grid.description.has_moving_formula() &&
+            memory.steps >= steps_of_formulas);
+  }
+
+
+
+  template <int dim>
+  bool
+  Adaptation<dim>::adapt(const double time, const KeptPoints &kept)
+  {
+    const double before = wall_time();
+    memory.way          = 0;
+    memory.steps        = 0;
+    ++memory.times_asked;
+
+    // A cell is joined again only when nothing has wanted it twice in a row.
+    RefinedCells<dim>       mesh    = wanted_mesh(grid, bodies, time);
+    const RefinedCells<dim> present = grid.divided_cells();
+    RefinedCells<dim>       held    = grid.no_divided_cells();
+    held.set(memory.wanted);
+    held.keep_common(present);
+    memory.wanted = mesh.numbers();
+    mesh.join(held);
+    mesh.grade(0);
+
+    const bool split   = split_points(mesh, kept);
+    const bool changed = change_mesh(grid, bodies, mesh);
+    if (changed)
+      {
+        memory.mesh = mesh.numbers();
+        ++memory.mesh_changes;
+      }
+    if (split || changed)
+      for (auto &body : bodies)
+        body->points.hand_over();
+    seconds_spent += wall_time() - before;
+    return split || changed;
+  }
+
+
+
+  template <int dim>
+  bool
+  Adaptation<dim>::split_points(const RefinedCells<dim> &mesh,
+                                const KeptPoints        &kept)
+  {
+    const GridDescription<dim> &box   = grid.description;
+    std::uint64_t               added = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        MaterialPoints<dim>    &points = bodies[b]->points;
+        std::array<double, dim> spacing;
+        for (int d = 0; d < dim; ++d)
+          spacing[d] =
+            box.edge(d) / bodies[b]->description.points_per_cell_edge[d];
+        // Points made in one pass may have to be split again in the next.
+        for (unsigned int pass = 0; pass < box.levels; ++pass)
+          {
+            std::vector<std::size_t> large;
+            const PointView<dim>     view = points.view();
+            for (std::size_t p = 0; p < view.size; ++p)
+              {
+                const unsigned int      size = points.size_class(p);
+                std::array<double, dim> x;
+                for (int d = 0; d < dim; ++d)
+                  x[d] = view.position[d][p];
+                if (mesh.is_divided(size, grid.place_at(x, size)) &&
+                    kept[b].count(points.id(p)) == 0)
+                  large.push_back(p);
+              }
+            // Numbers that this rank's predecessors take come first.
+            const unsigned long n_new = large.size() * ((1u << dim) - 1);
+            const unsigned long all =
+              dealii::Utilities::MPI::sum(n_new, grid.communicator);
+            if (all == 0)
+              break;
+            unsigned long before = 0;
+            const int     ierr   = MPI_Exscan(&n_new,
+                                        &before,
+                                        1,
+                                        MPI_UNSIGNED_LONG,
+                                        MPI_SUM,
+                                        grid.communicator);
+            AssertThrowMPI(ierr);
+            if (dealii::Utilities::MPI::this_mpi_process(grid.communicator) ==
+                0)
+              before = 0;
+            points.split(large, spacing, memory.next_id[b] + before);
+            memory.next_id[b] += all;
+            memory.points_split += all / ((1u << dim) - 1);
+            added += all;
+          }
+      }
+    memory.points_added += added;
+    return added > 0;
+  }
+
+
+
+  template <int dim>
+  void
+  Adaptation<dim>::restore(const AdaptationState &former)
+  {
+    if (!grid.has_levels())
+      return;
+    memory                 = former;
+    RefinedCells<dim> mesh = grid.no_divided_cells();
+    mesh.set(former.mesh);
+    for (auto &body : bodies)
+      body->points.clear();
+    change_mesh(grid, bodies, mesh);
+  }
+
+
+
+  template <int dim>
+  std::string
+  Adaptation<dim>::report() const
+  {
+    const unsigned int  n = grid.description.levels + 1;
+    std::vector<double> cells(n, 0.), points(n, 0.);
+    for (std::uint32_t c = 0; c < grid.n_owned_cells(); ++c)
+      ++cells[grid.level_of(c)];
+    for (const auto &body : bodies)
+      {
+        const PointView<dim> view = body->points.view();
+        for (std::size_t p = 0; p < view.size; ++p)
+          if (view.cell[p] != invalid_cell)
+            ++points[grid.level_of(view.cell[p])];
+      }
+    dealii::Utilities::MPI::sum(cells, grid.communicator, cells);
+    dealii::Utilities::MPI::sum(points, grid.communicator, points);
+    std::ostringstream text;
+    for (unsigned int level = 0; level < n; ++level)
+      text << "  level " << level << ": " << brief(cells[level]) << " cells of "
+           << brief(grid.description.edge(0) / (1u << level)) << " m, "
+           << brief(points[level]) << " points\n";
+    return text.str();
+  }
+
+
+
+  template class Adaptation<2>;
+  template class Adaptation<3>;
+} // namespace limber

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/adaptation/criteria.h>
+#include <limber/adaptation/occupancy.h>
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** Whether a formula is positive in a corner of a quarter of the part. */
+    template <int dim>
+    bool
+    reaches_into(const Refinement<dim> &refinement,
+                 const Corners<dim>    &part,
+                 const double           time)
+    {
+      constexpr unsigned int per_edge = 5;
+      const unsigned int     n =
+        dim == 2 ? per_edge * per_edge : per_edge * per_edge * per_edge;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          dealii::Point<dim> place;
+          unsigned int       rest = i;
+          for (int d = 0; d < dim; ++d, rest /= per_edge)
+            place[d] = part.first[d] + (part.second[d] - part.first[d]) *
+                                         (rest % per_edge) / (per_edge - 1);
+          if (!refinement.where.is_finite(place, time))
+            throw InputError(
+              "The formula " + in_quotes(refinement.where.expression()) +
+              " in 'Grid/Refine " + refinement.name +
+              "/Where' is not finite at " + to_text(place) + ", time " +
+              brief(time) +
+              ". Usually something is divided by zero. Guard it, as in 'if(x "
+              "> 0, 1/x, 0)'.");
+          if (refinement.contains(place, time))
+            return true;
+        }
+      return false;
+    }
+
+
+
+    /** Whether a cell has a part in a refinement. */
+    template <int dim>
+    bool
+    is_in(const Refinement<dim>                    &refinement,
+          const typename BackgroundGrid<dim>::Cell &cell,
+          const double                              time)
+    {
+      const dealii::Point<dim> lower = cell->vertex(0),
+                               upper = cell->vertex((1 << dim) - 1);
+      Corners<dim> part(lower, upper);
+      for (int d = 0; d < dim; ++d)
+        {
+          // A box that ends where the cell begins has no part of it.
+          const double tolerance = 1e-6 * (upper[d] - lower[d]);
+          part.first[d]          = std::max(lower[d], refinement.box.first[d]);
+          part.second[d]         = std::min(upper[d], refinement.box.second[d]);
+          if (part.second[d] - part.first[d] < tolerance)
+            return false;
+        }
+      return refinement.where.empty() || reaches_into(refinement, part, time);
+    }
+  } // namespace
+
+
+
+  namespace
+  {
+    /** Asks the refinements of the scene, cell by cell. */
+    template <int dim>
+    class Criteria
+    {
+    public:
+      using Cell   = typename BackgroundGrid<dim>::Cell;
+      using Place  = typename RefinedCells<dim>::Place;
+      using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
+
+      Criteria(const BackgroundGrid<dim> &grid,
+               const Bodies              &bodies,
+               const double               time)
+        : grid(grid)
+        , time(time)
+        , occupancy(grid, bodies)
+      {
+        double most = 1;
+        for (const auto &body : bodies)
+          {
+            double n = 1;
+            for (const unsigned int per_edge :
+                 body->description.points_per_cell_edge)
+              n *= 2 * per_edge;
+            most = std::max(most, n);
+          }
+        most_points = static_cast<std::uint64_t>(most);
+        for (const Refinement<dim> &refinement : grid.description.refinements)
+          of_bodies.push_back(
+            refinement.criterion == RefinementCriterion::body ?
+              std::make_unique<Occupancy<dim>>(grid,
+                                               bodies,
+                                               refinement.bodies) :
+              nullptr);
+      }
+
+      /** The level wanted in a cell, but at most one beyond its own. */
+      unsigned int
+      wanted_level(const Cell &cell) const
+      {
+        const unsigned int own    = grid.level_of(cell);
+        unsigned int       result = 0;
+        for (std::size_t r = 0; r < of_bodies.size(); ++r)
+          {
+            const Refinement<dim> &refinement = grid.description.refinements[r];
+            if (refinement.level <= result ||
+                !is_in<dim>(refinement, cell, time))
+              continue;
+            unsigned int level = 0;
+            switch (refinement.criterion)
+              {
+                case RefinementCriterion::region:
+                  level = refinement.level;
+                  break;
+                case RefinementCriterion::body:
+                  level =
+                    of_bodies[r]->points_in(own, grid.place_of(cell)) > 0 ?
+                      refinement.level :
+                      0;
+                  break;
+                case RefinementCriterion::surface:
+                  level = level_by_surface(refinement, cell);
+                  break;
+              }
+            result = std::max(result, level);
+          }
+        return std::min(result, own + 1);
+      }
+
+      // As fine as it has to be for not more points than 4^dim, or as many as
+      // 'Points per cell edge' of one level finer.
+      unsigned int
+      level_by_points(const Cell &cell) const
+      {
+        const unsigned int own   = grid.level_of(cell);
+        const Place        place = grid.place_of(cell);
+        for (unsigned int level = own; level-- > 0;)
+          {
+            Place ancestor = place;
+            for (auto &step : ancestor)
+              step >>= own - level;
+            if (occupancy.points_in(level, ancestor) > most_points)
+              return level + 1;
+          }
+        return 0;
+      }
+
+    private:
+      // A cell that is near an empty one, of its size, is to be divided; its
+      // ancestors have asked in the same way, and one cell more keeps those
+      // divided that are.
+      unsigned int
+      level_by_surface(const Refinement<dim> &refinement,
+                       const Cell            &cell) const
+      {
+        const unsigned int own   = grid.level_of(cell);
+        const Place        place = grid.place_of(cell);
+        if (occupancy.points_in(own, place) == 0)
+          return 0;
+        unsigned int level = 0;
+        for (; level < refinement.level && level <= own; ++level)
+          {
+            Place ancestor = place;
+            for (auto &step : ancestor)
+              step >>= own - level;
+            if (!occupancy.is_near_empty(
+                  level, ancestor, refinement.distance + (level < own ? 1 : 0)))
+              break;
+          }
+        return level;
+      }
+
+      const BackgroundGrid<dim> &grid;
+      const double               time;
+      const Occupancy<dim>       occupancy; // by all bodies
+      // By refinement, where it asks for some
+      std::vector<std::unique_ptr<Occupancy<dim>>> of_bodies;
+      std::uint64_t                                most_points = 0;
+    };
+  } // namespace
+
+
+
+  template <int dim>
+  RefinedCells<dim>
+  wanted_mesh(const BackgroundGrid<dim>                             &grid,
+              const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
+              const double                                           time)
+  {
+    const Criteria<dim> criteria(grid, bodies, time);
+    RefinedCells<dim>   result = grid.no_divided_cells(), for_points = result;
+    const auto          wish = [&](const auto        &cell,
+                          const unsigned int wanted,
+                          RefinedCells<dim> &mesh) {
+      if (wanted == 0)
+        return;
+      auto place = grid.place_of(cell);
+      for (auto &step : place)
+        step >>= grid.level_of(cell) + 1 - wanted;
+      mesh.divide(wanted - 1, place);
+    };
+    for (const auto &cell : grid.triangulation.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          wish(cell, criteria.wanted_level(cell), result);
+          wish(cell, criteria.level_by_points(cell), for_points);
+        }
+    result.sum_over_ranks(grid.communicator);
+    for_points.sum_over_ranks(grid.communicator);
+    const auto &refinements = grid.description.refinements;
+    const bool  moving      = std::any_of(refinements.begin(),
+                                    refinements.end(),
+                                    [](const auto &refinement) {
+                                      return refinement.is_moving();
+                                    });
+    result.grade(moving ? 1 : 0);
+    // No rim around these: points in it would be split in their turn, and so
+    // on.
+    result.join(for_points);
+    result.grade(0);
+    return result;
+  }
+
+
+
+  template RefinedCells<2>
+  wanted_mesh(const BackgroundGrid<2> &,
+              const std::vector<std::unique_ptr<MaterialBody<2>>> &,
+              double);
+  template RefinedCells<3>
+  wanted_mesh(const BackgroundGrid<3> &,
+              const std::vector<std::unique_ptr<MaterialBody<3>>> &,
+              double);
+} // namespace limber

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+#include <algorithm>
+#include <regex>
+
+namespace limber
+{
+  namespace
+  {
+    constexpr unsigned int most_levels = 4;
+
+    // Deepest level of a tree of p4est, in two and in three dimensions
+    constexpr unsigned int deepest_level[] = {29, 18};
+  } // namespace
+
+
+
+  void
+  declare_levels(Parameters                     &parameters,
+                 const unsigned int              dim,
+                 const std::vector<std::string> &refinements)
+  {
+    parameters.declare("Levels",
+                       "0",
+                       admissible::integer_from_to(0, most_levels, "2"),
+                       "How often cells may be halved where 'Refine' wants "
+                       "finer ones; 0: all cells are equal.");
+    parameters.declare_list("Refine",
+                            "",
+                            "Refine ",
+                            "Names of criteria for finer cells; each has a "
+                            "section 'Refine NAME' within 'Grid'. Where "
+                            "several meet, the finest wins.");
+    parameters.declare("Adapt every",
+                       "auto",
+                       admissible::positive_integer("200").or_word("auto"),
+                       "Steps after which criteria are asked again; 'auto': "
+                       "when a point may have moved by 1.5 cells, and for "
+                       "formulas of the time after 50 at most.");
+    for (const std::string &name : refinements)
+      {
+        parameters.enter_subsection("Refine " + name);
+        declare_word(parameters,
+                     "Criterion",
+                     "region",
+                     criterion_words(),
+                     "Which cells of the region given below are to be fine.");
+        parameters.declare(
+          "Level",
+          "finest",
+          admissible::integer_from_to(1, most_levels, "1").or_word("finest"),
+          "How often cells are halved there; 'finest' is "
+          "'Levels'.");
+        parameters.declare(
+          "Lower corner",
+          "",
+          admissible::numbers(dim, for_each_direction(dim, "0")).or_empty(),
+          "Corner of a box, m; empty: that of the grid.");
+        parameters.declare(
+          "Upper corner",
+          "",
+          admissible::numbers(dim, for_each_direction(dim, "1")).or_empty(),
+          "The opposite corner, m; empty: that of the grid.");
+        parameters.declare(
+          "Where",
+          "",
+          admissible::text("formula of " + variable_names(dim), "x - 0.5")
+            .or_empty(),
+          "Formula that is positive in the part of the box that is meant; "
+          "empty: all of it. It is looked at in the corners of quarters of "
+          "cells.");
+        parameters.declare("Bodies",
+                           "",
+                           admissible::names("block"),
+                           "Names of bodies, for the criterion 'body'.");
+        parameters.declare("Distance",
+                           "1",
+                           admissible::integer_from_to(1, 8, "2"),
+                           "For the criterion 'surface': how many cells away, "
+                           "of the size of the one that asks, an empty one "
+                           "counts.");
+        declare_constants(parameters);
+        parameters.leave_subsection();
+      }
+  }
+
+
+
+  namespace
+  {
+    /** As deal.II builds the mesh: factors of two in common are levels. */
+    template <int dim>
+    unsigned int
+    levels_of_lattice(std::array<unsigned int, dim> cells)
+    {
+      unsigned int levels = 0;
+      while (std::all_of(cells.begin(), cells.end(), [](const unsigned int n) {
+        return n > 0 && n % 2 == 0;
+      }))
+        {
+          for (unsigned int &n : cells)
+            n /= 2;
+          ++levels;
+        }
+      return levels;
+    }
+
+
+
+    template <int dim>
+    Refinement<dim>
+    read_refinement(const Section                  &section,
+                    const std::string              &name,
+                    const std::vector<std::string> &bodies,
+                    const GridDescription<dim>     &grid)
+    {
+      Refinement<dim> result;
+      result.name      = name;
+      result.criterion = read_word(section, "Criterion", criterion_words());
+      result.level     = section.text("Level") == "finest" ?
+                           grid.levels :
+                           static_cast<unsigned int>(section.number("Level"));
+      if (result.level > grid.levels)
+        throw InputError("The level " + section.text("Level") + " in " +
+                         section.where("Level") +
+                         " is beyond the finest one of the grid, 'Grid/Levels "
+                         "= " +
+                         std::to_string(grid.levels) +
+                         "'. Set 'Level = finest', or more 'Levels'.");
+      if (result.criterion == RefinementCriterion::region &&
+          section.is_empty("Lower corner") &&
+          section.is_empty("Upper corner") && section.is_empty("Where"))
+        throw InputError("The refinement " + in_quotes(name) +
+                         " has no bounds, so all cells would be fine: all of " +
+                         section.where("Where") +
+                         " and its corners are empty. Set 'Lower corner' and "
+                         "'Upper corner', or 'Where'.");
+      result.box = read_corners<dim>(section, corners(grid));
+      if (!section.is_empty("Where"))
+        result.where = read_formula<dim>(
+          section, "Where", 1, read_constants(section), result.box);
+      static const std::regex time("(^|[^A-Za-z_0-9.])t($|[^A-Za-z_0-9])");
+      result.depends_on_time = std::regex_search(section.text("Where"), time);
+
+      result.bodies      = split(section.text("Bodies"), ',');
+      result.distance    = static_cast<int>(section.number("Distance"));
+      const bool by_body = result.criterion == RefinementCriterion::body;
+      if (by_body != !result.bodies.empty())
+        throw InputError(
+          (by_body ? "The criterion 'body' in " + section.where("Criterion") +
+                       " has no bodies. Set 'Bodies' to a name of the list at "
+                       "the top." :
+                     "The bodies in " + section.where("Bodies") +
+                       " have no effect with the criterion " +
+                       in_quotes(section.text("Criterion")) +
+                       ". Usually that was not changed along with them. Set "
+                       "'Criterion = body'."));
+      for (const std::string &body : result.bodies)
+        check_name("body", body, bodies, section.where("Bodies"));
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  read_levels(const Section                  &section,
+              const std::vector<std::string> &bodies,
+              GridDescription<dim>           &grid)
+  {
+    grid.levels = static_cast<unsigned int>(section.number("Levels"));
+    const std::vector<std::string> names = section.list("Refine");
+    if (grid.levels == 0 && !names.empty())
+      throw InputError("The refinement " + in_quotes(names.front()) +
+                       " has no effect, as the grid has one level only (" +
+                       section.where("Levels") +
+                       " is 0). Usually the entry was forgotten. Set 'Levels = "
+                       "1', or leave 'Refine' empty.");
+    if (grid.levels > 0 && names.empty())
+      throw InputError(
+        "The grid has " + std::to_string(grid.levels) +
+        " finer levels, but nothing says where: " + section.where("Refine") +
+        " is empty. Write 'set Refine = tip' and a section "
+        "'Refine tip', or set 'Levels = 0'.");
+    const unsigned int own = levels_of_lattice<dim>(grid.cells);
+    if (grid.levels > 0 && own + grid.levels > deepest_level[dim - 2])
+      throw InputError("'Levels = " + std::to_string(grid.levels) + "' in " +
+                       section.where("Levels") +
+                       " is more than the mesh can have: 'Cells' take " +
+                       std::to_string(own) + " of the " +
+                       std::to_string(deepest_level[dim - 2]) +
+                       " halvings of p4est. Set fewer 'Levels', or 'Cells' "
+                       "with fewer factors of two.");
+    for (const std::string &name : names)
+      grid.refinements.push_back(read_refinement(
+        section.subsection("Refine " + name), name, bodies, grid));
+    if (section.text("Adapt every") != "auto")
+      grid.adapt_every =
+        static_cast<unsigned int>(section.number("Adapt every"));
+  }
+
+
+
+  namespace
+  {
+    [[noreturn]] void
+    refuse(const Section     &section,
+           const std::string &entry,
+           const std::string &reason,
+           const std::string &remedy)
+    {
+      throw InputError("The entry " + in_quotes(section.text(entry)) + " in " +
+                       section.where(entry) +
+                       " does not go with cells of several sizes: " + reason +
+                       ". Set " + remedy + ", or 'Grid/Levels = 0'.");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  check_levels(const Section &root, const Problem<dim> &problem)
+  {
+    if (problem.grid.levels == 0)
+      return;
+    const Section method = root.subsection("Method");
+    if (problem.grid.kernel != KernelKind::linear)
+      refuse(method,
+             "Kernel",
+             problem.grid.kernel == KernelKind::quadratic ?
+               "splines need a lattice" :
+               "domains look for their corners in a lattice",
+             "'Kernel = linear'");
+    if (read_word(method, "Time integration", time_integration_words()) ==
+        TimeIntegration::semi_implicit)
+      refuse(method,
+             "Time integration",
+             "the pressure equation has not been tried across a change of size",
+             "'Time integration = explicit'");
+    if (filters_velocity(problem.method.transfer))
+      refuse(method,
+             "Transfer",
+             "the filter has not been tried across a change of size",
+             "'Transfer = flip'");
+    for (const Body<dim> &body : problem.bodies)
+      {
+        const Section section = root.subsection("Body " + body.name);
+        if (body.placement == Placement::fitted)
+          refuse(section,
+                 "Placement",
+                 "its points would not follow the size of cells",
+                 "'Placement = cut' or 'regular'");
+        for (const std::string entry : {"History", "Deviatoric history"})
+          if (read_word(section, entry, history_words()) ==
+              HistoryTreatment::crossing)
+            refuse(section,
+                   entry,
+                   "the time to cross a cell is not one time",
+                   "'" + entry + " = relax'");
+      }
+  }
+
+
+
+  template void
+  read_levels<2>(const Section &,
+                 const std::vector<std::string> &,
+                 GridDescription<2> &);
+  template void
+  read_levels<3>(const Section &,
+                 const std::vector<std::string> &,
+                 GridDescription<3> &);
+  template void
+  check_levels(const Section &, const Problem<2> &);
+  template void
+  check_levels(const Section &, const Problem<3> &);
+} // namespace limber

@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+
+#include <gtest/gtest.h>
+#include <support/scene_parts.h>
+#include <support/scene_run.h>
+
+#include <map>
+#include <random>
+
+/**
+ * @file What cells of several sizes must not change: sums over nodes, patches
+ * of constant stress, rigid motion, the longest step; and what they do change,
+ * reflection, against its closed form (doc/theory/adaptive_grid.md).
+ */
+
+using namespace limber;
+
+namespace
+{
+  const std::string free_box_3d = R"(
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+      set back = free
+      set front = free
+    end
+)";
+
+
+
+  /** A block that is fine in two steps towards a corner, in the current frame.
+   */
+  template <int dim>
+  std::string
+  graded_block(const std::string &body)
+  {
+    const std::string z = dim == 3 ? ", 0.5" : "", zz = dim == 3 ? ", 3" : "";
+    return "set Dimension = " + std::to_string(dim) + R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 0.5, 0.5)" +
+           z + R"(
+        set Upper corner = 3, 3)" +
+           zz + R"(
+      end
+      subsection Linear elastic
+        set Density = 2
+        set Young's modulus = 1
+      end
+      )" + body +
+           R"(
+    end
+    subsection Grid
+      set Upper corner = 4, 4)" +
+           (dim == 3 ? ", 4" : "") + R"(
+      set Cells = 8, 8)" +
+           (dim == 3 ? ", 8" : "") + R"(
+      set Levels = 2
+      set Refine = corner, edge
+      subsection Refine corner
+        set Upper corner = 0.8, 0.8)" +
+           (dim == 3 ? ", 0.8" : "") + R"(
+      end
+      subsection Refine edge
+        set Level = 1
+        set Where = 1.8 - x
+      end
+    end
+)" + (dim == 2 ? free_sides : free_box_3d);
+  }
+
+
+
+  /** Places of the nodes at corners of cells that this rank knows. */
+  template <int dim>
+  std::map<std::uint32_t, dealii::Point<dim>>
+  places_of_nodes(const BackgroundGrid<dim> &grid)
+  {
+    std::map<std::uint32_t, dealii::Point<dim>> places;
+    for (const auto &cell : grid.geometry)
+      for (int i = 0; i < 1 << dim; ++i)
+        for (int d = 0; d < dim; ++d)
+          places[cell.node[i] / NodeLayout<dim>::stride][d] =
+            cell.origin[d] + (i >> d & 1) / cell.inverse_edge[d];
+    return places;
+  }
+
+
+
+  /** x_a y_b - x_b y_a, all of them. */
+  template <int dim>
+  dealii::Tensor<2, dim>
+  moment(const dealii::Tensor<1, dim> &x, const dealii::Tensor<1, dim> &y)
+  {
+    dealii::Tensor<2, dim> result;
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        result[a][b] = x[a] * y[b] - x[b] * y[a];
+    return result;
+  }
+
+
+
+  /** Random velocities and stresses at the points. */
+  template <int dim>
+  void
+  shake(SceneRun<dim> &run)
+  {
+    std::mt19937         random(11);
+    const auto           draw   = [&]() { return random() / 2147483648. - 1; };
+    const PointView<dim> points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.pressure[p] = draw();
+        for (double *const component : points.deviator)
+          component[p] = draw();
+        for (double *const component : points.velocity)
+          component[p] = draw();
+      }
+    run.integrator.reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  expect_sums(const std::string &treatment, const std::string &scheme)
+  {
+    SCOPED_TRACE(treatment + ", " + scheme + ", dim " + std::to_string(dim));
+    using Layout = NodeLayout<dim>;
+    SceneRun<dim> run(graded_block<dim>("set Placement = jittered"),
+                      {"Body block/Locking treatment=" + treatment,
+                       "Method/Stress update=" + scheme});
+    shake(run);
+
+    double                 mass = 0, scale = 0;
+    dealii::Tensor<1, dim> first, momentum;
+    dealii::Tensor<2, dim> spin;
+    const PointView<dim>   points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const dealii::Tensor<1, dim> x = run.position(p), v = run.velocity(p);
+        mass += points.mass[p];
+        first += points.mass[p] * x;
+        momentum += points.mass[p] * v;
+        spin += points.mass[p] * moment<dim>(x, v);
+      }
+    constexpr double step = 1e-9;
+    run.advance(step);
+
+    double                 nodal_mass = 0;
+    dealii::Tensor<1, dim> nodal_first, nodal_momentum, force;
+    dealii::Tensor<2, dim> nodal_spin, torque;
+    const auto             places = places_of_nodes(run.grid);
+    for (const std::uint32_t node : run.nodes.active_nodes())
+      {
+        const double *const record = run.nodes.record(node);
+        const double        m      = record[Layout::mass];
+        if (!(m > 0))
+          continue;
+        dealii::Tensor<1, dim> x = places.at(node), v, f;
+        for (int d = 0; d < dim; ++d)
+          {
+            f[d] = m * record[Layout::increment + d] / step;
+            v[d] = record[Layout::velocity + d] - record[Layout::increment + d];
+          }
+        nodal_mass += m;
+        nodal_first += m * x;
+        nodal_momentum += m * v;
+        nodal_spin += m * moment<dim>(x, v);
+        force += f;
+        torque += moment<dim>(x, f);
+        scale += f.norm();
+      }
+    EXPECT_FALSE(run.grid.vertices.hanging.empty());
+    EXPECT_NEAR(nodal_mass, mass, 1e-13 * mass);
+    EXPECT_LT((nodal_first - first).norm(), 1e-13 * first.norm());
+    EXPECT_LT((nodal_momentum - momentum).norm(), 1e-13 * mass);
+    EXPECT_LT((nodal_spin - spin).norm(), 1e-12 * mass);
+    EXPECT_LT(force.norm(), 1e-13 * scale);
+    EXPECT_LT(torque.norm(), 1e-12 * scale);
+  }
+} // namespace
+
+
+
+TEST(Jumps, SumsOverNodesAreThoseOverPoints)
+{
+  for (const std::string treatment : {"none",
+                                      "cell",
+                                      "cell shear",
+                                      "cell full",
+                                      "assumed strain",
+                                      "node",
+                                      "hybrid"})
+    expect_sums<2>(treatment, "musl");
+  for (const std::string treatment : {"none", "cell", "assumed strain", "node"})
+    expect_sums<3>(treatment, "musl");
+}
+
+
+
+namespace
+{
+  // Constant stress: no force in nodes that are surrounded by material, of
+  // whichever size the cells around are.
+  template <int dim>
+  void
+  expect_no_force(const std::string &treatment)
+  {
+    SCOPED_TRACE(treatment + ", dim " + std::to_string(dim));
+    using Layout = NodeLayout<dim>;
+    SceneRun<dim>        run(graded_block<dim>(""),
+                      {"Body block/Locking treatment=" + treatment,
+                              "Method/Stress update=musl"});
+    const PointView<dim> points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.pressure[p] = 0.7;
+        double value       = 0.2;
+        for (double *const component : points.deviator)
+          component[p] = value += 0.1;
+      }
+    run.integrator.reinit();
+    constexpr double step = 1e-9;
+    run.advance(step);
+    const auto   places  = places_of_nodes(run.grid);
+    unsigned int n_inner = 0;
+    for (const std::uint32_t node : run.nodes.active_nodes())
+      {
+        const double *const record = run.nodes.record(node);
+        bool                inner  = record[Layout::mass] > 0;
+        for (int d = 0; d < dim; ++d)
+          inner = inner && places.at(node)[d] > 0.6 && places.at(node)[d] < 2.4;
+        if (!inner)
+          continue;
+        ++n_inner;
+        for (int d = 0; d < dim; ++d)
+          EXPECT_NEAR(record[Layout::mass] * record[Layout::increment + d] /
+                        step,
+                      0,
+                      1e-14);
+      }
+    EXPECT_GT(n_inner, dim == 2 ? 30u : 200u);
+  }
+} // namespace
+
+
+
+TEST(Jumps, ConstantStressGivesNoForce)
+{
+  for (const std::string treatment : {"none",
+                                      "cell",
+                                      "cell shear",
+                                      "cell full",
+                                      "assumed strain",
+                                      "node",
+                                      "hybrid"})
+    expect_no_force<2>(treatment);
+  for (const std::string treatment : {"none", "cell", "assumed strain", "node"})
+    expect_no_force<3>(treatment);
+}
+
+
+
+// Through both jumps and over many cells, in a fluid and a solid.
+TEST(Jumps, RigidMotionStaysRigid)
+{
+  for (const std::string transfer : {"flip", "pic", "apic"})
+    for (const std::string scheme : stress_update_orders)
+      {
+        SCOPED_TRACE(transfer + ", " + scheme);
+        SceneRun<2>  run(graded_block<2>("set Initial velocity = 0.5; 0.31"),
+                        {"Method/Transfer=" + transfer,
+                          "Method/Stress update=" + scheme});
+        const double before = run.totals().all.kinetic_energy;
+        run.advance(0.0217, 90);
+        const Totals<2> after = run.totals();
+        EXPECT_NEAR(after.all.kinetic_energy, before, 1e-12 * before);
+        EXPECT_LT(after.all.strain_energy, 1e-24 * before);
+        EXPECT_EQ(run.ledger.lost_points, 0u);
+      }
+}
+
+
+
+namespace
+{
+  // A strip without Poisson's effect between slip walls, one coarse cell high:
+  // fine cells up to x = 0, then coarse ones of twice the size, or all fine.
+  std::string
+  strip(const double       length_fine,
+        const double       length_coarse,
+        const std::string &refinement,
+        const std::string &side = "")
+  {
+    const double lower = -length_fine;
+    return R"(
+    set Bodies = bar
+    subsection Body bar
+      subsection Box
+        set Lower corner = )" +
+           digits(lower) + ", 0\nset Upper corner = " + digits(length_coarse) +
+           R"(, 1
+      end
+      set Locking treatment = none
+      subsection Linear elastic
+        set Density = 1
+        set Young's modulus = 1
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Grid
+      set Lower corner = )" +
+           digits(lower) + ", 0\nset Upper corner = " + digits(length_coarse) +
+           ", 1\nset Cells = " +
+           std::to_string(std::lround(length_fine + length_coarse)) + R"(, 1
+      set Levels = 1
+      set Refine = left
+      subsection Refine left
+        set Where = )" +
+           refinement + R"(
+      end
+    end
+    subsection Boundaries
+      set left = slip
+      set right = slip
+      )" + side +
+           "\nend\n";
+  }
+
+
+
+  /** Of the reflected burst over the incident one, by their mean squares. */
+  double
+  reflection(const double wave) // length, in coarse cells
+  {
+    const double burst = 8 * wave;
+    // Of the burst in fine cells, by dispersion (tests/unit/time/dispersion.cc)
+    const double theta = dealii::numbers::PI / wave;
+    const double speed = 1 - 3 * 0.1354 * theta * theta;
+    SceneRun<2>  run(strip(9 * wave,
+                          5 * wave,
+                          "-x",
+                          R"(
+      set left = velocity
+      subsection Side left
+        set Constants = period = )" +
+                            digits(wave) + R"(, burst = )" + digits(burst) + R"(
+        set Velocity = if(t < burst, 1e-6*sin(2*pi*t/period)*sin(pi*t/burst)^2, 0); 0
+      end)"),
+                    {"Method/Stress update=musl"});
+    // 4.5 waves before the jump and behind the wall that moves: the burst has
+    // passed before it comes back, and comes back before the wall sends it on.
+    std::size_t nearest = 0;
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      if (run.position(p).distance({-4.5 * wave, 0.25}) <
+          run.position(nearest).distance({-4.5 * wave, 0.25}))
+        nearest = p;
+    const std::uint64_t id       = run.bodies[0]->points.id(nearest);
+    const double        passed   = 4.5 * wave / speed + burst + 0.5 * wave;
+    double              incident = 0, reflected = 0;
+    run.advance_to(13.5 * wave / speed + burst, [&]() {
+      for (std::size_t p = 0; p < run.points().size; ++p)
+        if (run.bodies[0]->points.id(p) == id)
+          {
+            const double v = run.velocity(p)[0];
+            (run.time < passed ? incident : reflected) += v * v;
+          }
+    });
+    EXPECT_GT(incident, 0);
+    return std::sqrt(reflected / incident);
+  }
+} // namespace
+
+
+
+// R = (1 + s) k^2 (h_c^2 - h_f^2) / 16 for long waves, and its exact form.
+TEST(Jumps, ReflectAsTheClosedFormSays)
+{
+  const std::map<double, double> closed = {{20, 0.0084},
+                                           {10, 0.0390},
+                                           {8, 0.0701}};
+  for (const auto &[cells, expected] : closed)
+    {
+      const double R = reflection(cells);
+      std::printf("%g coarse cells per wave: R = %.4f, closed form %.4f\n",
+                  cells,
+                  R,
+                  expected);
+      EXPECT_NEAR(R, expected, 0.15 * expected);
+    }
+  // Shorter than 5.18 coarse cells: none of it gets through.
+  const double all = reflection(4.5);
+  std::printf("4.5 coarse cells per wave: R = %.4f\n", all);
+  EXPECT_GT(all, 0.95);
+}
+
+
+
+namespace
+{
+  /** The longest step with which noise does not grow, of fine cells' h / c. */
+  double
+  longest_step(const std::string &refinement, const std::string &scheme)
+  {
+    const auto grows = [&](const double courant_number) {
+      SceneRun<2>        run(strip(6, 6, refinement),
+                      {"Method/Stress update=" + scheme});
+      std::mt19937       random(5);
+      const PointView<2> points = run.points();
+      for (std::size_t p = 0; p < points.size; ++p)
+        points.velocity[0][p] = 1e-8 * (random() / 2147483648. - 1);
+      const double before = run.totals().all.kinetic_energy;
+      try
+        {
+          run.advance(0.5 * courant_number, 1500);
+        }
+      catch (const ComputationError &)
+        {
+          return true;
+        }
+      return !(run.totals().all.kinetic_energy < 100 * before);
+    };
+    double stable = 0.5, unstable = 2.5;
+    while (unstable - stable > 0.002)
+      {
+        const double middle                 = 0.5 * (stable + unstable);
+        (grows(middle) ? unstable : stable) = middle;
+      }
+    return stable;
+  }
+} // namespace
+
+
+
+TEST(Jumps, TheLongestStepIsThatOfFineCells)
+{
+  for (const std::string scheme : {"musl", "usavg"})
+    {
+      const double fine = longest_step("1", scheme),
+                   jump = longest_step("-x", scheme);
+      std::printf("%s: longest step %.3f with a jump, %.3f without\n",
+                  scheme.c_str(),
+                  jump,
+                  fine);
+      EXPECT_NEAR(jump, fine, 0.02 * fine);
+    }
+}

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/adaptation/adaptation.h>
+
+#include <gtest/gtest.h>
+#include <support/scene_parts.h>
+#include <support/scene_run.h>
+
+#include <random>
+
+/**
+ * @file Points that are split and meshes that change under them: what must stay
+ * to the last digits, and what keeps a run going.
+ */
+
+using namespace limber;
+
+namespace
+{
+  /** A random state on a block, fine in a region that can be moved. */
+  template <int dim>
+  std::string
+  block(const std::string &criterion)
+  {
+    const std::string z = dim == 3 ? ", 0.5" : "", zz = dim == 3 ? ", 2.5" : "";
+    return "set Dimension = " + std::to_string(dim) + R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 0.5, 0.5)" +
+           z + R"(
+        set Upper corner = 2.5, 2.5)" +
+           zz + R"(
+      end
+      subsection Linear elastic
+        set Density = 2
+        set Young's modulus = 1
+      end
+    end
+    subsection Grid
+      set Upper corner = 4, 4)" +
+           (dim == 3 ? ", 4" : "") + R"(
+      set Cells = 8, 8)" +
+           (dim == 3 ? ", 8" : "") + R"(
+      set Levels = 1
+      set Refine = part
+      subsection Refine part
+        )" +
+           criterion +
+           R"(
+      end
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+)" + (dim == 3 ? "set back = free\nset front = free\nend\n" : "end\n");
+  }
+
+
+
+  /** Sums over points, and all that nodes and cells get of them. */
+  struct Picture
+  {
+    double              kinetic_energy, strain_energy;
+    std::vector<double> sums; // mass, momentum, moments
+    std::vector<double> nodes, cells;
+  };
+
+
+
+  template <int dim>
+  Picture
+  picture_of(SceneRun<dim> &run)
+  {
+    Picture                result;
+    const PointView<dim>   points = run.points();
+    double                 mass = 0, kinetic = 0;
+    dealii::Tensor<1, dim> momentum, first;
+    dealii::Tensor<2, dim> spin;
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const double m = points.mass[p];
+        mass += m;
+        momentum += m * run.velocity(p);
+        first += m * run.position(p);
+        kinetic += 0.5 * m * run.velocity(p).norm_square();
+        spin += m * outer_product(dealii::Tensor<1, dim>(run.position(p)),
+                                  run.velocity(p));
+      }
+    result.kinetic_energy = kinetic;
+    result.strain_energy =
+      run.bodies[0]->stress->summarize(points).strain_energy;
+    result.sums = {mass};
+    for (int d = 0; d < dim; ++d)
+      {
+        result.sums.push_back(momentum[d]);
+        result.sums.push_back(first[d]);
+        for (int e = 0; e < dim; ++e)
+          result.sums.push_back(spin[d][e]);
+      }
+    if (run.bodies[0]->cell_sums)
+      for (std::uint32_t c = 0; c < run.grid.n_owned_cells(); ++c)
+        {
+          const double *const record = run.bodies[0]->cell_sums->record(c);
+          result.cells.insert(result.cells.end(), record, record + (1 << dim));
+        }
+    run.advance(1e-9);
+    for (std::uint32_t node = 0; node < run.nodes.table.n(); ++node)
+      {
+        const double *const record = run.nodes.record(node);
+        result.nodes.insert(result.nodes.end(), record, record + 1 + 2 * dim);
+      }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  shake_points(SceneRun<dim> &run)
+  {
+    std::mt19937         random(3);
+    const auto           draw   = [&]() { return random() / 2147483648. - 1; };
+    const PointView<dim> points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.pressure[p] = draw();
+        for (double *const component : points.deviator)
+          component[p] = draw();
+        for (double *const component : points.velocity)
+          component[p] = draw();
+      }
+    run.integrator.reinit();
+  }
+
+
+
+  double
+  largest(const std::vector<double> &values)
+  {
+    double result = 0;
+    for (const double value : values)
+      result = std::max(result, std::abs(value));
+    return result;
+  }
+
+
+
+  void
+  expect_equal(const std::vector<double> &a,
+               const std::vector<double> &b,
+               const double               tolerance)
+  {
+    ASSERT_EQ(a.size(), b.size());
+    const double scale = largest(a);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(a[i], b[i], tolerance * scale) << i;
+  }
+
+
+
+  // All points become 2^dim, on the grid that they are on.
+  template <int dim>
+  void
+  expect_no_change(const std::string &treatment, const std::string &placement)
+  {
+    SCOPED_TRACE(treatment + ", " + placement + ", " + std::to_string(dim));
+    const std::vector<std::string> set = {"Body block/Locking treatment=" +
+                                            treatment,
+                                          "Body block/Placement=" + placement,
+                                          "Method/Stress update=musl"};
+    const std::string              corner =
+      dim == 2 ? "set Upper corner = 1, 1" : "set Upper corner = 1, 1, 1";
+    SceneRun<dim> whole(block<dim>(corner), set),
+      parts(block<dim>(corner), set);
+    shake_points(whole);
+    shake_points(parts);
+    MaterialPoints<dim>     &points = parts.bodies[0]->points;
+    std::vector<std::size_t> all(points.size());
+    for (std::size_t p = 0; p < all.size(); ++p)
+      all[p] = p;
+    std::array<double, dim> spacing;
+    spacing.fill(0.25);
+    points.split(all, spacing, all.size());
+    EXPECT_EQ(points.size(), all.size() << dim);
+    std::vector<std::uint64_t> ids = points.all_ids();
+    std::sort(ids.begin(), ids.end());
+    for (std::size_t i = 0; i < ids.size(); ++i)
+      EXPECT_EQ(ids[i], i);
+    // each in the cell that it says
+    for (std::size_t p = 0; p < points.size(); ++p)
+      for (const double xi : natural_place(
+             points.view(), parts.grid.geometry[points.view().cell[p]], p))
+        {
+          EXPECT_GE(xi, -1e-12);
+          EXPECT_LE(xi, 1 + 1e-12);
+        }
+    parts.integrator.reinit();
+
+    const Picture before = picture_of(whole), after = picture_of(parts);
+    EXPECT_NEAR(after.kinetic_energy,
+                before.kinetic_energy,
+                1e-14 * before.kinetic_energy);
+    EXPECT_NEAR(after.strain_energy,
+                before.strain_energy,
+                1e-14 * before.strain_energy);
+    expect_equal(after.sums, before.sums, 1e-14);
+    // The monomials of the sums are multilinear, so second moments stay too.
+    expect_equal(after.cells, before.cells, 1e-13);
+    expect_equal(after.nodes, before.nodes, 1e-13);
+  }
+} // namespace
+
+
+
+// Means around nodes are the exception: their pressure varies within a cell,
+// and its product with gradients is of second order in the shift.
+TEST(Splitting, ChangesNothingThatTheGridSees)
+{
+  for (const std::string placement : {"regular", "jittered"})
+    {
+      for (const std::string treatment :
+           {"none", "cell", "cell full", "assumed strain"})
+        expect_no_change<2>(treatment, placement);
+      for (const std::string treatment : {"cell", "assumed strain"})
+        expect_no_change<3>(treatment, placement);
+    }
+}
+
+
+
+namespace
+{
+  std::uint64_t
+  points_of_size(const MaterialPoints<2> &points, const unsigned int size)
+  {
+    std::uint64_t n = 0;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      n += points.size_class(p) == size;
+    return n;
+  }
+} // namespace
+
+
+
+// A fine region that comes, moves on and goes, under points at rest.
+TEST(Adapting, FollowsARegionThatMoves)
+{
+  SceneRun<2>   run(block<2>("set Where = 0.5 - abs(x - 1 - t)"),
+                  {"Grid/Levels=2", "Body block/Locking treatment=cell"});
+  Adaptation<2> adaptation(run.problem, run.grid, run.bodies);
+  const Adaptation<2>::KeptPoints kept(1);
+  const auto                      before  = run.totals();
+  const auto                      n_start = run.bodies[0]->points.size();
+  for (unsigned int k = 1; k <= 12; ++k)
+    {
+      run.time = 0.25 * k;
+      if (adaptation.adapt(run.time, kept))
+        run.integrator.reinit();
+      const auto now = run.totals();
+      EXPECT_NEAR(now.all.kinetic_energy, before.all.kinetic_energy, 1e-12);
+      EXPECT_EQ(run.ledger.lost_points, 0u);
+      // In the region cells are fine, and the points in them as well.
+      const PointView<2> points = run.points();
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const unsigned int level = run.grid.level_of(points.cell[p]);
+          if (std::abs(points.position[0][p] - 1 - run.time) < 0.5)
+            EXPECT_EQ(level, 2u);
+          EXPECT_GE(run.bodies[0]->points.size_class(p), level);
+        }
+    }
+  EXPECT_GT(adaptation.state().mesh_changes, 3u);
+  EXPECT_EQ(run.bodies[0]->points.size(),
+            n_start + adaptation.state().points_added);
+  EXPECT_EQ(adaptation.state().points_added,
+            3 * adaptation.state().points_split);
+
+  // Long gone: the body may be as coarse as its points allow, sixteen a cell.
+  for (unsigned int k = 0; k < 6; ++k)
+    adaptation.adapt(100, kept);
+  run.integrator.reinit();
+  std::map<std::uint32_t, unsigned int> count;
+  const PointView<2>                    points = run.points();
+  unsigned int                          finest = 0;
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      ++count[points.cell[p]];
+      finest = std::max(finest, run.grid.level_of(points.cell[p]));
+    }
+  for (const auto &[cell, n] : count)
+    EXPECT_LE(n, 16u);
+  EXPECT_EQ(finest, 1u);
+  EXPECT_GT(points_of_size(run.bodies[0]->points, 2), 0u);
+}
+
+
+
+// Back and forth: mesh changes alone leave points as they are.
+TEST(Adapting, OfTheMeshAloneLeavesPointsAsTheyAre)
+{
+  SceneRun<2> run(block<2>("set Upper corner = 1.5, 1.5"),
+                  {"Grid/Levels=2", "Body block/Locking treatment=cell"});
+  shake_points(run);
+  const auto fine = run.grid.divided_cells();
+  struct Point
+  {
+    dealii::Point<2>     place;
+    dealii::Tensor<1, 2> velocity;
+    double               mass, pressure;
+  };
+  const auto all = [&]() {
+    std::map<std::uint64_t, Point> result;
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      result[run.bodies[0]->points.id(p)] = {run.position(p),
+                                             run.velocity(p),
+                                             run.points().mass[p],
+                                             run.points().pressure[p]};
+    return result;
+  };
+  const auto before = all();
+  for (unsigned int k = 0; k < 4; ++k)
+    {
+      EXPECT_TRUE(change_mesh(run.grid,
+                              run.bodies,
+                              k % 2 == 0 ? run.grid.no_divided_cells() : fine));
+      run.integrator.reinit();
+      const auto after = all();
+      ASSERT_EQ(after.size(), before.size());
+      for (const auto &[id, point] : before)
+        {
+          const Point &now = after.at(id);
+          EXPECT_EQ(now.place, point.place);
+          EXPECT_EQ(now.velocity, point.velocity);
+          EXPECT_EQ(now.mass, point.mass);
+          EXPECT_EQ(now.pressure, point.pressure);
+        }
+    }
+  EXPECT_TRUE(run.grid.divided_cells() == fine);
+}
+
+
+
+// All cells with points of a body, and none that is far from them.
+TEST(Adapting, FollowsABodyAndItsSurface)
+{
+  for (const std::string criterion :
+       {"set Criterion = body\nset Bodies = block", "set Criterion = surface"})
+    {
+      SCOPED_TRACE(criterion);
+      SceneRun<2>   run(block<2>(criterion),
+                      {"Grid/Levels=2",
+                         "Grid/Cells=32, 32",
+                         "Body block/Initial velocity=0.4; 0.2",
+                         "Body block/Locking treatment=cell"});
+      Adaptation<2> adaptation(run.problem, run.grid, run.bodies);
+      const Adaptation<2>::KeptPoints kept(1);
+      const double                    energy = run.totals().all.kinetic_energy;
+      for (unsigned int n = 0; n < 400; ++n)
+        {
+          const bool asked =
+            adaptation.is_due(run.integrator.largest_displacement());
+          if (asked && adaptation.adapt(run.time, kept))
+            run.integrator.reinit();
+          // Until the next time a point may enter a cell of a finer level.
+          if (asked)
+            for (std::size_t p = 0; p < run.points().size; ++p)
+              ASSERT_GE(run.bodies[0]->points.size_class(p),
+                        run.grid.level_of(run.points().cell[p]));
+          run.advance(0.008);
+
+          const PointView<2> points = run.points();
+          for (std::size_t p = 0; p < points.size; ++p)
+            {
+              const auto   x     = run.position(p);
+              const double left  = 0.5 + 0.4 * run.time,
+                           lower = 0.5 + 0.2 * run.time;
+              const double depth = std::min(
+                {x[0] - left, left + 2 - x[0], x[1] - lower, lower + 2 - x[1]});
+              const unsigned int level = run.grid.level_of(points.cell[p]);
+              if (criterion.find("body") != std::string::npos || depth < 0.03)
+                ASSERT_EQ(level, 2u) << x << " at " << run.time;
+              else if (depth > 0.7)
+                ASSERT_EQ(level, 0u) << x << " at " << run.time;
+            }
+        }
+      EXPECT_GT(adaptation.state().mesh_changes, 10u);
+      EXPECT_EQ(run.ledger.lost_points, 0u);
+      // rigid motion goes on rigidly
+      EXPECT_NEAR(run.totals().all.kinetic_energy, energy, 1e-11 * energy);
+    }
+}
