@@ -253,6 +253,11 @@ namespace limber
                        section.where(found->entry) + ")");
         }
       for (const auto &body : problem.bodies)
+        if (body.is_plastic)
+          return say("'linear', as with splines the means around nodes hold "
+                     "back what flows plastically, like body " +
+                     in_quotes(body.name));
+      for (const auto &body : problem.bodies)
         if (!body.is_liquid && body.frame == Frame::current)
           {
             problem.grid.kernel = KernelKind::quadratic;

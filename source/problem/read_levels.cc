@@ -233,9 +233,9 @@ namespace limber
     if (problem.grid.kernel != KernelKind::linear)
       refuse(method,
              "Kernel",
-             problem.grid.kernel == KernelKind::quadratic ?
-               "splines need a lattice" :
-               "domains look for their corners in a lattice",
+             problem.grid.kernel == KernelKind::cpdi ?
+               "domains look for their corners in a lattice" :
+               "splines need a lattice",
              "'Kernel = linear'");
     if (read_word(method, "Time integration", time_integration_words()) ==
         TimeIntegration::semi_implicit)

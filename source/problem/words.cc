@@ -47,7 +47,8 @@ namespace limber
     static const Words<KernelKind> words = {
       {"auto",
        KernelKind::automatic,
-       "'quadratic' if points of a solid may cross cells, else 'linear'"},
+       "'quadratic' if points of an elastic solid may cross cells, else "
+       "'linear'"},
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
       {"quadratic",
        KernelKind::quadratic,
