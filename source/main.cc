@@ -4,6 +4,7 @@
 #include <limber/base/console.h>
 #include <limber/base/open_mpi.h>
 #include <limber/base/run_info.h>
+#include <limber/base/text.h>
 #include <limber/base/unforeseen.h>
 #include <limber/output/run_folder.h>
 #include <limber/problem/read_problem.h>
@@ -30,6 +31,8 @@ namespace
   {
     const Problem<dim> problem = read_problem<dim>(scene);
     check_size(problem, Task::run, this_machine(MPI_COMM_WORLD));
+    for (const std::string &setting : command.overrides)
+      console.say("From the command line: " + printable(setting) + ".");
     for (const std::string &warning : scene.warnings())
       console.warn(warning);
     for (const std::string &note : problem.notes)
@@ -150,6 +153,7 @@ main(int argc, char *argv[])
   try
     {
       Console console(first, std::cout);
+      check_first_word(argc, argv);
       if (argc > 1 && std::string(argv[1]) == "reference")
         return run_reference(parse_command_line(argc - 1, argv + 1), console);
       if (argc > 1 && std::string(argv[1]) == "compare")

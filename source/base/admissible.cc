@@ -54,7 +54,11 @@ namespace limber
   std::string
   Admissible::example_near(const std::string &value) const
   {
-    return nearest(value, choices).value_or(sample);
+    for (const std::string &word : split(value, ','))
+      if (std::find(choices.begin(), choices.end(), word) == choices.end())
+        if (const auto meant = nearest(word, choices))
+          return *meant;
+    return sample;
   }
 
 

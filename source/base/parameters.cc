@@ -241,6 +241,25 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** The end of a message: the word of a list that was meant, or an example.
+     */
+    std::string
+    suggestion(const Admissible &admissible, const std::string &value)
+    {
+      const std::string example = admissible.example_near(value);
+      const bool        is_list =
+        admissible.description().find(" | ") != std::string::npos;
+      for (const std::string &word : split(value, ','))
+        if (is_list && word != example && nearest(word, {example}))
+          return ". Did you mean " + in_quotes(example) + "?";
+      return ", for instance " + in_quotes(first_words(example, 8)) + ".";
+    }
+  } // namespace
+
+
+
   void
   Parameters::set(const Declaration  &declaration,
                   const ScannedEntry &entry,
@@ -256,16 +275,13 @@ namespace limber
                        "version. Write '" +
                        entry.name + " = " + now + "'.");
     if (!declaration.admissible.match(entry.value))
-      throw InputError(
-        "The value " + in_quotes(first_words(entry.value, 6)) + " of entry " +
-        in_quotes(entry.name) + " " + in_section(entry.section) + " (" + place +
-        ") is not admissible. Usually a digit, sign or word is "
-        "mistyped. Write " +
-        first_words(declaration.admissible.description(), 14) +
-        ", for instance " +
-        in_quotes(
-          first_words(declaration.admissible.example_near(entry.value), 8)) +
-        ".");
+      throw InputError("The value " + in_quotes(first_words(entry.value, 6)) +
+                       " of entry " + in_quotes(entry.name) + " " +
+                       in_section(entry.section) + " (" + place +
+                       ") is not admissible. Usually a digit, sign or word is "
+                       "mistyped. Write " +
+                       first_words(declaration.admissible.description(), 14) +
+                       suggestion(declaration.admissible, entry.value));
 
     for (const std::string &name : entry.section)
       handler.enter_subsection(name);

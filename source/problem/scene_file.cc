@@ -221,9 +221,6 @@ namespace limber
     values.read(scan, overrides);
 
     notes = values.warnings();
-    for (const std::string &override_text : overrides)
-      notes.push_back("From the command line: " + printable(override_text) +
-                      ".");
   }
 
 

@@ -4,6 +4,7 @@
 #include <limber/problem/words.h>
 #include <limber/simulation/command_line.h>
 
+#include <filesystem>
 #include <map>
 
 namespace limber
@@ -11,6 +12,7 @@ namespace limber
   namespace
   {
     const std::vector<std::string> known_options = {"--help",
+                                                    "-h",
                                                     "--version",
                                                     "--validate",
                                                     "--print-parameters",
@@ -19,6 +21,15 @@ namespace limber
                                                     "--output-directory",
                                                     "--resume",
                                                     "--frequencies"};
+
+    const std::vector<std::string> known_commands = {"study",
+                                                     "stability",
+                                                     "inf-sup",
+                                                     "advise",
+                                                     "reference",
+                                                     "compare",
+                                                     "plot",
+                                                     "animate"};
 
     const std::map<std::string, PrintStyle> print_styles = {
       {"prm", PrintStyle::prm},
@@ -92,10 +103,15 @@ namespace limber
     {
       const auto found = print_styles.find(word);
       if (found == print_styles.end())
-        throw InputError("The style " + in_quotes(word) +
-                         " of '--print-parameters' on the command line is not "
-                         "known. Usually it is misspelt. Write prm, json or "
-                         "markdown.");
+        {
+          const auto meant = nearest(word, {"prm", "json", "markdown"});
+          throw InputError(
+            "The style " + in_quotes(word) +
+            " of '--print-parameters' on the command line is "
+            "not known. Usually it is misspelt. Write prm, "
+            "json or markdown." +
+            (meant ? " Did you mean " + in_quotes(*meant) + "?" : ""));
+        }
       return found->second;
     }
 
@@ -138,6 +154,24 @@ namespace limber
 
 
 
+  void
+  check_first_word(const int argc, const char *const *argv)
+  {
+    const std::string word = argc > 1 ? argv[1] : "";
+    if (word.empty() || word.find_first_of("-./") == 0 ||
+        word.find_first_of("./") != std::string::npos ||
+        std::filesystem::exists(word))
+      return; // an option or a scene
+    const auto meant = nearest(word, known_commands);
+    if (meant && *meant != word)
+      throw InputError("The word " + in_quotes(word) +
+                       " on the command line is neither a command nor a file. "
+                       "Usually it is misspelt. Did you mean 'limber " +
+                       *meant + "'?");
+  }
+
+
+
   CommandLine
   parse_command_line(const int argc, const char *const *argv)
   {
@@ -146,7 +180,7 @@ namespace limber
     while (!arguments.at_end())
       {
         const std::string option = arguments.take_option();
-        if (option == "--help")
+        if (option == "--help" || option == "-h")
           result.help = true;
         else if (option == "--version")
           result.version = true;
@@ -184,15 +218,23 @@ namespace limber
   std::string
   usage()
   {
-    return R"(limber [options] scene.prm
+    return R"(limber [options] scene.prm             run a scene
 mpirun -np 4 limber [options] scene.prm
-limber reference [options] scene.prm    the scene in finite elements
-limber compare RUN OTHER                fields and observables of a run folder
-                                        against a reference, a run or 'exact'
+limber COMMAND --help                  what is behind a command:
+
+  reference   the scene of a solid in finite elements
+  compare     fields and observables of a run against a reference, a run or
+              'exact'
+  study       error against cost: all variants of a scene
+  stability   the largest stable step, or another entry, of all variants
+  inf-sup     numerical inf-sup test of the pressures
+  advise      what a scene could do without
+  plot        pictures of runs, references and studies
+  animate     a film of a run, or of several side by side
 
 The scene is a .prm or .json file; '--' reads prm from standard input.
 
-  --help                                show this text
+  --help, -h                            show this text
   --version                             show versions of program and libraries
   --validate                            check everything, run nothing
   --print-parameters prm|json|markdown  print all entries, those of a scene if
@@ -202,8 +244,6 @@ The scene is a .prm or .json file; '--' reads prm from standard input.
   --set "Section/Name=value"            change an entry; may be repeated
   --output-directory path               the run folder, same as Output/Directory
   --resume                              go on from the checkpoint of the folder
-  --frequencies n                       of 'reference': natural frequencies of
-                                        the body at rest, no motion
 
 Exit codes: 0 finished, 1 wrong input, 2 computation failed, 3 file error,
 4 a check was missed, 128 + n stopped by signal n.

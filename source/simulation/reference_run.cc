@@ -390,6 +390,8 @@ namespace limber
     {
       const Problem<dim> problem = read_problem<dim>(scene);
       check_size(problem, Task::reference, this_machine(MPI_COMM_WORLD));
+      for (const std::string &setting : command.overrides)
+        console.say("From the command line: " + printable(setting) + ".");
       for (const std::string &warning : scene.warnings())
         console.warn(warning);
       const std::string &folder = problem.output.directory;
@@ -434,12 +436,34 @@ namespace limber
 
 
 
+  namespace
+  {
+    const std::string reference_usage = R"(limber reference [options] scene.prm
+mpirun -np 4 limber reference [options] scene.prm
+
+Solves the scene of a solid body by finite elements, as section 'Reference' of
+the scene says, and leaves a run folder that 'limber compare' and 'limber plot'
+read. A folder that holds the same reference already is left as it is.
+
+  --frequencies n                       natural frequencies of the body at rest
+                                        instead of its motion
+  --validate                            check everything, compute nothing
+  --set "Section/Name=value"            change an entry; may be repeated
+  --output-directory path               the run folder, same as Output/Directory
+
+Exit codes: 0 finished, 1 wrong input, 2 computation failed, 3 file error,
+4 a check was missed, 128 + n stopped by signal n.
+)";
+  } // namespace
+
+
+
   int
   run_reference(const CommandLine &command, Console &console)
   {
     if (command.help)
       {
-        console.show(usage());
+        console.show(reference_usage);
         return int(ExitCode::success);
       }
     if (command.resume)

@@ -257,7 +257,15 @@ stopped by signal n.
       else if (argv[i] == std::string("--seconds"))
         options.seconds = number_behind(argc, argv, i++, "60");
       else
-        rest.push_back(argv[i]);
+        {
+          const auto meant = nearest(argv[i], {"--for-error", "--seconds"});
+          if (argv[i][0] == '-' && meant)
+            throw InputError("The option " + in_quotes(argv[i]) +
+                             " on the command line is not known. Usually it is "
+                             "misspelt. Did you mean " +
+                             in_quotes(*meant) + "?");
+          rest.push_back(argv[i]);
+        }
     const CommandLine line = parse_command_line(rest.size(), rest.data());
     if (line.help || line.scene.empty())
       {

@@ -109,16 +109,9 @@ namespace limber
 
 
 
-    const std::string study_usage = R"(limber study [options] study.prm
-limber stability [options] study.prm
-
-study: runs all variants of a scene one after another and compares what they
-measure with what they cost. stability: seeks by bisection the largest stable
-value of an entry for every variant. Each run is a process of its own.
-
+    const std::string study_options =
+      R"(
   --short                    the short lists of the study
-  --for-error number         name the cheapest variant with this error; may be
-                             repeated
   --resume                   keep the runs that are done and have not changed
   --validate                 check and list all variants, run nothing
   --print-parameters prm|json|markdown
@@ -131,6 +124,21 @@ with matplotlib is there; the run folders in runs. Exit codes: 0 done, also
 where variants have failed; 1 wrong input, 3 file error, 128 + n stopped by
 signal n.
 )";
+
+    const std::string study_usage = R"(limber study [options] study.prm
+
+Runs all variants of a scene one after another and compares what they measure
+with what they cost. Each run is a process of its own.
+
+  --for-error number         name the cheapest variant with this error; may be
+                             repeated)" +
+                                    study_options;
+
+    const std::string stability_usage = R"(limber stability [options] study.prm
+
+Seeks by bisection the largest stable value of an entry, the Courant number for
+instance, for every variant of a scene. Each run is a process of its own.
+)" + study_options;
 
 
 
@@ -166,12 +174,15 @@ signal n.
 
 
     int
-    call_study(const Study run, const int argc, const char *const *argv)
+    call_study(const Study        run,
+               const std::string &usage,
+               const int          argc,
+               const char *const *argv)
     {
       const StudyWords words = parse(argc, argv);
       Console          console(true, std::cout);
       if (words.common.help)
-        console.show(study_usage);
+        console.show(usage);
       else if (words.common.print_parameters)
         {
           std::ostringstream text;
@@ -180,7 +191,7 @@ signal n.
         }
       else if (words.common.scene.empty())
         {
-          console.show(study_usage);
+          console.show(usage);
           return int(ExitCode::wrong_input);
         }
       else
@@ -201,7 +212,7 @@ signal n.
     int
     study(const int argc, const char *const *argv)
     {
-      return call_study(run_study, argc, argv);
+      return call_study(run_study, study_usage, argc, argv);
     }
 
 
@@ -209,7 +220,7 @@ signal n.
     int
     stability(const int argc, const char *const *argv)
     {
-      return call_study(run_stability, argc, argv);
+      return call_study(run_stability, stability_usage, argc, argv);
     }
 
 

@@ -221,6 +221,15 @@ namespace limber
 
 
 
+    /** Where there is nothing to compare with, there is no number. */
+    std::string
+    number_or_dash(const double number)
+    {
+      return std::isfinite(number) ? brief(number) : "-";
+    }
+
+
+
     template <int dim>
     int
     compare(const SceneFile   &scene,
@@ -298,8 +307,8 @@ namespace limber
            << "                       relative L2  relative maximum\n";
       const auto line = [&](const std::string &name, const Difference &d) {
         text << "  " << std::left << std::setw(20) << name << std::right
-             << std::setw(12) << d.relative() << std::setw(18)
-             << d.relative_maximum() << '\n';
+             << std::setw(12) << number_or_dash(d.relative()) << std::setw(18)
+             << number_or_dash(d.relative_maximum()) << '\n';
       };
       for (unsigned int q = 0; q < all.size(); ++q)
         {
@@ -331,9 +340,34 @@ namespace limber
 
 
 
+  namespace
+  {
+    const std::string compare_usage = R"(limber compare RUN OTHER
+
+Errors of displacement, velocity, pressure and stress of a run, over its body
+and all common times, and of its observables. RUN is the folder of a run with
+'Output/Point arrays = true', or of a reference; OTHER is the folder of a
+reference, of another run with point arrays, or the word 'exact' for the
+formulas of section 'Exact solution'.
+
+Results: comparison (a table over time) and comparison.json in RUN. A quantity
+that OTHER does not have, or that is zero there, is shown as '-'.
+
+Exit codes: 0 done, 1 wrong input, 3 file error.
+)";
+  } // namespace
+
+
+
   int
   run_compare(const std::vector<std::string> &words, Console &console)
   {
+    if (std::find(words.begin(), words.end(), "--help") != words.end() ||
+        std::find(words.begin(), words.end(), "-h") != words.end())
+      {
+        console.show(compare_usage);
+        return int(ExitCode::success);
+      }
     if (words.size() != 2)
       throw InputError(
         "The word 'compare' on the command line is followed by " +

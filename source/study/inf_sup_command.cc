@@ -146,14 +146,15 @@ square, no velocity on its boundary.
                                               "--samples",
                                               "--output-directory",
                                               "--replace",
-                                              "--help"};
+                                              "--help",
+                                              "-h"};
       InfSupCall                     call;
       for (int i = 2; i < argc; ++i)
         {
           const std::string option = argv[i];
-          if (option == "--help" || option == "--replace")
+          if (option == "--help" || option == "-h" || option == "--replace")
             {
-              (option == "--help" ? call.help : call.replace) = true;
+              (option == "--replace" ? call.replace : call.help) = true;
               continue;
             }
           if (std::find(known.begin(), known.end(), option) == known.end())

@@ -8,6 +8,7 @@
 #include <limber/study/study.h>
 #include <limber/study/study_runs.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <filesystem>
@@ -97,9 +98,9 @@ namespace limber
       }
 
     std::vector<double> levels = study.error_levels;
-    levels.insert(levels.end(),
-                  call.error_levels.begin(),
-                  call.error_levels.end());
+    for (const double level : call.error_levels)
+      if (std::find(levels.begin(), levels.end(), level) == levels.end())
+        levels.push_back(level);
     const std::string findings =
       study.horizontal_axis.empty() ? cheapest_variants(report, levels) : "";
     write_report(report, findings);

@@ -47,7 +47,7 @@ namespace limber
     const Parameters &
     parameters() const;
 
-    /** Lines for the log: repeated entries, overrides taken. */
+    /** Lines for the log: repeated entries. */
     const std::vector<std::string> &
     warnings() const;
 

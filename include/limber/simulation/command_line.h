@@ -34,6 +34,13 @@ namespace limber
   CommandLine
   parse_command_line(const int argc, const char *const *argv);
 
+  /**
+   * Throw InputError if the first word looks like a misspelt command: no
+   * option, no file, but near to `study`, `plot` and their like.
+   */
+  void
+  check_first_word(const int argc, const char *const *argv);
+
   /** What --help prints. */
   std::string
   usage();

@@ -57,6 +57,58 @@ TEST(CommandLine, OptionsInAnyOrder)
 
 
 
+TEST(CommandLine, HelpHasAShortName)
+{
+  EXPECT_TRUE(parse_words({"-h"}).help);
+  EXPECT_TRUE(parse_words({"scene.prm", "--help"}).help);
+}
+
+
+
+TEST(CommandLine, MisspeltCommands)
+{
+  const auto said = [](std::vector<const char *> words) -> std::string {
+    words.insert(words.begin(), "limber");
+    try
+      {
+        check_first_word(words.size(), words.data());
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  };
+  EXPECT_NE(said({"studdy", "a.prm"}).find("'limber study'"),
+            std::string::npos);
+  EXPECT_NE(said({"plto", "run"}).find("'limber plot'"), std::string::npos);
+  EXPECT_EQ(said({"study", "a.prm"}), "");
+  EXPECT_EQ(said({"plot.prm"}), "");
+  EXPECT_EQ(said({"runs/studdy"}), "");
+  EXPECT_EQ(said({"--validate"}), "");
+  EXPECT_EQ(said({"something", "else"}), "");
+  EXPECT_EQ(said({}), "");
+}
+
+
+
+TEST(CommandLine, HelpNamesEveryCommand)
+{
+  for (const char *const command : {"reference",
+                                    "compare",
+                                    "study",
+                                    "stability",
+                                    "inf-sup",
+                                    "advise",
+                                    "plot",
+                                    "animate"})
+    EXPECT_NE(usage().find(std::string("\n  ") + command + " "),
+              std::string::npos)
+      << command;
+}
+
+
+
 TEST(CommandLine, StandardInputAndStyles)
 {
   EXPECT_EQ(parse_words({"--"}).scene, "--");
