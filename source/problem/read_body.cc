@@ -93,7 +93,7 @@ namespace limber
         "auto",
         admissible::non_negative_number("0.5").or_word("auto"),
         "Dimensionless: rate, times h / c, at which a pressure per cell that "
-        "alternates from cell to cell, and so moves nothing, is evened out "
+        "alternates from cell to cell (checkerboard), and so moves nothing, is evened out "
         "without a change of volume; 'auto' is 0.5 for liquids with averages, "
         "else 0. In semi-implicit steps the share of the compact Laplacian in "
         "the equations of the pressure; 'auto' is 0.1.");

@@ -42,13 +42,14 @@ namespace limber
     parameters.declare("Damping time",
                        "0",
                        admissible::non_negative_number("0.1"),
-                       "Time constant T, s, in which PIC takes away what FLIP "
-                       "keeps: share of FLIP 1 - dt/T; 0: pure FLIP.");
+                       "PIC/FLIP blend: time constant T, s, in which PIC takes "
+                       "away what FLIP keeps; share of FLIP 1 - dt/T; 0: pure "
+                       "FLIP.");
     parameters.declare("Damping rate",
                        "0",
                        admissible::non_negative_number("0.3"),
-                       "alpha, 1/s, of the acceleration -alpha v of all "
-                       "material, in proportion to its mass; brings a run "
+                       "Mass-proportional damping: alpha, 1/s, of the "
+                       "acceleration -alpha v of all material; brings a run "
                        "under slow loads to rest.");
     declare_word(parameters,
                  "Kernel",
@@ -58,8 +59,8 @@ namespace limber
     parameters.declare("Courant number",
                        "0.4",
                        admissible::number_from_to(1e-6, 100, "0.4"),
-                       "C, no unit; step dt = C h / (c + |v|) with the speed "
-                       "of sound c.");
+                       "CFL number C, no unit; step dt = C h / (c + |v|) with "
+                       "the speed of sound c.");
     parameters.declare("Time step",
                        "0",
                        admissible::non_negative_number("1e-4"),
