@@ -51,14 +51,14 @@ namespace limber
 
 
 
-  std::string
-  Admissible::example_near(const std::string &value) const
+  std::optional<std::string>
+  Admissible::meant(const std::string &value) const
   {
     for (const std::string &word : split(value, ','))
       if (std::find(choices.begin(), choices.end(), word) == choices.end())
-        if (const auto meant = nearest(word, choices))
-          return *meant;
-    return sample;
+        if (const auto near = nearest(word, choices))
+          return near;
+    return {};
   }
 
 
@@ -319,7 +319,8 @@ namespace limber
                              });
         },
         "some of " + join(words, " | ") + ", separated by commas",
-        words.front());
+        words.front(),
+        words);
     }
 
 

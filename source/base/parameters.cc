@@ -243,18 +243,22 @@ namespace limber
 
   namespace
   {
-    /** The end of a message: the word of a list that was meant, or an example.
-     */
+    /** The end of a message: the word that was meant, or cause and example. */
     std::string
-    suggestion(const Admissible &admissible, const std::string &value)
+    suggestion(const Declaration &declaration, const std::string &value)
     {
-      const std::string example = admissible.example_near(value);
-      const bool        is_list =
-        admissible.description().find(" | ") != std::string::npos;
-      for (const std::string &word : split(value, ','))
-        if (is_list && word != example && nearest(word, {example}))
-          return ". Did you mean " + in_quotes(example) + "?";
-      return ", for instance " + in_quotes(first_words(example, 8)) + ".";
+      const Admissible &admissible = declaration.admissible;
+      const std::string write =
+        "Write " + first_words(admissible.description(), 14);
+      if (const auto meant = admissible.meant(value))
+        return write + ". Did you mean " + in_quotes(*meant) + "?";
+      const std::string example = admissible.match(declaration.default_value) &&
+                                      !declaration.default_value.empty() &&
+                                      admissible.is_choice() ?
+                                    declaration.default_value :
+                                    admissible.example();
+      return "Usually a digit, sign or word is mistyped. " + write +
+             ", for instance " + in_quotes(first_words(example, 8)) + ".";
     }
   } // namespace
 
@@ -275,13 +279,10 @@ namespace limber
                        "version. Write '" +
                        entry.name + " = " + now + "'.");
     if (!declaration.admissible.match(entry.value))
-      throw InputError("The value " + in_quotes(first_words(entry.value, 6)) +
-                       " of entry " + in_quotes(entry.name) + " " +
-                       in_section(entry.section) + " (" + place +
-                       ") is not admissible. Usually a digit, sign or word is "
-                       "mistyped. Write " +
-                       first_words(declaration.admissible.description(), 14) +
-                       suggestion(declaration.admissible, entry.value));
+      throw InputError(
+        "The value " + in_quotes(first_words(entry.value, 6)) + " of entry " +
+        in_quotes(entry.name) + " " + in_section(entry.section) + " (" + place +
+        ") is not admissible. " + suggestion(declaration, entry.value));
 
     for (const std::string &name : entry.section)
       handler.enter_subsection(name);

@@ -56,6 +56,14 @@ namespace limber
 
 
 
+    /** Laws that bear shear under pressure alone, and part in tension. */
+    template <class Law>
+    inline constexpr bool is_frictional =
+      std::is_same_v<Law, DruckerPrager<false>> ||
+      std::is_same_v<Law, DruckerPrager<true>>;
+
+
+
     template <class Law>
     std::vector<Law>
     samples()

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,16 @@ namespace limber
     const std::string &
     example() const;
 
-    /** Of a choice, the word nearest to @p value; else the example. */
-    std::string
-    example_near(const std::string &value) const;
+    /** Of a choice, the word that a misspelt @p value was meant to have. */
+    std::optional<std::string>
+    meant(const std::string &value) const;
+
+    /** Whether it is a word or words of a list. */
+    bool
+    is_choice() const
+    {
+      return !choices.empty();
+    }
 
     /** The same, or nothing at all: the entry may be left empty. */
     Admissible

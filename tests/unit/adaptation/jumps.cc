@@ -271,7 +271,7 @@ TEST(Jumps, ConstantStressGivesNoForce)
 TEST(Jumps, RigidMotionStaysRigid)
 {
   for (const std::string transfer : {"flip", "pic", "apic"})
-    for (const std::string scheme : stress_update_orders)
+    for (const std::string &scheme : stress_update_orders)
       {
         SCOPED_TRACE(transfer + ", " + scheme);
         SceneRun<2>  run(graded_block<2>("set Initial velocity = 0.5; 0.31"),

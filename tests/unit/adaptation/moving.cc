@@ -267,7 +267,9 @@ TEST(Adapting, FollowsARegionThatMoves)
         {
           const unsigned int level = run.grid.level_of(points.cell[p]);
           if (std::abs(points.position[0][p] - 1 - run.time) < 0.5)
-            EXPECT_EQ(level, 2u);
+            {
+              EXPECT_EQ(level, 2u);
+            }
           EXPECT_GE(run.bodies[0]->points.size_class(p), level);
         }
     }
@@ -366,8 +368,10 @@ TEST(Adapting, FollowsABodyAndItsSurface)
           // Until the next time a point may enter a cell of a finer level.
           if (asked)
             for (std::size_t p = 0; p < run.points().size; ++p)
-              ASSERT_GE(run.bodies[0]->points.size_class(p),
-                        run.grid.level_of(run.points().cell[p]));
+              {
+                ASSERT_GE(run.bodies[0]->points.size_class(p),
+                          run.grid.level_of(run.points().cell[p]));
+              }
           run.advance(0.008);
 
           const PointView<2> points = run.points();
@@ -380,9 +384,13 @@ TEST(Adapting, FollowsABodyAndItsSurface)
                 {x[0] - left, left + 2 - x[0], x[1] - lower, lower + 2 - x[1]});
               const unsigned int level = run.grid.level_of(points.cell[p]);
               if (criterion.find("body") != std::string::npos || depth < 0.03)
-                ASSERT_EQ(level, 2u) << x << " at " << run.time;
+                {
+                  ASSERT_EQ(level, 2u) << x << " at " << run.time;
+                }
               else if (depth > 0.7)
-                ASSERT_EQ(level, 0u) << x << " at " << run.time;
+                {
+                  ASSERT_EQ(level, 0u) << x << " at " << run.time;
+                }
             }
         }
       EXPECT_GT(adaptation.state().mesh_changes, 10u);

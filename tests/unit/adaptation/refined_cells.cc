@@ -124,7 +124,9 @@ namespace
                   sum += weight * places[master];
               }
             if (all_known)
-              EXPECT_LT((sum - places.at(hanging.node)).norm(), 1e-12);
+              {
+                EXPECT_LT((sum - places.at(hanging.node)).norm(), 1e-12);
+              }
           }
       }
   }
@@ -158,7 +160,9 @@ TEST(RefinedCells, GradingLeavesTwoCellsBetweenJumps)
               {
                 const unsigned int u = x + i, v = y + j;
                 if (u < 8u << level && v < 8u << level)
-                  EXPECT_TRUE(mesh.is_divided(level - 1, {{u / 2, v / 2}}));
+                  {
+                    EXPECT_TRUE(mesh.is_divided(level - 1, {{u / 2, v / 2}}));
+                  }
               }
   EXPECT_GT(n_divided, 9u);
 }

@@ -93,11 +93,16 @@ TEST(Choices, TreatmentsAverageWhatTheirWordsSay)
 
 TEST(Choices, ObservablesAreTheSameInTwoAndThreeDimensions)
 {
-  const std::set<std::string> entries = {
-    "Body", "Location", "Direction", "Within", "Observable", "Side"};
-  const auto           &in_2d = observable_kinds<2>();
-  const auto           &in_3d = observable_kinds<3>();
-  std::set<std::string> words;
+  const std::set<std::string> entries = {"Body",
+                                         "Location",
+                                         "Direction",
+                                         "Within",
+                                         "Observable",
+                                         "Side",
+                                         "Variable"};
+  const auto                 &in_2d   = observable_kinds<2>();
+  const auto                 &in_3d   = observable_kinds<3>();
+  std::set<std::string>       words;
   ASSERT_EQ(in_2d.size(), in_3d.size());
   for (std::size_t k = 0; k < in_2d.size(); ++k)
     {
@@ -134,6 +139,7 @@ TEST(Choices, ObservablesPickTheirPartOfWhatIsSeen)
   seen.extent                                  = 12;
   seen.force[1]                                = 13;
   seen.frequency                               = 14;
+  seen.variable                                = 15;
   const std::map<std::string, double> expected = {{"position", 2},
                                                   {"displacement", 3},
                                                   {"velocity", 4},
@@ -147,7 +153,10 @@ TEST(Choices, ObservablesPickTheirPartOfWhatIsSeen)
                                                   {"total energy", 20},
                                                   {"extreme coordinate", 12},
                                                   {"reaction force", 13},
-                                                  {"frequency", 14}};
+                                                  {"frequency", 14},
+                                                  {"state variable", 15},
+                                                  {"largest state variable",
+                                                   15}};
   EXPECT_EQ(expected.size(), observable_kinds<2>().size());
   for (const auto &[word, value] : expected)
     EXPECT_EQ(observable_kind<2>(word).value(o, seen), value) << word;

@@ -314,7 +314,8 @@ TYPED_TEST(Sweep, HomogeneousMotionIsNotAffectedByProjection)
 
 
 
-// Relaxation goes to the mean of the cell, keeps it, and says what it costs.
+// Relaxation goes to the mean of the cell, keeps it, and says what it costs. A
+// law that parts or dilates is at rest under pressure here, where it does not.
 TYPED_TEST(Sweep, RelaxationKeepsTheMean)
 {
   constexpr int dim = TestFixture::dim;
@@ -326,6 +327,12 @@ TYPED_TEST(Sweep, RelaxationKeepsTheMean)
         std::fill(this->grid.nodes.begin(), this->grid.nodes.end(), 0.);
         auto       own    = this->stressed_points(law);
         const auto points = own.view();
+        if (is_frictional<Law>)
+          for (std::size_t p = 0; p < points.size; ++p)
+            this->set(points,
+                      p,
+                      law.template initialise<dim>(law.bulk_modulus *
+                                                   this->random(0.01, 0.1)));
         this->grid.gather(points);
         const auto value = [&](const std::size_t p) {
           return points.volumetric[p];
@@ -466,7 +473,7 @@ TYPED_TEST(Sweep, SummariesAreSumsOverPoints)
       EXPECT_NEAR(summary.strain_energy, energy, 1e-13 * energy);
       EXPECT_EQ(summary.smallest_volume, smallest);
       EXPECT_EQ(summary.largest_volume, largest);
-      EXPECT_EQ(sweep.wave_speed_squared(points), squared);
+      EXPECT_DOUBLE_EQ(sweep.wave_speed_squared(points), squared);
 
       const double pressure = 0.01 * law.bulk_modulus;
       sweep.initialise(points, 3, pressure);
@@ -487,7 +494,7 @@ TEST(StressUpdates, AreMadeByNameWithTheRightVariant)
 {
   constexpr auto response = HourglassResponse::bending;
   const auto     laws     = describe_laws();
-  ASSERT_EQ(laws.size(), 3u);
+  ASSERT_EQ(laws.size(), 5u);
   for (const auto &law : laws)
     {
       std::vector<double> values;
@@ -563,7 +570,10 @@ TYPED_TEST(Sweep, DeviatoricHistoryTendsToTheMeanOfTheCell)
                               (mean[points.cell[p]] - before[p][k]),
                           1e-13);
           }
-        EXPECT_EQ(own.fields[2 * dim + 1], pressure);
+        for (std::size_t p = 0; p < points.size; ++p)
+          EXPECT_NEAR(own.fields[2 * dim + 1][p],
+                      pressure[p],
+                      1e-15 * law.bulk_modulus);
         EXPECT_GT(removed, 0);
         EXPECT_NEAR(removed,
                     energy - sweep.summarize(points).strain_energy,
