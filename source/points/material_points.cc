@@ -20,7 +20,8 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
-             (layout.crossings ? 1 : 0) + (layout.domains ? dim * dim : 0) +
+             (layout.crossings ? 1 : 0) +
+             n_domain_components(layout.domains, dim) +
              (layout.initial_frame ? dim * dim : 0) +
              (layout.has_reference() ? dim : 0);
     }
@@ -74,12 +75,13 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         fields[fields.size() - dim - dim * dim + d * (dim + 1)][p] = 1;
     fields[2 * dim][p] = mass;
-    if (layout.domains)
+    if (layout.domains != DomainForm::none)
       {
-        const PointView<dim> points = view();
+        const auto domain = view().domain;
         for (int d = 0; d < dim; ++d)
           for (int k = 0; k < dim; ++k)
-            points.domain[d * dim + k][p] = half_edges[d][k];
+            if (domain[d * dim + k] != nullptr)
+              domain[d * dim + k][p] = half_edges[d][k];
       }
     this->cell.push_back(cell);
     ids.push_back(p);
@@ -130,9 +132,11 @@ namespace limber
         array = fields[f++].data();
     if (layout.crossings)
       result.crossings = fields[f++].data();
-    if (layout.domains)
-      for (auto &array : result.domain)
-        array = fields[f++].data();
+    result.domain_form = layout.domains;
+    for (unsigned int k = 0, n = n_domain_components(layout.domains, dim);
+         k < n;
+         ++k)
+      result.domain[n == dim ? k * (dim + 1) : k] = fields[f++].data();
     if (layout.initial_frame)
       for (auto &array : result.deformation)
         array = fields[f++].data();
@@ -205,7 +209,7 @@ namespace limber
     numbered("affine", layout.affine ? dim * dim : 0);
     if (layout.crossings)
       names.push_back("crossings");
-    numbered("domain", layout.domains ? dim * dim : 0);
+    numbered("domain", n_domain_components(layout.domains, dim));
     numbered("deformation gradient", layout.initial_frame ? dim * dim : 0);
     if (layout.has_reference())
       components("reference position", axes);

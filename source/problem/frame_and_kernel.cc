@@ -60,8 +60,8 @@ namespace limber
         return Obstacle{"does not go with 'Method/Stress update = usf'",
                         ", or 'Stress update = musl'"};
       const auto kernel = read_word(method, "Kernel", kernel_words());
-      if (kernel == KernelKind::cpdi)
-        return Obstacle{"has no convected domains, as no point moves through "
+      if (has_domains(kernel))
+        return Obstacle{"has no points with domains, as none moves through "
                         "its cells",
                         ", or 'Method/Kernel = linear', 'quadratic' or "
                         "'auto'"};
@@ -110,11 +110,20 @@ namespace limber
              .with_domains)
         return Misfit{"Locking treatment",
                       "domains reach over several cells",
-                      "'Locking treatment = node' or 'none'"};
+                      "'Locking treatment = cell', 'node' or 'none'"};
       if (is_set(section, "Hourglass control"))
         return Misfit{"Hourglass control",
-                      "nothing is averaged over a cell",
+                      "domains that reach over several cells resist",
                       "'Hourglass control = 0'"};
+      if (is_set(section, "Chequerboard control"))
+        return Misfit{"Chequerboard control",
+                      "it is for kernels whose points see one cell",
+                      "'Chequerboard control = 0'"};
+      if (read_word(section, "History", history_words()) !=
+          HistoryTreatment::keep)
+        return Misfit{"History",
+                      "points with domains keep their own",
+                      "'History = keep'"};
       return {};
     }
 
@@ -126,7 +135,7 @@ namespace limber
     {
       if (is_spline(kernel))
         return misfit_of_splines(section);
-      if (kernel == KernelKind::cpdi && !liquid)
+      if (has_domains(kernel) && !liquid)
         return misfit_of_domains(section);
       return {};
     }
@@ -295,13 +304,13 @@ namespace limber
             "': " + found->reason + ". Set " + found->remedy +
             ", or 'Kernel = linear'.");
       }
-    if (problem.grid.kernel == KernelKind::cpdi &&
+    if (has_domains(problem.grid.kernel) &&
         read_word(method, "Transfer", transfer_words()) == Transfer::apic)
-      throw InputError(
-        "The transfer 'apic' in " + method.where("Transfer") +
-        " does not go with 'Kernel = cpdi', which has no moments "
-        "for it. Set 'Transfer = flip' or 'fmpm', or 'Kernel = "
-        "quadratic'.");
+      throw InputError("The transfer 'apic' in " + method.where("Transfer") +
+                       " does not go with 'Kernel = " + method.text("Kernel") +
+                       "', which has no moments "
+                       "for it. Set 'Transfer = flip' or 'fmpm', or 'Kernel = "
+                       "quadratic'.");
   }
 
 

@@ -233,7 +233,7 @@ namespace limber
     if (problem.grid.kernel != KernelKind::linear)
       refuse(method,
              "Kernel",
-             problem.grid.kernel == KernelKind::cpdi ?
+             has_domains(problem.grid.kernel) ?
                "domains look for their corners in a lattice" :
                "splines need a lattice",
              "'Kernel = linear'");

@@ -29,7 +29,7 @@ namespace limber
             "transfer filters.");
           return;
         }
-      if (problem.grid.kernel == KernelKind::cpdi)
+      if (has_domains(problem.grid.kernel))
         {
           problem.method.order = StressUpdateOrder::musl;
           problem.notes.push_back(

@@ -199,9 +199,11 @@ namespace limber
         {
           size.points.push_back(count_points(body, problem.grid));
           const bool domains =
-            problem.grid.kernel == KernelKind::cpdi && !body.is_liquid;
+            has_domains(problem.grid.kernel) && !body.is_liquid;
+          const unsigned int of_domain =
+            problem.grid.kernel == KernelKind::gimp ? dim : dim * dim;
           const double own =
-            per_point + (domains ? dim * dim * sizeof(double) : 0);
+            per_point + (domains ? of_domain * sizeof(double) : 0);
           // The places in one cell are kept while points are placed.
           size.bytes_of_points.push_back(size.points.back() * own +
                                          product(body.points_per_cell_edge) *

@@ -56,10 +56,16 @@ namespace limber
       {"cubic",
        KernelKind::cubic,
        "cubic B-splines, smoother still, for twice the time"},
+      {"gimp",
+       KernelKind::gimp,
+       "generalised interpolation: means over boxes of fixed size around the "
+       "points of solids; liquids have linear functions"},
+      {"cpgimp",
+       KernelKind::cpgimp,
+       "the same with boxes that follow the stretch"},
       {"cpdi",
        KernelKind::cpdi,
-       "convected particle domains of solids; liquids have linear functions"},
-      {"gimp", std::nullopt, not_available}};
+       "convected particle domains of solids; liquids have linear functions"}};
     return words;
   }
 

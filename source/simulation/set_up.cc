@@ -133,6 +133,25 @@ namespace limber
 
 
 
+    /** Of the points of a body with that kernel. */
+    DomainForm
+    domain_form(const KernelKind kernel)
+    {
+      switch (kernel)
+        {
+          case KernelKind::gimp:
+            return DomainForm::box;
+          case KernelKind::cpgimp:
+            return DomainForm::stretched_box;
+          case KernelKind::cpdi:
+            return DomainForm::parallelepiped;
+          default:
+            return DomainForm::none;
+        }
+    }
+
+
+
     /** The body without points. */
     template <int dim>
     std::unique_ptr<MaterialBody<dim>>
@@ -142,7 +161,7 @@ namespace limber
     {
       // A liquid shears its points' domains without end.
       const KernelKind kernel =
-        problem.grid.kernel == KernelKind::cpdi && body.is_liquid ?
+        has_domains(problem.grid.kernel) && body.is_liquid ?
           KernelKind::linear :
           problem.grid.kernel;
       const auto &fields = problem.output.fields;
@@ -158,7 +177,7 @@ namespace limber
       layout.volumetric    = stress->volumetric();
       layout.affine        = problem.method.transfer == Transfer::apic;
       layout.crossings     = !body.is_liquid && body.frame == Frame::current;
-      layout.domains       = kernel == KernelKind::cpdi;
+      layout.domains       = domain_form(kernel);
       layout.initial_frame = body.frame == Frame::initial;
       layout.size_class    = grid.has_levels();
       layout.reference =
@@ -288,7 +307,13 @@ namespace limber
     for (auto &body : bodies)
       {
         const Projection kind = body->stress->projection().kind;
-        if (needs_cell_means(kind) || body->description.hourglass_control > 0)
+        if (body->points.view().has_domains())
+          {
+            if (averages_volume_in_cells(kind))
+              body->cell_averages.emplace(grid.n_cells());
+          }
+        else if (needs_cell_means(kind) ||
+                 body->description.hourglass_control > 0)
           body->cell_sums.emplace(grid, sums_of_cell);
         if (body->description.deviatoric_history != HistoryTreatment::keep)
           body->deviator_sums.emplace(grid);

@@ -16,6 +16,9 @@ namespace limber
             case Projection::none:
               return std::make_unique<
                 ConvectedSweep<dim, Law, Projection::none>>(law, projection);
+            case Projection::cell:
+              return std::make_unique<
+                ConvectedSweep<dim, Law, Projection::cell>>(law, projection);
             case Projection::node:
               return std::make_unique<
                 ConvectedSweep<dim, Law, Projection::node>>(law, projection);

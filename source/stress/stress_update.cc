@@ -92,7 +92,7 @@ namespace limber
         result = make_cubic_sweep<dim>(law, projection, frame);
       else if (frame == Frame::initial)
         result = make_initial_frame_sweep<Linear<dim>>(law, projection);
-      else if (kernel == KernelKind::cpdi)
+      else if (has_domains(kernel))
         result = make_convected_sweep<dim>(law, projection);
       else
         result = make_sweep<Linear<dim>>(law, projection);

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/domain_means.h>
 #include <limber/time/body_sweeps.h>
+#include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/project_on_nodes.h>
 
 #include <algorithm>
@@ -22,12 +24,14 @@ namespace limber
 
 
 
-    /** The records of a body with means around nodes; null for others. */
+    /** The records of what has been projected; null for other bodies. */
     template <int dim>
     double *
-    nodal_means_of(MaterialBody<dim> &body)
+    projected(MaterialBody<dim> &body)
     {
-      return body.nodal_means ? body.nodal_means->data() : nullptr;
+      return body.nodal_means   ? body.nodal_means->data() :
+             body.cell_averages ? body.cell_averages->data() :
+                                  nullptr;
     }
   } // namespace
 
@@ -46,9 +50,14 @@ namespace limber
   {
     const GridView<dim> nodes = parts.nodes.view();
     if (what.force)
-      project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
-        sum_pressure<dim>(body.points.view(), nodes, records);
-      });
+      {
+        project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
+          sum_pressure<dim>(body.points.view(), nodes, records);
+        });
+        average_over_cells([](MaterialBody<dim> &body, double *const records) {
+          sum_pressure_over_cells<dim>(body.points.view(), records);
+        });
+      }
     std::size_t n_batches  = 0;
     const bool  with_force = what.force;
     for (auto &body : parts.bodies)
@@ -57,10 +66,10 @@ namespace limber
         what.pressure = !body->implicit;
         what.force =
           with_force && (what.pressure || body->stress->has_deviator());
-        what.inverse_density = 1 / body->stress->density();
-        what.projection      = body->stress->projection();
-        what.nodal_pressure  = nodal_means_of(*body);
-        const auto sums      = sums_of(*body);
+        what.inverse_density    = 1 / body->stress->density();
+        what.projection         = body->stress->projection();
+        what.projected_pressure = projected(*body);
+        const auto sums         = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),
                                                  nodes,
                                                  what,
@@ -89,6 +98,24 @@ namespace limber
     for (auto &body : parts.bodies)
       if (body->nodal_means)
         body->nodal_means->finish_completion(vertices.active_nodes());
+  }
+
+
+
+  // Means over cells for bodies whose points have domains, likewise.
+  template <int dim>
+  template <class Sum>
+  void
+  BodySweeps<dim>::average_over_cells(const Sum &sum)
+  {
+    const auto &cells = parts.nodes.owned_occupied_cells();
+    for (auto &body : parts.bodies)
+      if (body->cell_averages)
+        {
+          body->cell_averages->clear(cells);
+          sum(*body, body->cell_averages->data());
+          body->cell_averages->finish(cells);
+        }
   }
 
 
@@ -200,10 +227,16 @@ namespace limber
     project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
       sum_divergence<dim>(body.points.view(), nodes, what.remapped, records);
     });
+    average_over_cells([&](MaterialBody<dim> &body, double *const records) {
+      sum_divergence_of_domains<CellMeanSums<dim>>(body.points.view(),
+                                                   nodes,
+                                                   what.remapped,
+                                                   records);
+    });
     for (auto &body : parts.bodies)
       {
         const Body<dim> &description = body->description;
-        what.nodal_divergence        = nodal_means_of(*body);
+        what.projected_divergence    = projected(*body);
         what.relaxation              = relaxation(description,
                                      description.history,
                                      pace.volumetric,

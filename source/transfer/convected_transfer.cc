@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/convected_motion.h>
-#include <limber/interpolation/nodal_means.h>
+#include <limber/interpolation/domain_means.h>
 #include <limber/transfer/convected_transfer.h>
 
 #include <algorithm>
@@ -28,15 +28,15 @@ namespace limber
      */
     template <int dim, Projection kind, class Lanes>
     __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
-    kirchhoff_stress(const PointView<dim>       &points,
-                     const CellGeometry<dim>    &cell,
-                     const NodalMean<dim, kind> &nodal_pressure,
-                     const Lanes                &lanes)
+    kirchhoff_stress(const PointView<dim>        &points,
+                     const CellGeometry<dim>     &cell,
+                     const DomainMean<dim, kind> &projected_pressure,
+                     const Lanes                 &lanes)
     {
       auto           t = stress_deviator<dim>(points, lanes);
       PointPack<dim> pressure;
-      if constexpr (averages_around_nodes(kind))
-        pressure = nodal_pressure.template value<PointPack<dim>>(
+      if constexpr (kind != Projection::none)
+        pressure = projected_pressure.template value<PointPack<dim>>(
           lanes.natural(points, cell));
       else
         pressure = lanes.load(points.pressure);
@@ -84,10 +84,10 @@ namespace limber
               set_zero(alike);
             if constexpr (Force::any)
               {
-                const NodalMean<dim, Force::kind> nodal_pressure(
-                  what.nodal_pressure, cell);
+                const DomainMean<dim, Force::kind> projected_pressure(
+                  what.projected_pressure, cell, batch.cell);
                 const auto t = kirchhoff_stress<dim, Force::kind>(
-                  points, cell, nodal_pressure, lanes);
+                  points, cell, projected_pressure, lanes);
                 const Number V = what.inverse_density * mass;
 #pragma GCC unroll 3
                 for (int k = 0; k < dim; ++k)
@@ -141,6 +141,10 @@ namespace limber
       {
         case P::none:
           return choose_momentum<dim, ForceOfDomains<P::none>>(points,
+                                                               grid,
+                                                               what);
+        case P::cell:
+          return choose_momentum<dim, ForceOfDomains<P::cell>>(points,
                                                                grid,
                                                                what);
         case P::node:
@@ -200,7 +204,7 @@ namespace limber
 
 
 
-  template <int dim>
+  template <class Sums, int dim>
   void
   sum_divergence_of_domains(const PointView<dim> &points,
                             const GridView<dim>  &grid,
@@ -214,7 +218,7 @@ namespace limber
         FieldsOnPack<dim, RecordWindow<dim, decltype(first)::value, dim>>;
       for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
-        NodalSums<dim>           sums;
+        Sums                     sums;
         for_each_pack<dim>(batch, [&](const auto &lanes) {
           const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
           const Fields             fields(domains);
@@ -226,7 +230,7 @@ namespace limber
                      points.mass[lanes.first + i],
                      divergence[i]);
         });
-        sums.add_to_nodes(cell, records);
+        sums.add_to(cell, batch.cell, records);
       });
     };
     using Slot = unsigned int;
@@ -234,6 +238,20 @@ namespace limber
       sweep(std::integral_constant<Slot, Layout::remapped>());
     else
       sweep(std::integral_constant<Slot, Layout::velocity>());
+  }
+
+
+
+  template <int dim>
+  void
+  sum_pressure_over_cells(const PointView<dim> &points, double *const records)
+  {
+    for_each_batch(points, [&](const CellBatch &batch) {
+      CellMeanSums<dim> sums;
+      for (std::size_t p = batch.begin; p < batch.end; ++p)
+        sums.add({}, points.mass[p], points.pressure[p]);
+      sums.add_to({}, batch.cell, records);
+    });
   }
 
 
@@ -276,15 +294,29 @@ namespace limber
                   const GridView<3> &,
                   const TakeFromGrid &);
   template void
-  sum_divergence_of_domains(const PointView<2> &,
-                            const GridView<2> &,
-                            bool,
-                            double *);
+  sum_divergence_of_domains<NodalMeanSums<2>>(const PointView<2> &,
+                                              const GridView<2> &,
+                                              bool,
+                                              double *);
   template void
-  sum_divergence_of_domains(const PointView<3> &,
-                            const GridView<3> &,
-                            bool,
-                            double *);
+  sum_divergence_of_domains<NodalMeanSums<3>>(const PointView<3> &,
+                                              const GridView<3> &,
+                                              bool,
+                                              double *);
+  template void
+  sum_divergence_of_domains<CellMeanSums<2>>(const PointView<2> &,
+                                             const GridView<2> &,
+                                             bool,
+                                             double *);
+  template void
+  sum_divergence_of_domains<CellMeanSums<3>>(const PointView<3> &,
+                                             const GridView<3> &,
+                                             bool,
+                                             double *);
+  template void
+  sum_pressure_over_cells(const PointView<2> &, double *);
+  template void
+  sum_pressure_over_cells(const PointView<3> &, double *);
   template std::vector<std::uint32_t>
   cells_of_corners(const PointView<2> &, const GridView<2> &);
   template std::vector<std::uint32_t>

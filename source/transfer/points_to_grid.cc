@@ -39,8 +39,8 @@ namespace limber
          const GiveToGrid        &what,
          const CellSums<dim>     *sums)
       {
-        const CellMeans<Linear<dim>>        means(sums, batch.cell);
-        const NodalMean<dim, kind>          nodal(what.nodal_pressure, cell);
+        const CellMeans<Linear<dim>> means(sums, batch.cell);
+        const NodalMean<dim, kind>   nodal(what.projected_pressure, cell);
         StressOperator<dim, kind, deviator> stress(cell,
                                                    what.projection,
                                                    means,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/basis.h>
 #include <limber/interpolation/batch_lanes.h>
-#include <limber/interpolation/nodal_means.h>
+#include <limber/interpolation/domain_means.h>
 #include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/project_on_nodes.h>
 
@@ -73,7 +73,10 @@ namespace limber
   {
     using Layout = NodeLayout<dim>;
     if (points.has_domains())
-      return sum_divergence_of_domains(points, grid, remapped, records);
+      return sum_divergence_of_domains<NodalMeanSums<dim>>(points,
+                                                           grid,
+                                                           remapped,
+                                                           records);
     with_basis(grid, [&](const auto basis) {
       using Basis = std::decay_t<decltype(basis)>;
       if (remapped)

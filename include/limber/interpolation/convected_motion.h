@@ -53,7 +53,10 @@ namespace limber
 
 
 
-  /** Carry the domains of a pack along: R += @p step grad v R, step in s. */
+  /**
+   * Carry the domains of a pack along: R += @p step grad v R, step in s. Boxes
+   * of fixed size stay.
+   */
   template <int dim, class Fields, class Lanes>
   __attribute__((always_inline)) inline void
   carry_domains(const ConvectedPack<dim> &domains,
@@ -63,6 +66,8 @@ namespace limber
   {
     using Number                 = PointPack<dim>;
     const PointView<dim> &points = domains.points;
+    if (points.domain_form == DomainForm::box)
+      return;
     // As they are, which may be more than what counts.
     SmallMatrix<dim, Number> R, slope;
 #pragma GCC unroll 3
@@ -140,10 +145,18 @@ namespace limber
 #pragma GCC unroll 3
     for (int d = 0; d < dim; ++d)
       {
+        const auto load = [&](const double *const array)
+          __attribute__((always_inline))
+        {
+          return lanes.load(array);
+        };
         Number half{};
+        if (points.has_boxes())
+          half = half_box<dim>(points, d, load);
+        else
 #pragma GCC unroll 3
-        for (int k = 0; k < dim; ++k)
-          half += magnitude(lanes.load(points.domain[d * dim + k]));
+          for (int k = 0; k < dim; ++k)
+            half += magnitude(load(points.domain[d * dim + k]));
         half *= geometry.inverse_edge[d];
         const Number xi =
           (lanes.load(points.position[d]) - geometry.origin[d]) *

@@ -40,25 +40,12 @@ namespace limber
       , n(lanes.n)
     {
       Vector at; // from the lower corner of the bins, in cells
-      Matrix edges, in_cells;
       for (int d = 0; d < dim; ++d)
-        {
-          const double inverse_edge = grid.bins.inverse_edge[d];
-          at[d] = (lanes.load(points.position[d]) - grid.bins.lower[d]) *
-                  inverse_edge;
-          for (int k = 0; k < dim; ++k)
-            {
-              edges[d][k]    = lanes.load(points.domain[d * dim + k]);
-              in_cells[d][k] = edges[d][k] * inverse_edge;
-            }
-        }
-      fits = grid.bins.one_per_cell && find_blocks(at, in_cells);
-      if (usually(fits))
-        {
-          invert(edges);
-          set_functions(at, in_cells);
-        }
-      else
+        at[d] = (lanes.load(points.position[d]) - grid.bins.lower[d]) *
+                grid.bins.inverse_edge[d];
+      fits = grid.bins.one_per_cell &&
+             (points.has_boxes() ? set_boxes(at, lanes) : set_edges(at, lanes));
+      if (rarely(!fits))
         invert_one_by_one();
     }
 
@@ -174,39 +161,90 @@ namespace limber
         }
     }
 
+    /** Convected domains; false if one is none for a block. */
+    template <class Lanes>
+    __attribute__((always_inline)) bool
+    set_edges(Vector &at, const Lanes &lanes)
+    {
+      Matrix edges, in_cells;
+      Vector half;
+      Number box    = broadcast<Number>(flattest_domain);
+      auto   fitted = box > 0.;
+#pragma GCC unroll 3
+      for (int d = 0; d < dim; ++d)
+        {
+          half[d] = Number{};
+#pragma GCC unroll 3
+          for (int k = 0; k < dim; ++k)
+            {
+              edges[d][k]    = lanes.load(points.domain[d * dim + k]);
+              in_cells[d][k] = edges[d][k] * grid.bins.inverse_edge[d];
+              half[d] += magnitude(in_cells[d][k]);
+            }
+          fitted &= half[d] <= 0.5;
+          box *= half[d];
+        }
+      if (rarely(!all(fitted & (determinant<dim>(in_cells) > box))) ||
+          !find_blocks(at, half))
+        return false;
+      invert(edges);
+      set_functions(at, in_cells);
+      return true;
+    }
+
+    /** Boxes along the axes. */
+    template <class Lanes>
+    __attribute__((always_inline)) bool
+    set_boxes(Vector &at, const Lanes &lanes)
+    {
+      Vector half;
+#pragma GCC unroll 3
+      for (int d = 0; d < dim; ++d)
+        {
+          const double inverse_edge = grid.bins.inverse_edge[d];
+          half[d]                   = larger(half_box<dim>(
+                             points,
+                             d,
+                             [&](const double *const array) __attribute__((
+                               always_inline)) { return lanes.load(array); }) *
+                             inverse_edge,
+                           broadcast<Number>(smallest_half_box));
+          half[d]                   = half[d] < largest_half_box ?
+                                        half[d] :
+                                        broadcast<Number>(largest_half_box);
+#pragma GCC unroll 3
+          for (int k = 0; k < dim; ++k)
+            inverse[k][d] = k == d ? inverse_edge / half[d] : Number{};
+        }
+      if (!find_blocks(at, half))
+        return false;
+      set_functions_of_boxes(at, half);
+      return true;
+    }
+
     /**
-     * Find the blocks of the domains, and let @p at count from their corners;
-     * false if a domain is none for a block.
+     * Find the blocks of domains that reach @p half a cell and less from their
+     * points, and let @p at count from their corners; false if there is none.
      */
     __attribute__((always_inline)) bool
-    find_blocks(Vector &at, const Matrix &in_cells)
+    find_blocks(Vector &at, const Vector &half)
     {
-      const BinView<dim> &bins   = grid.bins;
-      Number              box    = broadcast<Number>(flattest_domain);
-      Number              index  = Number{};
-      auto                fitted = box > 0.;
+      const BinView<dim> &bins  = grid.bins;
+      Number              index = Number{};
 #pragma GCC unroll 3
       for (int d = dim - 1; d >= 0; --d)
         {
           if (bins.n[d] < 2)
             return false;
-          Number half = magnitude(in_cells[d][0]);
-#pragma GCC unroll 3
-          for (int k = 1; k < dim; ++k)
-            half += magnitude(in_cells[d][k]);
-          fitted &= half <= 0.5;
-          box *= half;
           const double last  = static_cast<double>(bins.n[d] - 2);
-          const Number lower = at[d] - half;
+          const Number lower = at[d] - half[d];
           const Number inner = lower > 0. ? lower : Number{};
           const Number block =
             rounded_down(inner < last ? inner : broadcast<Number>(last));
           at[d] -= block;
-          store(at[d] + half, end[d]);
+          store(at[d] + half[d], end[d]);
           index = index * static_cast<double>(bins.n[d]) + block;
         }
-      if (rarely(!all(fitted & (determinant<dim>(in_cells) > box))))
-        return false;
 
       const auto bin = to_integers(index);
       for (int p = 0; p < n; ++p)
@@ -287,6 +325,53 @@ namespace limber
       // Else GCC takes every weight out of a register by shuffles, where a
       // load spreads it over the lanes for nothing.
       __asm__("" : "+m"(functions));
+    }
+
+    /**
+     * Products of the means of 1 - x, 1 - |x - 1| and x - 1, or zero, over the
+     * box along each direction, and of half their change from one end to the
+     * other. Beyond a side of the grid the first and the last go on.
+     */
+    __attribute__((always_inline)) void
+    set_functions_of_boxes(const Vector &at, const Vector &half)
+    {
+      Number mean[dim][3], change[dim][3];
+#pragma GCC unroll 3
+      for (int d = 0; d < dim; ++d)
+        {
+          const Number lower = at[d] - half[d], upper = at[d] + half[d];
+          const Number share = 0.5 / half[d];
+          const Number below = larger(1. - lower, Number{}),
+                       rest  = larger(1. - upper, Number{}),
+                       above = larger(upper - 1., Number{}),
+                       start = larger(lower - 1., Number{});
+          change[d][0]       = 0.5 * (rest - below);
+          change[d][2]       = 0.5 * (above - start);
+          change[d][1]       = -(change[d][0] + change[d][2]);
+          mean[d][0]         = (below + rest) * (share * -change[d][0]);
+          mean[d][2]         = (above + start) * (share * change[d][2]);
+          mean[d][1]         = larger(1. - mean[d][0] - mean[d][2], Number{});
+        }
+#pragma GCC unroll 27
+      for (int i = 0; i < n_nodes; ++i)
+        {
+          Number all = mean[0][digit(i, 0)];
+#pragma GCC unroll 3
+          for (int d = 1; d < dim; ++d)
+            all *= mean[d][digit(i, d)];
+          store(all, functions.mean[i]);
+#pragma GCC unroll 3
+          for (int k = 0; k < dim; ++k)
+            {
+              Number along = change[k][digit(i, k)];
+#pragma GCC unroll 3
+              for (int d = 0; d < dim; ++d)
+                if (d != k)
+                  along *= mean[d][digit(i, d)];
+              store(along, functions.along[k][i]);
+            }
+        }
+      __asm__("" : "+m"(functions)); // as in set_functions()
     }
 
     static Number

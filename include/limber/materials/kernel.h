@@ -11,6 +11,8 @@ namespace limber
     linear,    // Q1 shape functions
     quadratic, // quadratic B-splines
     cubic,     // cubic B-splines
+    gimp,      // linear, averaged over boxes of fixed size around points
+    cpgimp,    // the same, with boxes that follow the stretch
     cpdi       // linear, averaged over convected domains of points
   };
 
@@ -18,6 +20,14 @@ namespace limber
   is_spline(const KernelKind kernel)
   {
     return kernel == KernelKind::quadratic || kernel == KernelKind::cubic;
+  }
+
+  /** Whether points have domains over which linear functions are averaged. */
+  inline constexpr bool
+  has_domains(const KernelKind kernel)
+  {
+    return kernel == KernelKind::gimp || kernel == KernelKind::cpgimp ||
+           kernel == KernelKind::cpdi;
   }
 } // namespace limber
 

@@ -89,7 +89,7 @@ namespace limber
      false,
      false,
      true,
-     false},
+     true},
     {Projection::cell_shear,
      "cell shear",
      "volumetric strain, shear strain and their stresses constant",

@@ -20,8 +20,8 @@ namespace limber
     unsigned int n_history  = 0;
     int          volumetric = -1; // history variable; -1: the pressure
     bool         affine     = false;
-    bool         crossings  = false; // how many cells it has entered
-    bool         domains    = false; // convected domains (CPDI)
+    bool         crossings  = false;            // how many cells it has entered
+    DomainForm   domains    = DomainForm::none; // GIMP, CPDI
     bool         reference  = false; // reference position, for displacements
     bool         size_class = false; // the level of cells they are made for
     // Functions of the initial places: also the reference position and F.

@@ -20,6 +20,31 @@ namespace limber
   /** The largest number of history variables that a law may ask for. */
   inline constexpr unsigned int max_history = 12;
 
+  /** Over what the functions of a point are averaged (convected.h). */
+  enum class DomainForm
+  {
+    none,          // the point alone
+    box,           // of fixed size
+    stretched_box, // that follows the stretch
+    parallelepiped // that is carried along
+  };
+
+
+
+  /**
+   * Numbers that a domain takes at each point: half edges along the axes of a
+   * fixed box, else components of half edges that are carried along.
+   */
+  inline constexpr unsigned int
+  n_domain_components(const DomainForm form, const unsigned int dim)
+  {
+    return form == DomainForm::none ? 0 :
+           form == DomainForm::box  ? dim :
+                                      dim * dim;
+  }
+
+
+
   /**
    * What the sweeps see of the points of one body: one array per quantity, in
    * the order of cells as far as the points have not moved on since the last
@@ -40,8 +65,9 @@ namespace limber
     std::array<double *, n_deviator<dim>> deviator{};         // of J sigma, Pa
     std::array<double *, max_history>     history{}; // meaning: the law's
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
-    // Half edges of the domain (CPDI, convected.h), m: component d of edge k at
-    // d * dim + k; null for points without
+    // Half edges of the domain (convected.h), m: component d of edge k at
+    // d * dim + k, of fixed boxes those with d = k alone
+    DomainForm                      domain_form = DomainForm::none;
     std::array<double *, dim * dim> domain{};
     // F, row-major, in the frame of the initial configuration; else null
     std::array<double *, dim * dim> deformation{};
@@ -58,11 +84,19 @@ namespace limber
       return deformation[0] != nullptr;
     }
 
-    /** Whether the points have domains that are convected. */
+    /** Whether functions are averaged over domains of the points. */
     bool
     has_domains() const
     {
-      return domain[0] != nullptr;
+      return domain_form != DomainForm::none;
+    }
+
+    /** Whether these are boxes along the axes (GIMP). */
+    bool
+    has_boxes() const
+    {
+      return domain_form == DomainForm::box ||
+             domain_form == DomainForm::stretched_box;
     }
   };
 

@@ -5,6 +5,7 @@
 #include <limber/grid/nodal_fields.h>
 #include <limber/grid/nodal_projection.h>
 #include <limber/points/material_points.h>
+#include <limber/state/cell_averages.h>
 #include <limber/state/ledger.h>
 #include <limber/stress/stress_update.h>
 
@@ -46,6 +47,8 @@ namespace limber
     std::optional<CellFields<dim>> deviator_sums;
     // Means around nodes (Q1), likewise: of the divergence, of the pressure
     std::optional<NodalProjection<dim>> nodal_means;
+    // The same over cells, of points with domains
+    std::optional<CellAverages> cell_averages = {};
     // Per cell, what the volumetric variable gets in this step against
     // chequerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};
@@ -72,6 +75,8 @@ namespace limber
         implicit.emplace(grid.n_cells());
       if (nodal_means)
         nodal_means->reinit();
+      if (cell_averages)
+        cell_averages.emplace(grid.n_cells());
     }
   };
 

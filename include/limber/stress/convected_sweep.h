@@ -3,7 +3,7 @@
 #define limber_stress_convected_sweep_h
 
 #include <limber/interpolation/convected_motion.h>
-#include <limber/interpolation/nodal_means.h>
+#include <limber/interpolation/domain_means.h>
 #include <limber/stress/law_on_points.h>
 
 #include <stdexcept>
@@ -11,8 +11,9 @@
 namespace limber
 {
   /**
-   * StressUpdate of points with convected domains: strained by the differences
-   * of the velocity between their corners. The projection is 'none' or 'node'.
+   * StressUpdate of points with domains: strained by the means of the velocity
+   * gradient over them, or by its differences between their corners. The
+   * projection is 'none', 'cell' or 'node'.
    */
   template <int dim, class Law, Projection kind>
   class ConvectedSweep final : public LawOnPoints<dim, Law>
@@ -82,8 +83,10 @@ namespace limber
       VelocityFindings<dim>   taken;
       Number                  displacement{};
       for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim>   &cell = grid.cells[batch.cell];
-        const NodalMean<dim, kind> divergence(what.nodal_divergence, cell);
+        const CellGeometry<dim>    &cell = grid.cells[batch.cell];
+        const DomainMean<dim, kind> divergence(what.projected_divergence,
+                                               cell,
+                                               batch.cell);
         for_each_pack<dim>(batch, [&](const auto &lanes) {
           const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
           const Fields             fields(domains);
@@ -99,7 +102,7 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               motion.gradient[d][e] =
                 what.step * fields.slope(domains.inverse, strained + d, e);
-          if constexpr (averages_around_nodes(kind))
+          if constexpr (kind != Projection::none)
             motion.volumetric = what.step * divergence.template value<Number>(
                                               lanes.natural(points, cell));
           else

@@ -146,7 +146,7 @@ namespace limber
         , means(sums, batch.cell)
         , shift(what.shift ? what.shift_share * what.shift[batch.cell] : 0)
         , implicit(kind == Projection::cell ? what.implicit : nullptr)
-        , divergence(what.nodal_divergence, cell)
+        , divergence(what.projected_divergence, cell)
         , strain(strained,
                  cell,
                  means,

@@ -66,8 +66,8 @@ namespace limber
     double        shift_share = 1; // of it
     // Of an implicit pressure, with Projection::cell; null: there is none
     const CellPressures *implicit = nullptr;
-    // The divergence projected on nodes (nodal_means.h), where that is asked
-    const double *nodal_divergence = nullptr;
+    // The divergence, likewise projected (GiveToGrid::projected_pressure)
+    const double *projected_divergence = nullptr;
   };
 
 

@@ -54,6 +54,9 @@ namespace limber
     template <class Sum>
     void
     project_on_nodes(const Sum &sum);
+    template <class Sum>
+    void
+    average_over_cells(const Sum &sum);
     double
     relaxation(const Body<dim>       &body,
                const HistoryTreatment history,

@@ -8,8 +8,8 @@
 #include <vector>
 
 /**
- * @file The sweeps of points with convected domains
- * (interpolation/convected.h), point by point: each has a stencil of its own.
+ * @file The sweeps of points with domains (interpolation/convected.h), each of
+ * which has a stencil of its own.
  */
 namespace limber
 {
@@ -34,13 +34,23 @@ namespace limber
 
 
 
-  /** What sum_divergence() does for them. */
-  template <int dim>
+  /**
+   * What sum_divergence() does for them: with NodalMeanSums of domain_means.h
+   * for means around nodes, with CellMeanSums for means over cells.
+   */
+  template <class Sums, int dim>
   void
   sum_divergence_of_domains(const PointView<dim> &points,
                             const GridView<dim>  &grid,
                             bool                  remapped,
                             double               *records);
+
+
+
+  /** The sums of the pressure that the points store (times J), by cells. */
+  template <int dim>
+  void
+  sum_pressure_over_cells(const PointView<dim> &points, double *records);
 
 
 

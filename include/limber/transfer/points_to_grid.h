@@ -16,8 +16,9 @@ namespace limber
     bool             affine          = false; // momentum with the affine part
     double           inverse_density = 0;     // 1 / rho_0, m^3/kg
     StrainProjection projection; // of the strain that the force works with
-    // The pressure projected on nodes (nodal_means.h), where that is asked
-    const double *nodal_pressure = nullptr;
+    // The pressure projected on nodes, or of domains averaged over cells
+    // (nodal_means.h, domain_means.h), where that is asked
+    const double *projected_pressure = nullptr;
   };
 
 

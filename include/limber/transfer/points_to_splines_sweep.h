@@ -71,7 +71,7 @@ namespace limber
           }
         Number p;
         if constexpr (averages_around_nodes(kind))
-          p = V * NodalMean<dim, kind>(what.nodal_pressure, cell)
+          p = V * NodalMean<dim, kind>(what.projected_pressure, cell)
                     .template value<Number>(xi);
         else
           p = V * lanes.load(points.pressure);

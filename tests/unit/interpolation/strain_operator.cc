@@ -165,10 +165,11 @@ TYPED_TEST(Strain, StressActsThroughTheTransposeOfTheStrainOperator)
       what.inverse_density = 0.8;
       what.projection      = projection_of(TestFixture::kind);
       this->grid.clear();
-      what.nodal_pressure = this->grid.nodal_means([&](double *const records) {
-        sum_pressure<dim>(points, this->grid.view(), records);
-      });
-      const auto sums     = this->grid.cell_sums();
+      what.projected_pressure =
+        this->grid.nodal_means([&](double *const records) {
+          sum_pressure<dim>(points, this->grid.view(), records);
+        });
+      const auto sums = this->grid.cell_sums();
       points_to_grid<dim>(points, this->grid.view(), what, &sums);
       double on_grid = 0;
       for (std::size_t n = 0; n < this->grid.n_nodes; ++n)

@@ -273,13 +273,17 @@ TYPED_TEST(EveryLaw, RigidRotationTurnsTheStress)
         }
       // A fluid knows the volume to second order alone, so in 3d
       if (!this->fluid || dim == 2)
-        EXPECT_LT(error(usl, 20), 1e-13);
+        {
+          EXPECT_LT(error(usl, 20), 1e-13);
+        }
       for (const Step &step : {usl, usf, halves})
         {
           const double coarse = error(step, 20), fine = error(step, 40);
           EXPECT_LT(coarse, 1e-3);
           if (coarse > 1e-13)
-            EXPECT_GT(coarse / fine, 3.8);
+            {
+              EXPECT_GT(coarse / fine, 3.8);
+            }
         }
     }
 }

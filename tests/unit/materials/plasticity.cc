@@ -499,7 +499,9 @@ TYPED_TEST(SoilPaths, WhatPartedBearsPressureOnlyWhenClosed)
                   1e-12 * law.bulk_modulus);
       if (other.history[0] > 1)
         for (const double s : state.deviator)
-          EXPECT_NEAR(s, 0, 1e-12 * law.bulk_modulus);
+          {
+            EXPECT_NEAR(s, 0, 1e-12 * law.bulk_modulus);
+          }
     }
   EXPECT_GT(state.pressure, 0);
 }

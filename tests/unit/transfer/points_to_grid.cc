@@ -198,7 +198,7 @@ TYPED_TEST(PointsToGrid, TotalsAreKept)
         what.inverse_density = 0.8;
         what.affine          = affine;
         what.projection      = projection_of(kind);
-        what.nodal_pressure =
+        what.projected_pressure =
           this->grid.nodal_means([&](double *const records) {
             sum_pressure<dim>(points, this->grid.view(), records);
           });
