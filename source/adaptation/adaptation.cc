@@ -32,14 +32,6 @@ namespace limber
   {
     if (!grid.has_levels())
       return;
-    if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
-      for (const Refinement<dim> &refinement : grid.description.refinements)
-        if (refinement.is_moving())
-          throw InputError(
-            "The refinement " + in_quotes(refinement.name) +
-            " of 'Grid/Refine' moves in the run, which this version does on "
-            "one rank only. Run without mpirun, or set 'Criterion = region' "
-            "and leave 't' out of 'Where'.");
     memory.mesh = memory.wanted = grid.divided_cells().numbers();
     for (const auto &body : bodies)
       memory.next_id.push_back(body->points.n_global());

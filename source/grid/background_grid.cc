@@ -415,16 +415,18 @@ namespace limber
 
 
   // No cell around a master beyond the ghost layer is known here; its owner
-  // tells on which sides it lies, and where. And a ghost cell could have a
+  // tells on which sides it lies, and where; nor the hanging nodes of a master on
+  // the far side of a ghost cell. And a ghost cell could have a
   // hanging node on its far side that only its owner sees to be one; in a mesh
   // that RefinedCells::grade() has made this cannot be.
   template <int dim>
   void
   BackgroundGrid<dim>::complete_boundary()
   {
+    vertices.masters.clear();
     if (dealii::Utilities::MPI::max(vertices.hanging.size(), communicator) == 0)
       return;
-    constexpr unsigned int hangs = 1 + dim, stride = 2 + dim;
+    constexpr unsigned int hangs = 1 + dim, leads = 2 + dim, stride = 3 + dim;
     LazyArray<double>      values(vertices.n() * stride);
     for (const auto &[node, place] : vertices.places)
       if (node < vertices.n_owned)
@@ -434,12 +436,19 @@ namespace limber
             values[node * stride + 1 + d] = place[d];
         }
     for (const HangingNode &hanging : vertices.hanging)
-      if (hanging.node < vertices.n_owned)
-        values[hanging.node * stride + hangs] = 1;
+      {
+        if (hanging.node < vertices.n_owned)
+          values[hanging.node * stride + hangs] = 1;
+        for (const auto &[master, weight] : hanging.masters)
+          values[master * stride + leads] = 1;
+      }
     const ExchangePlan plan(vertices.shared);
     RecordExchange     exchange(stride);
     exchange.start(plan, values.data(), 0, stride);
     exchange.finish(values.data());
+    for (std::uint32_t node = 0; node < vertices.n(); ++node)
+      if (values[node * stride + leads] > 0)
+        vertices.masters.push_back(node);
     for (const HangingNode &hanging : vertices.hanging)
       values[hanging.node * stride + hangs] = 0;
     for (std::uint32_t node = vertices.n_owned; node < vertices.n(); ++node)

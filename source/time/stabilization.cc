@@ -52,9 +52,8 @@ namespace limber
         vertices.start_sum(0, n_chequerboard_slots<dim>);
         vertices.finish_sum();
         // The others of a change of size have cells that are not of one size.
-        for (const HangingNode &hanging : parts.grid.vertices.hanging)
-          for (const auto &[master, weight] : hanging.masters)
-            std::fill_n(vertices.record(master), NodeLayout<dim>::stride, 0.);
+        for (const std::uint32_t master : parts.grid.vertices.masters)
+          std::fill_n(vertices.record(master), NodeLayout<dim>::stride, 0.);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
           find_chequerboard_shifts<dim>(*cells,

@@ -54,6 +54,8 @@ namespace limber
 
     unsigned int             n_owned = 0;
     std::vector<HangingNode> hanging;
+    // Their masters, ascending, also of hanging nodes that only others know
+    std::vector<std::uint32_t> masters;
     // Bit s is set for nodes on side s of the box.
     std::vector<std::uint8_t> sides;
     // Places of these nodes only
