@@ -79,6 +79,8 @@ ALONE = {
     "3 points finer": ("#CC79A7", "D", "--"),
     "relax": ("#56B4E9", "s", "--"), "crossing": ("#CC79A7", "v", "--"),
     "replace": ("#E69F00", "D", "-."),
+    "fine everywhere": ("#0072B2", "o", "-"),
+    "fine around the footing": ("#D55E00", "s", "--"),
     "exact": ("#000000", "", "-"), "literature": ("#000000", "^", "")}
 
 # Marker and line of a kernel that comes before or behind a treatment:

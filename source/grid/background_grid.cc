@@ -415,10 +415,10 @@ namespace limber
 
 
   // No cell around a master beyond the ghost layer is known here; its owner
-  // tells on which sides it lies, and where; nor the hanging nodes of a master on
-  // the far side of a ghost cell. And a ghost cell could have a
-  // hanging node on its far side that only its owner sees to be one; in a mesh
-  // that RefinedCells::grade() has made this cannot be.
+  // tells on which sides it lies, and where; nor the hanging nodes of a master
+  // on the far side of a ghost cell. And a ghost cell could have a hanging node
+  // on its far side that only its owner sees to be one; in a mesh that
+  // RefinedCells::grade() has made this cannot be.
   template <int dim>
   void
   BackgroundGrid<dim>::complete_boundary()
