@@ -9,12 +9,21 @@ namespace limber
   {
     template <int dim>
     dealii::Tensor<1, dim>
-    read(const double *const values)
+    vector_in(const double *const values)
     {
       dealii::Tensor<1, dim> result;
       for (int d = 0; d < dim; ++d)
         result[d] = values[d];
       return result;
+    }
+
+
+
+    /** The sign of a velocity through the side. */
+    double
+    outward(const unsigned int side)
+    {
+      return side % 2 == 1 ? 1. : -1.;
     }
   } // namespace
 
@@ -24,6 +33,9 @@ namespace limber
   BoundaryConditions<dim>::BoundaryConditions(const Sides<dim> &sides)
     : sides(sides)
     , constraints(sides)
+    , one_sided(std::any_of(sides.begin(), sides.end(), [](const auto &side) {
+      return side.one_sided;
+    }))
   {}
 
 
@@ -49,43 +61,52 @@ namespace limber
 
 
 
+  // A one-sided constraint brings what moves outward to rest, and stops as much
+  // of the motion along the side as friction bears.
   template <int dim>
   void
-  BoundaryConditions<dim>::act(const Constraint     &constraint,
-                               Velocity             &velocity,
-                               const Velocity *const new_velocity) const
+  BoundaryConditions<dim>::act(const Constraint &constraint,
+                               Velocity         &velocity) const
   {
-    if (constraint.one_sided)
-      act_one_sided(constraint, velocity, new_velocity);
-    else
-      velocity[constraint.component] = constraint.value;
-  }
-
-
-
-  template <int dim>
-  void
-  BoundaryConditions<dim>::act_one_sided(
-    const Constraint     &constraint,
-    Velocity             &velocity,
-    const Velocity *const new_velocity) const
-  {
-    const unsigned int normal   = constraint.component;
-    const double       outward  = constraint.side % 2 == 1 ? 1. : -1.;
-    const double       pressing = outward * velocity[normal];
+    const unsigned int normal = constraint.component;
+    if (!constraint.one_sided)
+      {
+        velocity[normal] = constraint.value;
+        return;
+      }
+    const double pressing = outward(constraint.side) * velocity[normal];
     if (pressing <= 0)
       return;
     velocity[normal]        = 0;
     const double tangential = velocity.norm();
-    double       stopped    = sides[constraint.side].friction * pressing;
-    if (new_velocity != nullptr)
-      {
-        auto sliding    = *new_velocity;
-        sliding[normal] = 0;
-        stopped         = sliding.norm_square() == 0 ? tangential : 0;
-      }
+    const double stopped    = sides[constraint.side].friction * pressing;
     if (tangential > 0)
       velocity *= 1 - std::min(1., stopped / tangential);
+  }
+
+
+
+  // A node that the side has stopped has no new normal velocity; one that
+  // sticks has none at all.
+  template <int dim>
+  void
+  BoundaryConditions<dim>::act_trial(const Constraint &constraint,
+                                     const Trial       kind,
+                                     const Velocity   &new_velocity,
+                                     Velocity         &velocity) const
+  {
+    const unsigned int normal = constraint.component;
+    if (!constraint.one_sided)
+      velocity[normal] = constraint.value;
+    else if (new_velocity[normal] == 0)
+      {
+        velocity[normal] = 0;
+        if (new_velocity.norm_square() == 0)
+          velocity = 0;
+      }
+    else if (kind == Trial::motion &&
+             outward(constraint.side) * velocity[normal] > 0)
+      velocity[normal] = 0;
   }
 
 
@@ -94,24 +115,33 @@ namespace limber
   // stress bears against the side, it does no work; what it takes from what the
   // points bring is lost. With points that it keeps, the stress works with the
   // mean velocity of the step, and so does the side; where it accelerates, its
-  // points do so from a velocity of their own.
+  // points do so from a velocity of their own. Friction works with the mean
+  // velocity where the node goes on sliding.
   template <int dim>
   typename BoundaryConditions<dim>::Action
-  BoundaryConditions<dim>::action(const Velocity &change,
-                                  const Velocity &former_change,
-                                  const Velocity &velocity,
-                                  const Velocity &increment,
-                                  const double    mass,
-                                  const double    flip_share)
+  BoundaryConditions<dim>::action(const unsigned int side,
+                                  const Velocity    &change,
+                                  const Velocity    &former_change,
+                                  const Velocity    &velocity,
+                                  const Velocity    &increment,
+                                  const double       mass,
+                                  const double       flip_share) const
   {
     Action result;
     result.impulse = mass * (change - flip_share * former_change);
     for (int d = 0; d < dim; ++d)
       {
+        const bool is_friction =
+          sides[side].one_sided && d != static_cast<int>(side / 2);
         if (former_change[d] != 0)
           result.work += mass * ((change[d] - former_change[d]) *
                                    (velocity[d] - 0.5 * increment[d]) -
                                  former_change[d] * increment[d]);
+        else if (is_friction && velocity[d] != 0)
+          result.friction -=
+            mass * change[d] * (velocity[d] - 0.5 * increment[d]);
+        else if (is_friction && change[d] != 0)
+          result.friction += 0.5 * mass * increment[d] * increment[d];
         else if (change[d] != 0)
           result.work += mass * (change[d] * velocity[d] -
                                  0.5 * increment[d] * increment[d]);
@@ -119,6 +149,25 @@ namespace limber
           mass * (1 - flip_share) * former_change[d] * velocity[d];
       }
     return result;
+  }
+
+
+
+  // Of the components along the side that it has not brought to rest.
+  template <int dim>
+  void
+  BoundaryConditions<dim>::note_rubbing(const unsigned int  side,
+                                        const std::uint32_t node,
+                                        const double *const record,
+                                        Velocity            impulse,
+                                        const Velocity     &velocity)
+  {
+    impulse[side / 2] = 0;
+    for (int d = 0; d < dim; ++d)
+      if (velocity[d] == 0)
+        impulse[d] = 0;
+    if (impulse != Velocity())
+      rubbing.push_back({node, record, impulse});
   }
 
 
@@ -135,23 +184,31 @@ namespace limber
       for (const Constraint &constraint : constraints.at(nodes, step.begin))
         former_values.push_back(constraint.value);
     const Constraint *const list = constraints.at(nodes, step.end).data();
+    rubbing.erase(std::remove_if(rubbing.begin(),
+                                 rubbing.end(),
+                                 [&](const Rubbing &entry) {
+                                   return entry.record ==
+                                          nodes.record(entry.node);
+                                 }),
+                  rubbing.end());
 
     for_each_node(
       nodes,
       step.end,
       [&](const std::uint32_t node, const auto first, const auto last) {
-        double *const  record        = nodes.record(node);
-        const double   mass          = record[Layout::mass];
-        const Velocity free_velocity = read<dim>(record + Layout::velocity);
+        double *const  record = nodes.record(node);
+        const double   mass   = record[Layout::mass];
+        const Velocity free_velocity =
+          vector_in<dim>(record + Layout::velocity);
         const Velocity brought =
-          free_velocity - read<dim>(record + Layout::increment);
+          free_velocity - vector_in<dim>(record + Layout::increment);
         Velocity                      velocity = free_velocity;
         Velocity                      former   = brought;
         std::array<Velocity, 2 * dim> change, former_change;
         for (auto c = first; c != last; ++c)
           {
             const Velocity before = velocity;
-            act(*c, velocity, nullptr);
+            act(*c, velocity);
             change[c->side] += velocity - before;
             if (step.keeps_points && !c->one_sided)
               {
@@ -164,15 +221,21 @@ namespace limber
 
         const Velocity increment = velocity - former;
         for (unsigned int side = 0; side < 2 * dim; ++side)
-          if (nodes.owns(node) &&
-              (change[side] != Velocity() || former_change[side] != Velocity()))
+          {
+            if (!nodes.owns(node) || (change[side] == Velocity() &&
+                                      former_change[side] == Velocity()))
+              continue;
             account(side,
-                    action(change[side],
+                    action(side,
+                           change[side],
                            former_change[side],
                            velocity,
                            increment,
                            mass,
                            step.flip_share));
+            if (sides[side].friction > 0)
+              note_rubbing(side, node, record, mass * change[side], velocity);
+          }
         for (int d = 0; d < dim; ++d)
           {
             record[Layout::increment + d] = increment[d];
@@ -187,22 +250,66 @@ namespace limber
   void
   BoundaryConditions<dim>::apply_trial(NodalFields<dim>  &nodes,
                                        const unsigned int slot,
-                                       const double       time)
+                                       const double       time,
+                                       const Trial        kind,
+                                       const double       step)
   {
-    for_each_node(nodes,
-                  time,
-                  [&](const std::uint32_t node,
-                      const auto          first,
-                      const auto          last) {
-                    double *const  record = nodes.record(node);
-                    const Velocity new_velocity =
-                      read<dim>(record + NodeLayout<dim>::velocity);
-                    Velocity velocity = read<dim>(record + slot);
-                    for (auto c = first; c != last; ++c)
-                      act(*c, velocity, &new_velocity);
-                    for (int d = 0; d < dim; ++d)
-                      record[slot + d] = velocity[d];
-                  });
+    using Layout = NodeLayout<dim>;
+    for_each_node(
+      nodes,
+      time,
+      [&](const std::uint32_t node, const auto first, const auto last) {
+        double *const record       = nodes.record(node);
+        Velocity      new_velocity = vector_in<dim>(record + Layout::velocity);
+        if (kind == Trial::strain_before)
+          {
+            new_velocity = (vector_in<dim>(record + Layout::momentum) +
+                            step * vector_in<dim>(record + Layout::force)) /
+                           record[Layout::mass];
+            for (auto c = first; c != last; ++c)
+              act(*c, new_velocity);
+          }
+        Velocity velocity = vector_in<dim>(record + slot);
+        for (auto c = first; c != last; ++c)
+          act_trial(*c, kind, new_velocity, velocity);
+        for (int d = 0; d < dim; ++d)
+          record[slot + d] = velocity[d];
+      });
+  }
+
+
+
+  // FLIP points gain (J + dt f) (v- + v*) / 2 at a node that has been given v-
+  // and gives back v*; strained by the velocity w of the side they lose dt f w.
+  // With J + dt f = m dv and v- = w - dv the side has done J w - m dv^2 / 2,
+  // which is accounted for, and m dv (v* - w) / 2. Where a node slides, v*
+  // takes the place of the new velocity, which may be that of a node of hardly
+  // any mass that no point takes over.
+  template <int dim>
+  typename BoundaryConditions<dim>::Action
+  BoundaryConditions<dim>::action_on_remapped(const NodalFields<dim> &nodes,
+                                              const unsigned int slot) const
+  {
+    using Layout = NodeLayout<dim>;
+    Action result;
+    for (const std::uint32_t node : nodes.active_boundary_nodes())
+      {
+        const double *const record = nodes.record(node);
+        if (!nodes.owns(node) || !(record[Layout::mass] > 0))
+          continue;
+        const auto held = this->held(nodes, node);
+        for (int d = 0; d < dim; ++d)
+          if (held[d] != 0)
+            result.work += 0.5 * record[Layout::mass] *
+                           record[Layout::increment + d] *
+                           (record[slot + d] - record[Layout::velocity + d]);
+      }
+    for (const Rubbing &entry : rubbing)
+      if (entry.record == nodes.record(entry.node))
+        result.friction -= 0.5 * entry.impulse *
+                           (vector_in<dim>(entry.record + slot) -
+                            vector_in<dim>(entry.record + Layout::velocity));
+    return result;
   }
 
 
@@ -219,10 +326,9 @@ namespace limber
       [&](const std::uint32_t node, const auto first, const auto last) {
         for (auto c = first; c != last; ++c)
           {
-            const double outward = c->side % 2 == 1 ? 1. : -1.;
             const double velocity =
               nodes.record(node)[NodeLayout<dim>::velocity + c->component];
-            if (!c->one_sided || outward * velocity >= 0)
+            if (!c->one_sided || outward(c->side) * velocity >= 0)
               hold(node, c->component, c->value);
           }
       });
@@ -236,7 +342,7 @@ namespace limber
                                 const std::uint32_t     node) const
   {
     const Velocity velocity =
-      read<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
+      vector_in<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
     std::array<unsigned int, dim> result{};
     for (const HeldComponent &entry :
          constraints.of_sides(nodes.table.sides[node]))

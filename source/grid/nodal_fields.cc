@@ -54,7 +54,8 @@ namespace limber
   void
   NodalFields<dim>::reinit()
   {
-    values.reinit(std::size_t(table.n()) * Layout::stride);
+    for (unsigned int field = 0; field < n_fields(); ++field)
+      of_field(field).reinit(std::size_t(table.n()) * Layout::stride);
     has_own_points.reinit(grid.n_cells());
     is_occupied.reinit(grid.n_cells());
     is_active.reinit(table.n());
@@ -99,6 +100,42 @@ namespace limber
     for (std::uint32_t cell = 0; cell < grid.n_cells(); ++cell)
       if (is_at_border(cell))
         border_cells.push_back(cell);
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::set_n_fields(const unsigned int n)
+  {
+    select(0);
+    parked.resize(n);
+    for (unsigned int field = 1; field < n; ++field)
+      parked[field].reinit(std::size_t(table.n()) * Layout::stride);
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::select(const unsigned int field)
+  {
+    if (field == selected)
+      return;
+    parked[selected] = std::move(values);
+    values           = std::move(parked[field]);
+    selected         = field;
+  }
+
+
+
+  template <int dim>
+  GridView<dim>
+  NodalFields<dim>::view(const unsigned int field)
+  {
+    GridView<dim> result = view();
+    result.nodes         = of_field(field).data();
+    return result;
   }
 
 
@@ -334,11 +371,13 @@ namespace limber
   NodalFields<dim>::clear()
   {
     left = in_ghosts = false;
-    for (const std::uint32_t node : active)
-      std::fill_n(record(node), Layout::stride, 0.);
-    // Their masters have given to them whether they are active or not.
-    for (const HangingNode &hanging : table.hanging)
-      std::fill_n(record(hanging.node), Layout::stride, 0.);
+    for_each_field([&]() {
+      for (const std::uint32_t node : active)
+        std::fill_n(record(node), Layout::stride, 0.);
+      // Their masters have given to them whether they are active or not.
+      for (const HangingNode &hanging : table.hanging)
+        std::fill_n(record(hanging.node), Layout::stride, 0.);
+    });
   }
 
 

@@ -110,6 +110,12 @@ namespace limber
                      brief(figures.history) + " J with histories" +
                      (figures.plastic > 0 ?
                         ", " + brief(figures.plastic) + " J by plastic flow" :
+                        "") +
+                     (figures.friction > 0 ?
+                        ", " + brief(figures.friction) + " J by friction" :
+                        "") +
+                     (figures.contact > 0 ?
+                        ", " + brief(figures.contact) + " J in contact" :
                         "");
       line.entry = "Method/Courant number";
       return line;

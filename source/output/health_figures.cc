@@ -199,6 +199,8 @@ namespace limber
     figures.viscous      = totals.dissipated;
     figures.history      = totals.removed_with_history;
     figures.plastic      = totals.plastic_work;
+    figures.friction     = totals.friction_heat;
+    figures.contact      = totals.contact_loss;
     figures.sides        = totals.boundary_work;
     figures.loads        = totals.load_work;
 

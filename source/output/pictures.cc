@@ -357,12 +357,31 @@ namespace limber
 
 
 
+    /** Of a node, kg and m/s; where bodies touch, of all their fields. */
+    template <int dim>
+    std::pair<double, std::array<double, dim>>
+    motion_of(const State<dim> &state, const std::uint32_t node)
+    {
+      using Layout                   = NodeLayout<dim>;
+      const double            mass   = state.nodes.mass(node);
+      std::array<double, dim> result = {};
+      for (unsigned int f = 0; mass > 0 && f < state.nodes.n_fields(); ++f)
+        {
+          const double *const record = state.nodes.record(f, node);
+          for (int d = 0; d < dim; ++d)
+            result[d] +=
+              record[Layout::mass] / mass * record[Layout::velocity + d];
+        }
+      return {mass, result};
+    }
+
+
+
     /** Mass and velocity, the first 1 + dim components, at corners of cells. */
     template <int dim>
     void
     add_nodal_values(const State<dim> &state, Picture<dim, dim> &picture)
     {
-      using Layout             = NodeLayout<dim>;
       const GridView<dim> grid = state.grid.view();
       for (unsigned int c = 0; c < picture.patches.size(); ++c)
         for (unsigned int i = 0; i < 1 << dim; ++i)
@@ -375,10 +394,10 @@ namespace limber
             auto              &data = picture.patches[c].data;
             for (int k = 0; k < at.n; ++k)
               {
-                const double *const record = state.nodes.record(at.node[k]);
-                data(0, i) += at.value[k] * record[Layout::mass];
+                const auto [mass, velocity] = motion_of(state, at.node[k]);
+                data(0, i) += at.value[k] * mass;
                 for (int d = 0; d < dim; ++d)
-                  data(1 + d, i) += at.value[k] * record[Layout::velocity + d];
+                  data(1 + d, i) += at.value[k] * velocity[d];
               }
           }
     }

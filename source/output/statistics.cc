@@ -142,6 +142,34 @@ namespace limber
                          problem.bodies.end(),
                          [](const auto &body) { return body.is_plastic; });
     }
+
+
+
+    /** Whether anything slides with friction. */
+    template <int dim>
+    bool
+    may_rub(const Problem<dim> &problem)
+    {
+      const auto rubs = [](const auto &one) { return one.friction > 0; };
+      return std::any_of(problem.sides.begin(), problem.sides.end(), rubs) ||
+             std::any_of(problem.contacts.begin(),
+                         problem.contacts.end(),
+                         rubs);
+    }
+
+
+
+    /** Whether bodies may press on each other and part. */
+    template <int dim>
+    bool
+    may_part(const Problem<dim> &problem)
+    {
+      return std::any_of(problem.contacts.begin(),
+                         problem.contacts.end(),
+                         [](const ContactPair &pair) {
+                           return pair.law == ContactLaw::separate;
+                         });
+    }
   } // namespace
 
 
@@ -176,6 +204,10 @@ namespace limber
     columns.push_back({"lost points", ""});
     if (may_flow(problem))
       columns.push_back({"plastic work", "J"});
+    if (may_rub(problem))
+      columns.push_back({"friction heat", "J"});
+    if (may_part(problem))
+      columns.push_back({"contact loss", "J"});
 
     for (const Observable<dim> &observable : problem.observables)
       columns.push_back({observable.name, observable.kind->unit});
@@ -216,6 +248,10 @@ namespace limber
                 static_cast<double>(totals.lost_points)});
     if (may_flow(state.problem))
       row.push_back(totals.plastic_work);
+    if (may_rub(state.problem))
+      row.push_back(totals.friction_heat);
+    if (may_part(state.problem))
+      row.push_back(totals.contact_loss);
     row.insert(row.end(), observed.begin(), observed.end());
     return row;
   }

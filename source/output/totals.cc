@@ -108,8 +108,7 @@ namespace limber
         }
       for (const std::uint32_t node : state.nodes.active_nodes())
         sums.active_nodes() +=
-          state.nodes.owns(node) &&
-          state.nodes.record(node)[NodeLayout<dim>::mass] > 0;
+          state.nodes.owns(node) && state.nodes.mass(node) > 0;
       return sums;
     }
 
@@ -230,6 +229,8 @@ namespace limber
     totals.dissipated           = ledger.viscous;
     totals.removed_with_history = ledger.history;
     totals.plastic_work         = ledger.plastic;
+    totals.friction_heat        = ledger.friction;
+    totals.contact_loss         = ledger.contact;
     totals.boundary_work        = ledger.boundary_work;
     totals.load_work            = ledger.load_work;
     totals.side_impulse         = ledger.side_impulse;
@@ -253,7 +254,8 @@ namespace limber
     const double gain = (all.kinetic_energy - start.kinetic_energy) +
                         (all.strain_energy - start.strain_energy) +
                         potential_change + ledger.transfer + ledger.viscous +
-                        ledger.history + ledger.plastic + ledger.lost_energy -
+                        ledger.history + ledger.plastic + ledger.friction +
+                        ledger.contact + ledger.lost_energy -
                         ledger.boundary_work - ledger.load_work;
     start.energy_scale =
       std::max(start.energy_scale,

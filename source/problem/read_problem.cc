@@ -121,6 +121,7 @@ namespace limber
     problem.method = read_method(root.subsection("Method"));
     choose_time_integration(root, problem);
     choose_stress_update(problem);
+    read_contact(root, problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
     problem.reference  = read_reference(root.subsection("Reference"));
@@ -169,6 +170,12 @@ namespace limber
           set Body     = block
           set Face     = top
           set Pressure = 100
+        end
+      end
+      subsection Contact
+        set Pairs = meeting
+        subsection Pair meeting
+          set Bodies = block
         end
       end
       subsection Observable corner

@@ -129,6 +129,7 @@ namespace limber
       result.bodies      = reader.names({}, "Bodies", "Body ");
       result.refinements = reader.names({"Grid"}, "Refine", "Refine ");
       result.face_loads  = reader.names({"Loads"}, "Face loads", "Face load ");
+      result.contacts    = reader.names({"Contact"}, "Pairs", "Pair ");
       result.observables = reader.names({}, "Observables", "Observable ");
       result.checks      = reader.names({}, "Checks", "Check ");
       for (const std::string &body : result.bodies)
@@ -192,6 +193,7 @@ namespace limber
       declare_grid(parameters, dim, names.refinements);
       declare_boundaries(parameters, dim);
       declare_loads(parameters, dim, names.face_loads);
+      declare_contact(parameters, names.contacts);
       declare_method(parameters);
       declare_output(parameters);
       declare_checkpoint(parameters);

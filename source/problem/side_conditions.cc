@@ -12,7 +12,7 @@ namespace limber
     enum class SideDetail
     {
       none,
-      friction, // its coefficient; the side is one-sided
+      friction, // its coefficient
       velocity  // its formula
     };
 
@@ -22,7 +22,8 @@ namespace limber
     struct SideKind
     {
       HeldComponents held;
-      SideDetail     detail = SideDetail::none;
+      SideDetail     detail    = SideDetail::none;
+      bool           one_sided = false;
     };
 
 
@@ -37,9 +38,12 @@ namespace limber
         {"free", SideKind{Held::none}, "nothing is prescribed"},
         {"slip", SideKind{Held::normal}, "no velocity through the side"},
         {"no slip", SideKind{Held::all}, "no velocity"},
+        {"separating",
+         SideKind{Held::normal, Detail::none, true},
+         "slip, and the material may leave"},
         {"friction",
-         SideKind{Held::normal, Detail::friction},
-         "slip with Coulomb friction"},
+         SideKind{Held::normal, Detail::friction, true},
+         "separating, with Coulomb friction"},
         {"velocity",
          SideKind{Held::all, Detail::velocity},
          "prescribed by a formula"}};
@@ -125,7 +129,7 @@ namespace limber
         Side<dim>     &side    = problem.sides[s];
         side.word              = section.text(names[s]);
         side.held              = kind.held;
-        side.one_sided         = kind.detail == SideDetail::friction;
+        side.one_sided         = kind.one_sided;
         if (kind.detail == SideDetail::friction)
           {
             require(section, names[s], details, "Friction coefficient", "0.3");

@@ -72,9 +72,10 @@ namespace limber
   serialize(Archive &archive, Ledger<dim> &ledger, const unsigned int)
   {
     archive &ledger.transfer &ledger.boundary_work &ledger.load_work &ledger
-      .viscous &ledger.history &ledger.plastic &ledger.load_impulse &ledger
-      .gravity_impulse &ledger.side_impulse &ledger.lost_mass &ledger
-      .lost_energy &ledger.lost_momentum &ledger.lost_points;
+      .viscous &ledger.history &ledger.plastic &ledger.friction &ledger
+      .contact &ledger.load_impulse &ledger.gravity_impulse &ledger
+      .side_impulse &ledger.lost_mass &ledger.lost_energy &ledger
+      .lost_momentum                                      &ledger.lost_points;
   }
 
 

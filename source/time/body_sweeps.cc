@@ -48,11 +48,10 @@ namespace limber
   std::size_t
   BodySweeps<dim>::points_to_grid(GiveToGrid what)
   {
-    const GridView<dim> nodes = parts.nodes.view();
     if (what.force)
       {
         project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
-          sum_pressure<dim>(body.points.view(), nodes, records);
+          sum_pressure<dim>(body.points.view(), nodes_of(body), records);
         });
         average_over_cells([](MaterialBody<dim> &body, double *const records) {
           sum_pressure_over_cells<dim>(body.points.view(), records);
@@ -71,7 +70,7 @@ namespace limber
         what.projected_pressure = projected(*body);
         const auto sums         = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),
-                                                 nodes,
+                                                 nodes_of(*body),
                                                  what,
                                                  sums ? &*sums : nullptr);
       }
@@ -151,7 +150,7 @@ namespace limber
   {
     const auto sums  = sums_of(body);
     const auto found = limber::grid_to_points<dim>(body.points.view(),
-                                                   parts.nodes.view(),
+                                                   nodes_of(body),
                                                    what,
                                                    sums ? &*sums : nullptr);
     extremes.speed_squared =
@@ -221,15 +220,17 @@ namespace limber
                                  const Pace   &pace,
                                  StepExtremes &extremes)
   {
-    const GridView<dim> nodes    = parts.nodes.view();
-    const bool          remapped = what.remapped;
+    const bool remapped = what.remapped;
     relax_deviators(pace);
     project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
-      sum_divergence<dim>(body.points.view(), nodes, what.remapped, records);
+      sum_divergence<dim>(body.points.view(),
+                          nodes_of(body),
+                          what.remapped,
+                          records);
     });
     average_over_cells([&](MaterialBody<dim> &body, double *const records) {
       sum_divergence_of_domains<CellMeanSums<dim>>(body.points.view(),
-                                                   nodes,
+                                                   nodes_of(body),
                                                    what.remapped,
                                                    records);
     });
@@ -250,7 +251,7 @@ namespace limber
         what.remapped    = remapped && !body->implicit;
         const auto sums  = sums_of(*body);
         const auto found = body->stress->update(body->points.view(),
-                                                nodes,
+                                                nodes_of(*body),
                                                 sums ? &*sums : nullptr,
                                                 what);
         if (!body->implicit)

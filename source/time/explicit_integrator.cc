@@ -29,6 +29,11 @@ namespace limber
     , stabilization(parts)
     , relocation(parts, loads)
   {
+    if (const unsigned int n = n_nodal_fields(parts.problem); n > 1)
+      {
+        parts.nodes.set_n_fields(n);
+        contact.emplace(parts);
+      }
     if (filters_velocity(parts.problem.method.transfer))
       full_mass.emplace(parts.grid, boundaries);
     find_speeds();
@@ -168,6 +173,7 @@ namespace limber
                                      "solve pressure",
                                      "sum shared nodes",
                                      "advance nodes",
+                                     "contact",
                                      "apply boundaries",
                                      "check nodes",
                                      "grid to points",
@@ -176,8 +182,10 @@ namespace limber
     static_assert(std::size(names) == std::size_t(Verb::n_verbs));
     std::vector<std::pair<std::string, double>> result;
     for (std::size_t v = 0; v < seconds.size(); ++v)
-      if (Verb(v) != Verb::solve_pressure ||
-          parts.problem.method.integration == TimeIntegration::semi_implicit)
+      if ((Verb(v) != Verb::solve_pressure ||
+           parts.problem.method.integration ==
+             TimeIntegration::semi_implicit) &&
+          (Verb(v) != Verb::touch || contact))
         result.emplace_back(names[v], seconds[v]);
     return result;
   }

@@ -63,17 +63,19 @@ namespace limber
       -std::expm1(-parts.problem.method.damping_rate * step);
     if (lost_share == 0)
       return;
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        double *const record = parts.nodes.record(node);
-        for (int d = 0; d < dim; ++d)
-          {
-            const double lost = lost_share * record[Layout::momentum + d];
-            record[Layout::force + d] -= lost / step;
-            if (parts.nodes.owns(node))
-              parts.ledger.load_impulse[d] -= lost;
-          }
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          double *const record = parts.nodes.record(node);
+          for (int d = 0; d < dim; ++d)
+            {
+              const double lost = lost_share * record[Layout::momentum + d];
+              record[Layout::force + d] -= lost / step;
+              if (parts.nodes.owns(node))
+                parts.ledger.load_impulse[d] -= lost;
+            }
+        }
+    });
     lap(Verb::advance_nodes);
   }
 
@@ -106,31 +108,33 @@ namespace limber
     // A node that only touches the material may be fast for a moment.
     const double checked_mass = 0.1 * extremes.largest_mass;
     extremes.largest_mass     = 0;
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        double *const record = parts.nodes.record(node);
-        const double  mass   = record[Layout::mass];
-        if (!(mass > 0))
-          continue;
-        const double inverse = 1 / mass;
-        double       squared = 0;
-        for (int d = 0; d < dim; ++d)
-          {
-            const double before = record[Layout::momentum + d] * inverse;
-            const double change =
-              step * record[Layout::force + d] * inverse + gravity_step[d];
-            const double after            = before + change;
-            record[Layout::increment + d] = change;
-            record[Layout::velocity + d]  = after;
-            squared += after * after;
-          }
-        if (parts.nodes.owns(node))
-          total_mass += mass;
-        extremes.largest_mass = std::max(extremes.largest_mass, mass);
-        all += squared;
-        if (mass > checked_mass)
-          checked_speed = std::max(checked_speed, squared);
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          double *const record = parts.nodes.record(node);
+          const double  mass   = record[Layout::mass];
+          if (!(mass > 0))
+            continue;
+          const double inverse = 1 / mass;
+          double       squared = 0;
+          for (int d = 0; d < dim; ++d)
+            {
+              const double before = record[Layout::momentum + d] * inverse;
+              const double change =
+                step * record[Layout::force + d] * inverse + gravity_step[d];
+              const double after            = before + change;
+              record[Layout::increment + d] = change;
+              record[Layout::velocity + d]  = after;
+              squared += after * after;
+            }
+          if (parts.nodes.owns(node))
+            total_mass += mass;
+          extremes.largest_mass = std::max(extremes.largest_mass, mass);
+          all += squared;
+          if (mass > checked_mass)
+            checked_speed = std::max(checked_speed, squared);
+        }
+    });
     for (int d = 0; d < dim; ++d)
       parts.ledger.gravity_impulse[d] += total_mass * gravity_step[d];
 
@@ -214,28 +218,41 @@ namespace limber
     const bool loaded = loads.any();
     if (!loaded && lost_share == 0)
       return;
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        const double *const record = parts.nodes.record(node);
-        if (!parts.nodes.owns(node) || !(record[Layout::mass] > 0))
-          continue;
-        dealii::Tensor<1, dim> force;
-        if (loaded)
-          force = loads.on_node(node);
-        parts.ledger.load_impulse += step * force;
-        for (int d = 0; d < dim; ++d)
-          {
-            const double before =
-              leapfrogs() ?
-                record[Layout::former_velocity + d] :
-                record[Layout::velocity + d] - record[Layout::increment + d];
-            const double mean = 0.5 * (before + record[velocity_after + d]);
-            parts.ledger.load_work += step * force[d] * mean;
-            parts.ledger.viscous +=
-              lost_share * record[Layout::mass] * before * mean;
-          }
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          const double *const record = parts.nodes.record(node);
+          if (!parts.nodes.owns(node) || !(record[Layout::mass] > 0))
+            continue;
+          dealii::Tensor<1, dim> force;
+          if (loaded)
+            force = loads.on_node(node);
+          parts.ledger.load_impulse += step * force;
+          for (int d = 0; d < dim; ++d)
+            {
+              const double before =
+                leapfrogs() ?
+                  record[Layout::former_velocity + d] :
+                  record[Layout::velocity + d] - record[Layout::increment + d];
+              const double mean = 0.5 * (before + record[velocity_after + d]);
+              parts.ledger.load_work += step * force[d] * mean;
+              parts.ledger.viscous +=
+                lost_share * record[Layout::mass] * before * mean;
+            }
+        }
+    });
     lap(Verb::add_loads);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::exchange_between_bodies()
+  {
+    if (contact)
+      contact->exchange();
+    lap(Verb::touch);
   }
 
 
@@ -246,38 +263,89 @@ namespace limber
   void
   ExplicitIntegrator<dim>::apply_boundaries()
   {
-    boundaries.apply(parts.nodes,
-                     {time, time + step, flip_share(), in_initial_frame},
-                     [this](const unsigned int side, const auto &action) {
-                       parts.ledger.side_impulse[side] += action.impulse;
-                       parts.ledger.boundary_work +=
-                         action.work + action.transfer_work;
-                       // What points lose to the transfer contains it.
-                       parts.ledger.transfer += action.transfer_work;
-                     });
+    parts.nodes.for_each_field([&]() {
+      boundaries.apply(parts.nodes,
+                       {time, time + step, flip_share(), in_initial_frame},
+                       [this](const unsigned int side, const auto &action) {
+                         parts.ledger.side_impulse[side] += action.impulse;
+                         parts.ledger.boundary_work +=
+                           action.work + action.transfer_work;
+                         parts.ledger.friction += action.friction;
+                         // What points lose to the transfer contains it.
+                         parts.ledger.transfer += action.transfer_work;
+                       });
+    });
     lap(Verb::apply_boundaries);
   }
 
 
 
-  // The velocity that strains points, with the boundary conditions on it.
+  // A velocity that strains points: mass and momentum are known.
   template <int dim>
   void
-  ExplicitIntegrator<dim>::form_velocity(const unsigned int momentum,
-                                         const double       when)
+  ExplicitIntegrator<dim>::form_velocity(const unsigned int momentum)
   {
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        double *const record = parts.nodes.record(node);
-        const double  mass   = record[Layout::mass];
-        if (!(mass > 0))
-          continue;
-        const double inverse = 1 / mass;
-        for (int d = 0; d < dim; ++d)
-          record[Layout::strain_velocity + d] = record[momentum + d] * inverse;
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          double *const record = parts.nodes.record(node);
+          const double  mass   = record[Layout::mass];
+          if (!(mass > 0))
+            continue;
+          const double inverse = 1 / mass;
+          for (int d = 0; d < dim; ++d)
+            record[Layout::strain_velocity + d] =
+              record[momentum + d] * inverse;
+        }
+    });
     lap(Verb::advance_nodes);
-    boundaries.apply_trial(parts.nodes, Layout::strain_velocity, when);
+  }
+
+
+
+  // That which points bring, with the sides on it.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::form_velocity_before()
+  {
+    form_velocity(Layout::momentum);
+    if (contact)
+      contact->hold_before(Layout::strain_velocity, step);
+    lap(Verb::touch);
+    parts.nodes.for_each_field([&]() {
+      boundaries.apply_trial(parts.nodes,
+                             Layout::strain_velocity,
+                             time,
+                             BoundaryConditions<dim>::Trial::strain_before,
+                             step);
+    });
+    lap(Verb::apply_boundaries);
+  }
+
+
+
+  // That which they give back.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::form_velocity_after()
+  {
+    form_velocity(Layout::remapped);
+    if (contact)
+      contact->hold_after(Layout::strain_velocity, flip_share());
+    lap(Verb::touch);
+    parts.nodes.for_each_field([&]() {
+      if (!leapfrogs()) // which keeps other things where increments have been
+        {
+          const auto action =
+            boundaries.action_on_remapped(parts.nodes, Layout::strain_velocity);
+          parts.ledger.boundary_work += flip_share() * action.work;
+          parts.ledger.friction += flip_share() * action.friction;
+        }
+      boundaries.apply_trial(parts.nodes,
+                             Layout::strain_velocity,
+                             time + step,
+                             BoundaryConditions<dim>::Trial::strain_after);
+    });
     lap(Verb::apply_boundaries);
   }
 
@@ -287,8 +355,26 @@ namespace limber
   void
   ExplicitIntegrator<dim>::clear_remapped()
   {
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      std::fill_n(parts.nodes.record(node) + Layout::remapped, dim, 0.);
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        std::fill_n(parts.nodes.record(node) + Layout::remapped, dim, 0.);
+    });
+    lap(Verb::advance_nodes);
+  }
+
+
+
+  // The stress has changed since; see p2g_before_strain().
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::clear_trial_force()
+  {
+    if (!needs_trial_force())
+      return;
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        std::fill_n(parts.nodes.record(node) + Layout::force, dim, 0.);
+    });
     lap(Verb::advance_nodes);
   }
 
@@ -369,29 +455,39 @@ namespace limber
   void
   ExplicitIntegrator<dim>::centre_velocity()
   {
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        double *const record = parts.nodes.record(node);
-        for (int d = 0; d < dim; ++d)
-          record[Layout::middle_velocity + d] =
-            moves_as_strained ? 0.5 * (record[Layout::velocity + d] -
-                                       record[Layout::increment + d] +
-                                       record[Layout::strain_velocity + d]) :
-                                record[Layout::velocity + d] -
-                                  0.5 * record[Layout::increment + d];
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          double *const record = parts.nodes.record(node);
+          for (int d = 0; d < dim; ++d)
+            record[Layout::middle_velocity + d] =
+              moves_as_strained ? 0.5 * (record[Layout::velocity + d] -
+                                         record[Layout::increment + d] +
+                                         record[Layout::strain_velocity + d]) :
+                                  record[Layout::velocity + d] -
+                                    0.5 * record[Layout::increment + d];
+        }
+    });
     lap(Verb::advance_nodes);
-    boundaries.apply_trial(parts.nodes,
-                           Layout::middle_velocity,
-                           time + 0.5 * step);
+    if (contact)
+      contact->hold(Layout::middle_velocity);
+    lap(Verb::touch);
+    parts.nodes.for_each_field([&]() {
+      boundaries.apply_trial(parts.nodes,
+                             Layout::middle_velocity,
+                             time + 0.5 * step,
+                             BoundaryConditions<dim>::Trial::motion);
+    });
     lap(Verb::apply_boundaries);
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        double *const record = parts.nodes.record(node);
-        std::copy_n(record + Layout::middle_velocity,
-                    dim,
-                    record + Layout::moving_velocity);
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          double *const record = parts.nodes.record(node);
+          std::copy_n(record + Layout::middle_velocity,
+                      dim,
+                      record + Layout::moving_velocity);
+        }
+    });
     lap(Verb::advance_nodes);
   }
 
@@ -445,7 +541,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::interpolate_hanging()
   {
-    parts.nodes.interpolate_hanging();
+    parts.nodes.for_each_field([&]() { parts.nodes.interpolate_hanging(); });
     lap(Verb::apply_boundaries);
   }
 
@@ -470,9 +566,17 @@ namespace limber
   template void
   ExplicitIntegrator<2>::account_loads(unsigned int);
   template void
+  ExplicitIntegrator<2>::exchange_between_bodies();
+  template void
   ExplicitIntegrator<2>::apply_boundaries();
   template void
-  ExplicitIntegrator<2>::form_velocity(unsigned int, double);
+  ExplicitIntegrator<2>::form_velocity(unsigned int);
+  template void
+  ExplicitIntegrator<2>::form_velocity_before();
+  template void
+  ExplicitIntegrator<2>::form_velocity_after();
+  template void
+  ExplicitIntegrator<2>::clear_trial_force();
   template void
   ExplicitIntegrator<2>::clear_remapped();
   template void
@@ -510,9 +614,17 @@ namespace limber
   template void
   ExplicitIntegrator<3>::account_loads(unsigned int);
   template void
+  ExplicitIntegrator<3>::exchange_between_bodies();
+  template void
   ExplicitIntegrator<3>::apply_boundaries();
   template void
-  ExplicitIntegrator<3>::form_velocity(unsigned int, double);
+  ExplicitIntegrator<3>::form_velocity(unsigned int);
+  template void
+  ExplicitIntegrator<3>::form_velocity_before();
+  template void
+  ExplicitIntegrator<3>::form_velocity_after();
+  template void
+  ExplicitIntegrator<3>::clear_trial_force();
   template void
   ExplicitIntegrator<3>::clear_remapped();
   template void

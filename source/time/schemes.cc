@@ -34,7 +34,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::usf()
   {
-    p2g_momentum();
+    p2g_before_strain();
     strain_at_start(step);
     p2g_force();
     accelerate_nodes();
@@ -80,7 +80,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::usavg()
   {
-    p2g_momentum();
+    p2g_before_strain();
     strain_at_start(0.5 * step);
     p2g_force();
     accelerate_nodes();
@@ -105,7 +105,7 @@ namespace limber
     if (!(unstrained > 0))
       {
         p2g_momentum();
-        form_velocity(Layout::momentum, time);
+        form_velocity_before();
         interpolate_hanging();
       }
     strain_and_give_force(unstrained + ahead);
@@ -153,10 +153,34 @@ namespace limber
   void
   ExplicitIntegrator<dim>::strain_at_start(const double length)
   {
-    form_velocity(Layout::momentum, time);
+    form_velocity_before();
     interpolate_hanging();
     update_stress(length);
     clear_remapped();
+    clear_trial_force();
+  }
+
+
+
+  // Whether a side that lets go holds a node, or bodies press each other there,
+  // is up to the force as well.
+  template <int dim>
+  bool
+  ExplicitIntegrator<dim>::needs_trial_force() const
+  {
+    return boundaries.any_one_sided() || contact;
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::p2g_before_strain()
+  {
+    if (needs_trial_force())
+      p2g();
+    else
+      p2g_momentum();
   }
 
 
@@ -170,6 +194,7 @@ namespace limber
     damp();
     add_loads();
     advance_nodes();
+    exchange_between_bodies();
     apply_boundaries();
     interpolate_hanging();
     check_nodes();
@@ -212,10 +237,14 @@ namespace limber
   ExplicitIntegrator<2>::square_of_strain() const;
   template bool
   ExplicitIntegrator<2>::leapfrogs() const;
+  template bool
+  ExplicitIntegrator<2>::needs_trial_force() const;
   template void
   ExplicitIntegrator<3>::do_scheme();
   template double
   ExplicitIntegrator<3>::square_of_strain() const;
   template bool
   ExplicitIntegrator<3>::leapfrogs() const;
+  template bool
+  ExplicitIntegrator<3>::needs_trial_force() const;
 } // namespace limber

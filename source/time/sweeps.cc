@@ -13,6 +13,7 @@ namespace limber
   {
     give({});
     sum_shared_nodes(0, Layout::remapped);
+    find_contact();
   }
 
 
@@ -25,6 +26,7 @@ namespace limber
     what.force = false;
     give(what);
     sum_shared_nodes(0, Layout::remapped);
+    find_contact();
   }
 
 
@@ -58,9 +60,23 @@ namespace limber
   ExplicitIntegrator<dim>::sum_shared_nodes(const unsigned int first,
                                             const unsigned int last)
   {
-    parts.nodes.start_sum(first, last);
-    parts.nodes.finish_sum();
+    parts.nodes.for_each_field([&]() {
+      parts.nodes.start_sum(first, last);
+      parts.nodes.finish_sum();
+    });
     lap(Verb::sum_shared_nodes);
+  }
+
+
+
+  // Where bodies touch, as soon as their masses at the nodes are known.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::find_contact()
+  {
+    if (contact)
+      contact->find();
+    lap(Verb::touch);
   }
 
 
@@ -95,7 +111,7 @@ namespace limber
     sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
     if (leapfrogs())
       keep_momentum();
-    form_velocity(Layout::remapped, time + step);
+    form_velocity_after();
   }
 
 
@@ -245,6 +261,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::p2g_force();
   template void
+  ExplicitIntegrator<2>::find_contact();
+  template void
   ExplicitIntegrator<2>::g2p_and_move();
   template void
   ExplicitIntegrator<2>::g2p();
@@ -266,6 +284,8 @@ namespace limber
   ExplicitIntegrator<3>::p2g_momentum();
   template void
   ExplicitIntegrator<3>::p2g_force();
+  template void
+  ExplicitIntegrator<3>::find_contact();
   template void
   ExplicitIntegrator<3>::g2p_and_move();
   template void

@@ -5,14 +5,20 @@
 #include <limber/grid/side_constraints.h>
 
 #include <functional>
+#include <vector>
 
 namespace limber
 {
   /**
    * What the constraints of the sides (SideConstraints) do to nodes that an
    * explicit step has moved: one after another they change a velocity, and the
-   * impulses that this takes are those of the sides. A one-sided constraint
-   * lets the material part, and bears friction.
+   * impulses that this takes are those of the sides.
+   *
+   * A one-sided constraint holds a node that would move outward with its new
+   * velocity, and lets all others go; where it holds, it bears friction. The
+   * same nodes are held or let go in every other velocity of the step. Were a
+   * velocity that strains points only kept from going outward, noise about
+   * zero would press them together and create energy.
    */
   template <int dim>
   class BoundaryConditions
@@ -24,6 +30,7 @@ namespace limber
       dealii::Tensor<1, dim> impulse;           // on the points, kg m/s
       double                 work          = 0; // J, as if they were FLIP's
       double                 transfer_work = 0; // J, what it does beyond that
+      double                 friction      = 0; // J, heat, not in work
     };
 
     using Account = std::function<void(unsigned int side, const Action &)>;
@@ -53,14 +60,42 @@ namespace limber
     void
     apply(NodalFields<dim> &nodes, const Step &step, const Account &account);
 
+    /** What a velocity is for that apply() does not know. */
+    enum class Trial
+    {
+      strain_before, // of points, by what they bring; there is no new one yet
+      strain_after,  // of points, once there is
+      motion         // of points; nothing may go through a side
+    };
+
     /**
-     * Change the velocity that begins at @p slot of the records
-     * likewise; impulses of such a trial velocity do not reach the points. A
-     * node that sticks to a side with friction, given its new velocity, sticks
-     * here too.
+     * Hold the velocity that begins at @p slot of the records as apply() has
+     * held, or at the beginning of a @p step (s) is going to hold, the new one:
+     * of (p + dt f) / m, with the force f in the records. Its impulses do not
+     * reach the points.
      */
     void
-    apply_trial(NodalFields<dim> &nodes, unsigned int slot, double time);
+    apply_trial(NodalFields<dim> &nodes,
+                unsigned int      slot,
+                double            time,
+                Trial             kind,
+                double            step = 0);
+
+    /**
+     * Work and heat of friction, J, of sides beyond what apply() has accounted
+     * for, where points have given back the velocity that begins at @p slot,
+     * before sides are applied to it: held nodes of this rank do not strain
+     * with it. To be counted by the share of FLIP.
+     */
+    Action
+    action_on_remapped(const NodalFields<dim> &nodes, unsigned int slot) const;
+
+    /** Whether any side lets go. */
+    bool
+    any_one_sided() const
+    {
+      return one_sided;
+    }
 
     using Hold = std::function<
       void(std::uint32_t node, unsigned int component, double value)>;
@@ -88,24 +123,40 @@ namespace limber
     void
     for_each_node(const NodalFields<dim> &nodes, double time, const Work &work);
     void
-    act(const Constraint &constraint,
-        Velocity         &velocity,
-        const Velocity   *new_velocity) const;
+    act(const Constraint &constraint, Velocity &velocity) const;
     void
-    act_one_sided(const Constraint &constraint,
-                  Velocity         &velocity,
-                  const Velocity   *new_velocity) const;
+    act_trial(const Constraint &constraint,
+              Trial             kind,
+              const Velocity   &new_velocity,
+              Velocity         &velocity) const;
 
-    static Action
-    action(const Velocity &change,
+    void
+    note_rubbing(unsigned int    side,
+                 std::uint32_t   node,
+                 const double   *record,
+                 Velocity        impulse,
+                 const Velocity &velocity);
+    Action
+    action(unsigned int    side,
+           const Velocity &change,
            const Velocity &former_change,
            const Velocity &velocity,
            const Velocity &increment,
            double          mass,
-           double          flip_share);
+           double          flip_share) const;
+
+    /** The impulse of friction on an owned node that goes on sliding. */
+    struct Rubbing
+    {
+      std::uint32_t node;
+      const double *record; // of the field that it is of
+      Velocity      impulse;
+    };
 
     const Sides<dim>    &sides;
     SideConstraints<dim> constraints;
+    std::vector<Rubbing> rubbing;   // of the present step
+    const bool           one_sided; // any side
   };
 } // namespace limber
 

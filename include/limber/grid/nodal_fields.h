@@ -24,12 +24,44 @@ namespace limber
     /** Of the nodes of the grid's kernel. */
     explicit NodalFields(const BackgroundGrid<dim> &grid);
 
+    /**
+     * Have @p n records for each node, one for each group of bodies that may
+     * part from the others: fields. All of them have the same active nodes.
+     */
+    void
+    set_n_fields(unsigned int n);
+    unsigned int
+    n_fields() const
+    {
+      return parked.size();
+    }
+
+    /** Let view(), record() and sums speak of a field, until told otherwise. */
+    void
+    select(unsigned int field);
+
+    /** Call work() with each field selected; the first remains it. */
+    template <class Work>
+    void
+    for_each_field(const Work &work)
+    {
+      for (unsigned int field = n_fields(); field-- > 0;)
+        {
+          select(field);
+          work();
+        }
+    }
+
     /** Adopt a changed mesh: all records zero, nothing active. */
     void
     reinit();
 
     GridView<dim>
     view();
+
+    /** The same of a field, whichever is selected. */
+    GridView<dim>
+    view(unsigned int field);
 
     /**
      * Make these cells the occupied ones (local numbers, sorted), and those
@@ -110,7 +142,7 @@ namespace limber
       return left;
     }
 
-    /** Set the records of all active nodes to zero. */
+    /** Set the records of all active nodes to zero, in all fields. */
     void
     clear();
 
@@ -169,10 +201,40 @@ namespace limber
       return values.data() + std::size_t(node) * Layout::stride;
     }
 
+    /** Of a node, of all fields, kg. */
+    double
+    mass(const std::uint32_t node) const
+    {
+      double result = 0;
+      for (unsigned int field = 0; field < n_fields(); ++field)
+        result += record(field, node)[Layout::mass];
+      return result;
+    }
+
+    /** Of a field, whichever is selected. */
+    double *
+    record(const unsigned int field, const std::uint32_t node)
+    {
+      return of_field(field).data() + std::size_t(node) * Layout::stride;
+    }
+
+    const double *
+    record(const unsigned int field, const std::uint32_t node) const
+    {
+      return (field == selected ? values : parked[field]).data() +
+             std::size_t(node) * Layout::stride;
+    }
+
     const BackgroundGrid<dim> &grid;
     const NodeTable<dim>      &table;
 
   private:
+    LazyArray<double> &
+    of_field(const unsigned int field)
+    {
+      return field == selected ? values : parked[field];
+    }
+
     NodalFields(const BackgroundGrid<dim> &grid, const NodeTable<dim> &table);
 
     template <class Work>
@@ -201,7 +263,10 @@ namespace limber
     static constexpr std::uint8_t is_of_owned_cell = 2;
     static constexpr std::uint8_t may_be_added_to  = 4; // as agreed
 
-    LazyArray<double>          values;
+    LazyArray<double>              values; // of the selected field
+    std::vector<LazyArray<double>> parked =
+      std::vector<LazyArray<double>>(1); // of the others
+    unsigned int               selected = 0;
     LazyArray<std::uint8_t>    roles; // of nodes
     RecordExchange             exchange{Layout::stride};
     ExchangePlan               nodes_to_share, cells_to_share;

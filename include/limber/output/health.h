@@ -80,8 +80,8 @@ namespace limber
     double                   kinetic      = 0; // energy of all points
     double                   drift        = 0; // over the scale
     // Taken or given on record
-    double transfer = 0, viscous = 0, history = 0, plastic = 0, sides = 0,
-           loads = 0;
+    double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
+           contact = 0, sides = 0, loads = 0;
   };
 
 

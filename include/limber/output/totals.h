@@ -44,6 +44,8 @@ namespace limber
     double dissipated           = 0; // by viscosity, J
     double removed_with_history = 0; // with volumetric history or tension, J
     double plastic_work         = 0; // on plastic strain, J
+    double friction_heat        = 0; // J
+    double contact_loss         = 0; // in impacts of bodies, J
     double removed_by_transfer  = 0; // between points and grid, J
     double boundary_work        = 0; // done on the material, J
     double load_work            = 0; // J
@@ -81,12 +83,13 @@ namespace limber
 
   /**
    * Holds the present state against that at the start. The ledger knows what
-   * the sides, the loads, damping transfers, viscosity, plastic flow and lost
-   * points have done to energy and momentum; what it cannot account for is
+   * the sides, the loads, damping transfers, viscosity, plastic flow, friction
+   * and lost points have done to energy and momentum; what it cannot account
+   * for is
    *
    *   drift = (E - E_0) / scale,
-   *   E = T + U + V + transfer + viscous + plastic + history + lost - W_sides
-   *       - W_loads
+   *   E = T + U + V + transfer + viscous + plastic + history + friction
+   *       + contact + lost - W_sides - W_loads
    *
    * with T kinetic, U strain and V gravitational energy: the error of the
    * integration in time and of points that cross cells. The scale is the

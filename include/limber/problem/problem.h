@@ -144,6 +144,10 @@ namespace limber
     HistoryTreatment deviatoric_history = HistoryTreatment::keep;
     double           relaxation_time    = 0; // s, for HistoryTreatment::relax
 
+    // Which fields of nodes it gives to and takes from: bodies that may part
+    // have different ones
+    unsigned int nodal_field = 0;
+
     /** Mass per volume in the reference state, kg/m^3. */
     double
     density() const
@@ -244,6 +248,22 @@ namespace limber
     std::vector<FaceLoad<dim>> faces;
   };
 
+  /** What two bodies do where they touch. */
+  enum class ContactLaw
+  {
+    stick,   // share the velocities of nodes, as bodies in no pair do
+    separate // press and part; slide with Coulomb friction, or without
+  };
+
+  /** Two bodies that touch each other in a way of their own. */
+  struct ContactPair
+  {
+    std::string                 name;
+    std::array<unsigned int, 2> bodies; // by number
+    ContactLaw                  law      = ContactLaw::separate;
+    double                      friction = 0; // coefficient, without dimension
+  };
+
   struct Method
   {
     TimeIntegration   integration    = TimeIntegration::explicit_steps;
@@ -335,6 +355,7 @@ namespace limber
     GridDescription<dim>         grid;
     Sides<dim>                   sides;
     Loads<dim>                   loads;
+    std::vector<ContactPair>     contacts;
     Method                       method;
     OutputRequest                output;
     CheckpointRequest            checkpoint;

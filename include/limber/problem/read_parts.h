@@ -20,8 +20,8 @@ namespace limber
    */
   struct SceneNames
   {
-    std::vector<std::string> bodies, refinements, face_loads, observables,
-      checks;
+    std::vector<std::string> bodies, refinements, face_loads, contacts,
+      observables, checks;
     // Parts of a body's shape, where it is a union, by name of the body.
     std::map<std::string, std::vector<std::string>> shapes;
   };
@@ -187,6 +187,20 @@ namespace limber
   template <int dim>
   void
   read_bodies(const Section &root, Problem<dim> &problem);
+
+  // Contact of bodies (source/problem/read_contact.cc)
+
+  void
+  declare_contact(Parameters                     &parameters,
+                  const std::vector<std::string> &pairs);
+
+  /**
+   * The pairs, and which fields of nodes their bodies have; needs the bodies
+   * and the method, and refuses what does not go with it.
+   */
+  template <int dim>
+  void
+  read_contact(const Section &root, Problem<dim> &problem);
 
   // Method and output (source/problem/read_method.cc)
 

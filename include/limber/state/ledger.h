@@ -24,6 +24,8 @@ namespace limber
     double viscous       = 0; // turned into heat by viscosity and damping
     double history       = 0; // removed with volumetric history or tension
     double plastic       = 0; // work on plastic strain
+    double friction      = 0; // turned into heat where bodies slide
+    double contact       = 0; // lost in impacts where bodies touch
 
     // Body force formulas, face loads and damping
     dealii::Tensor<1, dim> load_impulse;

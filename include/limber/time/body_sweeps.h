@@ -47,6 +47,13 @@ namespace limber
     update_stress(StressSweep what, const Pace &pace, StepExtremes &extremes);
 
   private:
+    /** The nodes that the points of a body give to and take from. */
+    GridView<dim>
+    nodes_of(const MaterialBody<dim> &body) const
+    {
+      return parts.nodes.view(body.description.nodal_field);
+    }
+
     void
     grid_to_points(MaterialBody<dim>  &body,
                    const TakeFromGrid &what,

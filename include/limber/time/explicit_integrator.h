@@ -5,6 +5,7 @@
 #include <limber/base/timing.h>
 #include <limber/grid/boundary_conditions.h>
 #include <limber/time/body_sweeps.h>
+#include <limber/time/contact.h>
 #include <limber/time/full_mass_filter.h>
 #include <limber/time/relocation.h>
 #include <limber/time/stabilization.h>
@@ -23,6 +24,7 @@ namespace limber
     solve_pressure,
     sum_shared_nodes,
     advance_nodes,
+    touch,
     apply_boundaries,
     check_nodes,
     grid_to_points,
@@ -99,6 +101,8 @@ namespace limber
     void
     strain_at_start(double length);
     void
+    p2g_before_strain();
+    void
     accelerate_nodes();
     double
     square_of_strain() const;
@@ -110,6 +114,8 @@ namespace limber
     p2g_momentum();
     void
     p2g_force();
+    void
+    find_contact();
     void
     g2p();
     void
@@ -143,15 +149,23 @@ namespace limber
     void
     check_nodes();
     void
+    exchange_between_bodies();
+    void
     apply_boundaries();
     void
     interpolate_hanging();
     void
     account_loads(unsigned int velocity_after);
     void
-    form_velocity(unsigned int momentum, double when);
+    form_velocity(unsigned int momentum);
+    void
+    form_velocity_before();
+    void
+    form_velocity_after();
     void
     clear_remapped();
+    void
+    clear_trial_force();
     void
     clear_momentum();
     void
@@ -182,6 +196,8 @@ namespace limber
     strain(StressSweep what);
     void
     sum_shared_nodes(unsigned int first, unsigned int last);
+    bool
+    needs_trial_force() const;
 
     void
     lap(const Verb verb)
@@ -198,6 +214,7 @@ namespace limber
     BoundaryConditions<dim>            boundaries;
     ExternalLoads<dim>                 loads;
     BodySweeps<dim>                    sweeps;
+    std::optional<Contact<dim>>        contact; // of bodies that may part
     Stabilization<dim>                 stabilization;
     Relocation<dim>                    relocation;
     std::optional<FullMassFilter<dim>> full_mass; // for FMPM and XPIC alone

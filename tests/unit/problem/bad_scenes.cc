@@ -42,6 +42,13 @@ namespace
         set Pressure = 1
       end
     end
+    subsection Contact
+      set Pairs = meeting
+      subsection Pair meeting
+        set Bodies = beam, water
+        set Law    = stick
+      end
+    end
     subsection Observable tip
       set Type      = displacement
       set Body      = beam
@@ -434,6 +441,24 @@ namespace
     {"VelocityWithoutFormula",
      {"Boundaries/top=velocity"},
      {"'velocity'", "Side top", "Velocity = 0; 0"}},
+    {"PairOfABodyWithItself",
+     {"Contact/Pair meeting/Bodies=beam, beam"},
+     {"two different bodies", "Pair meeting", "Bodies = block, floor"}},
+    {"PairOfUnknownBody",
+     {"Contact/Pair meeting/Bodies=bean, water"},
+     {"'bean'", "Did you mean 'beam'?"}},
+    {"PairWithFrictionWithoutCoefficient",
+     {"Contact/Pair meeting/Law=friction"},
+     {"'friction'", "Pair meeting", "Friction coefficient = 0.3"}},
+    {"PairWithSplines",
+     {"Contact/Pair meeting/Law=slip", "Method/Kernel=quadratic"},
+     {"'quadratic'", "entry 'Kernel'", "'Kernel = linear'"}},
+    {"PairWithFilteredVelocity",
+     {"Contact/Pair meeting/Law=slip", "Method/Transfer=fmpm"},
+     {"'fmpm'", "entry 'Transfer'", "'Transfer = flip'"}},
+    {"PairWithFaceLoads",
+     {"Contact/Pair meeting/Law=slip"},
+     {"entry 'Face loads'", "'Contact/Pairs'"}},
     {"FaceLoadOnUnknownBody",
      {"Loads/Face load press/Body=bean"},
      {"'bean'", "Did you mean 'beam'?"}},

@@ -177,6 +177,7 @@ TEST(Choices, SidesHoldWhatTheirWordsSay)
   } const cases[] = {{"free", Held::none, false, false},
                      {"slip", Held::normal, false, false},
                      {"no slip", Held::all, false, false},
+                     {"separating", Held::normal, true, false},
                      {"friction", Held::normal, true, false},
                      {"velocity", Held::all, false, true}};
   for (const auto &expected : cases)
@@ -186,7 +187,8 @@ TEST(Choices, SidesHoldWhatTheirWordsSay)
       EXPECT_EQ(side.word, expected.word);
       EXPECT_EQ(side.held, expected.held) << expected.word;
       EXPECT_EQ(side.one_sided, expected.one_sided) << expected.word;
-      EXPECT_EQ(side.friction, expected.one_sided ? 0.25 : 0) << expected.word;
+      EXPECT_EQ(side.friction, expected.word == "friction" ? 0.25 : 0)
+        << expected.word;
       EXPECT_EQ(side.prescribed_velocity(dealii::Point<2>(5, 0), 2, 1),
                 expected.moves ? 6 : 0)
         << expected.word;

@@ -137,9 +137,10 @@ namespace
 
 
 // The floor acts through the lowest row of cells, so the block stops while its
-// lower edge is still up to h above the floor, and what the points of that row
-// lose then is known to the balance only up to the order of h. USL is left
-// out: it does not survive points that enter cells (theory, 6.1).
+// lower edge is still up to h above the floor. What the points of that row lose
+// then follows from the velocity that they give back; USF, where they do not,
+// knows it only up to the order of h. USL is left out: it does not survive
+// points that enter cells (theory, 6.1).
 TEST(Balances, DropOnSlipFloor)
 {
   for (const std::string order : {"usf", "musl", "usavg"})
@@ -163,7 +164,11 @@ TEST(Balances, DropOnSlipFloor)
           EXPECT_LT(coarse.drift_falling, 1e-12);
         else
           EXPECT_GE(coarse.drift_falling / short_steps.drift_falling, 3.2);
-        EXPECT_GE(short_steps.drift / small_cells.drift, 1.6);
+        if (order == "usf")
+          EXPECT_GE(short_steps.drift / small_cells.drift, 1.6);
+        else
+          for (const Drop *const drop : {&short_steps, &small_cells})
+            EXPECT_LT(drop->drift, 0.01);
       }
 }
 

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** What a word makes of a pair. */
+    struct ContactKind
+    {
+      ContactLaw law;
+      bool       rubs = false; // needs a friction coefficient
+    };
+
+
+
+    const Words<ContactKind> &
+    contact_words()
+    {
+      static const Words<ContactKind> words = {
+        {"stick",
+         ContactKind{ContactLaw::stick},
+         "they share the velocities of nodes, as bodies in no pair do"},
+        {"slip",
+         ContactKind{ContactLaw::separate},
+         "they press on each other, slide and part"},
+        {"friction",
+         ContactKind{ContactLaw::separate, true},
+         "the same with Coulomb friction"}};
+      return words;
+    }
+  } // namespace
+
+
+
+  void
+  declare_contact(Parameters &parameters, const std::vector<std::string> &pairs)
+  {
+    parameters.enter_subsection("Contact");
+    parameters.declare_list("Pairs",
+                            "",
+                            "Pair ",
+                            "Names of pairs of bodies that touch in a way of "
+                            "their own; each has a section 'Pair NAME' within "
+                            "'Contact'. All other bodies stick together where "
+                            "they share nodes.");
+    for (const std::string &name : pairs)
+      {
+        parameters.enter_subsection("Pair " + name);
+        parameters.declare("Bodies",
+                           "",
+                           admissible::names("block, floor"),
+                           "Names of two bodies, or of one that touches all "
+                           "others so.");
+        declare_word(parameters,
+                     "Law",
+                     "slip",
+                     contact_words(),
+                     "What they do where they touch.");
+        parameters.declare(
+          "Friction coefficient",
+          "",
+          admissible::non_negative_number("0.3").or_empty(),
+          "Coulomb's coefficient mu, no unit, for 'friction'.");
+        parameters.leave_subsection();
+      }
+    parameters.leave_subsection();
+  }
+
+
+
+  namespace
+  {
+    template <int dim>
+    unsigned int
+    body_number(const Section      &section,
+                const std::string  &name,
+                const Problem<dim> &problem)
+    {
+      std::vector<std::string> known;
+      for (const Body<dim> &body : problem.bodies)
+        known.push_back(body.name);
+      check_name("body", name, known, section.where("Bodies"));
+      return std::find(known.begin(), known.end(), name) - known.begin();
+    }
+
+
+
+    /** Those of a section: several if it names one body only. */
+    template <int dim>
+    std::vector<ContactPair>
+    read_pairs(const Section      &section,
+               const std::string  &name,
+               const Problem<dim> &problem)
+    {
+      const auto bodies = section.list("Bodies");
+      if (bodies.size() != 1 &&
+          (bodies.size() != 2 || bodies.front() == bodies.back()))
+        throw InputError(
+          "A pair needs two different bodies in " + section.where("Bodies") +
+          ". A body does not touch itself. Write 'set Bodies = block, "
+          "floor', with names of the list 'Bodies', or one name for all "
+          "pairs of that body.");
+      const ContactKind kind = read_word(section, "Law", contact_words());
+      ContactPair       pair;
+      pair.name      = name;
+      pair.law       = kind.law;
+      pair.bodies[0] = body_number(section, bodies[0], problem);
+      if (kind.rubs)
+        {
+          if (section.is_empty("Friction coefficient"))
+            throw InputError("The law 'friction' in " + section.where("Law") +
+                             " lacks its 'Friction coefficient'. Write 'set "
+                             "Friction coefficient = 0.3' beside it, or 'set "
+                             "Law = slip' for bodies without friction.");
+          pair.friction = section.number("Friction coefficient");
+        }
+      std::vector<ContactPair> result;
+      for (unsigned int other = 0; other < problem.bodies.size(); ++other)
+        if (bodies.size() == 1 ?
+              other != pair.bodies[0] :
+              other == body_number(section, bodies[1], problem))
+          {
+            pair.bodies[1] = other;
+            result.push_back(pair);
+          }
+      return result;
+    }
+
+
+
+    bool
+    are_the_same(const ContactPair &one, const ContactPair &other)
+    {
+      return std::is_permutation(one.bodies.begin(),
+                                 one.bodies.end(),
+                                 other.bodies.begin());
+    }
+
+
+
+    /**
+     * Bodies that may part from another one have fields of their own, all
+     * others the first.
+     */
+    template <int dim>
+    void
+    choose_fields(Problem<dim> &problem)
+    {
+      std::vector<bool> parts(problem.bodies.size(), false);
+      for (const ContactPair &pair : problem.contacts)
+        if (pair.law == ContactLaw::separate)
+          for (const unsigned int body : pair.bodies)
+            parts[body] = true;
+      unsigned int next =
+        std::find(parts.begin(), parts.end(), false) != parts.end() ? 1 : 0;
+      for (unsigned int b = 0; b < parts.size(); ++b)
+        if (parts[b])
+          problem.bodies[b].nodal_field = next++;
+    }
+
+
+
+    [[noreturn]] void
+    refuse(const Section     &section,
+           const std::string &entry,
+           const std::string &remedy)
+    {
+      throw InputError("Bodies that touch do not go with " +
+                       in_quotes(section.text(entry)) + " in " +
+                       section.where(entry) +
+                       " yet. Usually a pair was added to a scene that had "
+                       "none. Set " +
+                       remedy + ", or leave 'Contact/Pairs' empty.");
+    }
+
+
+
+    template <int dim>
+    void
+    check_method(const Section &root, const Problem<dim> &problem)
+    {
+      const Section method = root.subsection("Method"),
+                    loads  = root.subsection("Loads");
+      if (problem.grid.kernel != KernelKind::linear)
+        refuse(method, "Kernel", "'Kernel = linear'");
+      if (problem.method.integration == TimeIntegration::semi_implicit)
+        refuse(method, "Time integration", "'Time integration = explicit'");
+      if (problem.method.transfer != Transfer::flip &&
+          problem.method.transfer != Transfer::pic)
+        refuse(method, "Transfer", "'Transfer = flip'");
+      if (problem.grid.levels > 0)
+        refuse(root.subsection("Grid"), "Levels", "'Levels = 0'");
+      if (problem.loads.body_force)
+        refuse(loads, "Body force", "'Gravity' instead");
+      if (!problem.loads.faces.empty())
+        refuse(loads, "Face loads", "no face loads");
+    }
+
+
+
+    template <int dim>
+    void
+    check_bodies(const Section &root, const Problem<dim> &problem)
+    {
+      for (const Body<dim> &body : problem.bodies)
+        {
+          const Section section = root.subsection("Body " + body.name);
+          if (body.treatment == Projection::node ||
+              body.treatment == Projection::hybrid)
+            refuse(section, "Locking treatment", "'Locking treatment = cell'");
+          if (body.hourglass_control > 0)
+            refuse(section, "Hourglass control", "'Hourglass control = 0'");
+          if (body.chequerboard_control > 0)
+            refuse(section,
+                   "Chequerboard control",
+                   "'Chequerboard control = 0'");
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  read_contact(const Section &root, Problem<dim> &problem)
+  {
+    const Section section = root.subsection("Contact");
+    for (const std::string &name : section.list("Pairs"))
+      {
+        const Section own = section.subsection("Pair " + name);
+        for (const ContactPair &pair : read_pairs(own, name, problem))
+          {
+            for (const ContactPair &other : problem.contacts)
+              if (are_the_same(pair, other))
+                throw InputError("The pairs " + in_quotes(other.name) +
+                                 " and " + in_quotes(name) + " in " +
+                                 own.where("Bodies") +
+                                 " have the same bodies. Usually a section was "
+                                 "copied. Remove one of them from the list "
+                                 "'Pairs'.");
+            problem.contacts.push_back(pair);
+          }
+      }
+    choose_fields(problem);
+    if (std::all_of(problem.bodies.begin(),
+                    problem.bodies.end(),
+                    [](const auto &body) { return body.nodal_field == 0; }))
+      return;
+    check_method(root, problem);
+    check_bodies(root, problem);
+  }
+
+
+
+  template void
+  read_contact<2>(const Section &, Problem<2> &);
+  template void
+  read_contact<3>(const Section &, Problem<3> &);
+} // namespace limber
