@@ -5,7 +5,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/fem/fitted_mesh.h>
-#include <limber/fem/mesh_file.h>
+#include <limber/problem/mesh_file.h>
 #include <limber/problem/size_estimate.h>
 
 #include <algorithm>
@@ -140,7 +140,8 @@ namespace limber
     {
       const std::string &path = problem.reference.mesh_file;
       CoarseMesh<dim>    coarse =
-        read_mesh_text<dim>(mesh_text(path, communicator), path);
+        read_mesh_text<dim>(mesh_text(path, communicator),
+                            {path, "'Reference/Mesh file'"});
       check_size(problem,
                  Task::reference,
                  this_machine(communicator),

@@ -2,6 +2,7 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <limber/points/seeding.h>
+#include <limber/problem/point_list.h>
 
 #include <cmath>
 #include <optional>
@@ -254,6 +255,41 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** A list says of each point where it is, how large, and how it moves. */
+    template <int dim>
+    void
+    add_listed_points(
+      const PointListShape<dim>                               &list,
+      const BackgroundGrid<dim>                               &grid,
+      const std::function<double(const dealii::Point<dim> &)> &density,
+      MaterialPoints<dim>                                     &points)
+    {
+      for (const ListedPoint<dim> &listed : list.points)
+        {
+          std::array<double, dim> x;
+          for (int d = 0; d < dim; ++d)
+            x[d] = listed.place[d];
+          const std::uint32_t cell = grid.bins.cell_at(x);
+          if (cell >= grid.n_owned_cells())
+            continue;
+          const double rho = density(listed.place);
+          const double volume =
+            listed.mass > 0 ? listed.mass / rho : listed.volume;
+          dealii::Tensor<2, dim> half_edges;
+          for (int d = 0; d < dim; ++d)
+            half_edges[d][d] = 0.5 * std::pow(volume, 1. / dim);
+          points.add(cell, listed.place, rho * volume, half_edges);
+          const PointView<dim> view = points.view();
+          for (int d = 0; d < dim; ++d)
+            view.velocity[d][points.size() - 1] = listed.velocity[d];
+        }
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   seed(const Body<dim>                                         &body,
@@ -261,6 +297,14 @@ namespace limber
        const std::function<double(const dealii::Point<dim> &)> &density,
        MaterialPoints<dim>                                     &points)
   {
+    if (const auto *list =
+          dynamic_cast<const PointListShape<dim> *>(body.shape.get()))
+      {
+        points.reserve(list->points.size());
+        add_listed_points(*list, grid, density, points);
+        points.finish_adding();
+        return;
+      }
     // Counted first, so that the arrays never take more than they need.
     std::size_t n = 0;
     for_each_point(body, grid, [&n](const auto &...) { ++n; });

@@ -3,12 +3,44 @@
 
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/axis_ends.h>
 #include <limber/problem/read_parts.h>
 
 namespace limber
 {
   namespace numbers = dealii::numbers;
   using dealii::Point;
+
+
+
+  void
+  declare_axis_ends(Parameters &parameters)
+  {
+    parameters.declare("Lower end",
+                       "0",
+                       admissible::number("0"),
+                       "Coordinate along the axis where it begins, m.");
+    parameters.declare("Upper end",
+                       "1",
+                       admissible::number("1"),
+                       "Coordinate along the axis where it ends, m.");
+  }
+
+
+
+  std::pair<double, double>
+  read_axis_ends(const Section &section, const std::string &shape)
+  {
+    const double lower = section.number("Lower end");
+    const double upper = section.number("Upper end");
+    if (upper <= lower)
+      throw InputError("The " + shape + " ends at " + to_text(upper) +
+                       ", not beyond its beginning at " + to_text(lower) +
+                       ", in " + section.where("Upper end") +
+                       ". Usually the ends are swapped. Give " +
+                       to_text(lower + 1) + ", for instance.");
+    return {lower, upper};
+  }
 
 
 
@@ -81,14 +113,7 @@ namespace limber
                        "0.25",
                        admissible::positive_number("0.25"),
                        "Radius R, m.");
-    parameters.declare("Lower end",
-                       "0",
-                       admissible::number("0"),
-                       "Coordinate along the axis where it begins, m.");
-    parameters.declare("Upper end",
-                       "1",
-                       admissible::number("1"),
-                       "Coordinate along the axis where it ends, m.");
+    declare_axis_ends(parameters);
   }
 
 
@@ -104,15 +129,8 @@ namespace limber
                        ", but the scene has two dimensions. Usually a disc "
                        "is meant. Write 'set Shape = ball' with its centre "
                        "and radius, or 'Dimension = 3'.");
-    const double lower = details.number("Lower end");
-    const double upper = details.number("Upper end");
-    if (upper <= lower)
-      throw InputError("The cylinder ends at " + to_text(upper) +
-                       ", not beyond its beginning at " + to_text(lower) +
-                       ", in " + details.where("Upper end") +
-                       ". Usually the ends are swapped. Give " +
-                       to_text(lower + 1) + ", for instance.");
-    const unsigned int axis = details.text("Axis").front() - 'x';
+    const auto [lower, upper] = read_axis_ends(details, "cylinder");
+    const unsigned int axis   = details.text("Axis").front() - 'x';
     return std::make_shared<CylinderShape<dim>>(axis,
                                                 read_point<dim>(details,
                                                                 "Centre"),

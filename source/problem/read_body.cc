@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/point_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -213,6 +214,32 @@ namespace limber
         body.points_per_cell_edge[d] =
           static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
       body.placement = read_word(section, "Placement", placement_words());
+    }
+
+
+
+    /** Points of a list are where they are, and as large as they are. */
+    template <int dim>
+    void
+    check_point_list(const Section              &section,
+                     const GridDescription<dim> &grid,
+                     const Body<dim>            &body)
+    {
+      if (dynamic_cast<const PointListShape<dim> *>(body.shape.get()) ==
+          nullptr)
+        return;
+      if (body.placement != Placement::regular)
+        throw InputError("The placement " +
+                         in_quotes(section.text("Placement")) + " in " +
+                         section.where("Placement") +
+                         " has no effect on a point list, which says where "
+                         "each point is. Usually the shape was changed. Set "
+                         "'Placement = regular'.");
+      if (grid.levels > 0)
+        throw InputError("The point list in " + section.where("Shape") +
+                         " does not go with 'Grid/Levels', which need to know "
+                         "what cells points were made for. Set 'Levels = 0', "
+                         "or fill a shape with points.");
     }
 
 
@@ -598,6 +625,7 @@ namespace limber
       {
         const Section section = root.subsection("Body " + body.name);
         read_points(section, problem.grid, body);
+        check_point_list(section, problem.grid, body);
         read_lattice(section, problem.grid, body);
         read_treatment(section, body, problem);
       }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/point_list.h>
 #include <limber/problem/read_parts.h>
 
 #include <algorithm>
@@ -140,6 +141,13 @@ namespace limber
     read_face(const Section &section, const Body<dim> &body)
     {
       const std::string face = section.required_text("Face");
+      if (face == whole_surface && dynamic_cast<const PointListShape<dim> *>(
+                                     body.shape.get()) != nullptr)
+        throw InputError("Body " + in_quotes(body.name) +
+                         " is a list of points, which has no surface for " +
+                         section.where("Face") +
+                         ". Let a body with another shape bear the load, or "
+                         "use 'Loads/Body force'.");
       if (face == whole_surface)
         return std::nullopt;
       if (dynamic_cast<const BlockShape<dim> *>(body.shape.get()) == nullptr)

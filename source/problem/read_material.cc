@@ -3,6 +3,7 @@
 #include <limber/base/law_parameter.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/point_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -80,8 +81,13 @@ namespace limber
     double
     largest_initial_speed(const Body<dim> &body)
     {
+      double of_list = 0;
+      if (const auto *list =
+            dynamic_cast<const PointListShape<dim> *>(body.shape.get()))
+        for (const auto &point : list->points)
+          of_list = std::max(of_list, point.velocity.norm());
       if (body.initial_velocity.is_zero())
-        return 0;
+        return of_list;
       const Corners<dim> box = body.shape->bounding_box();
       const unsigned int n   = dim == 2 ? 50 : 20;
 
@@ -98,7 +104,7 @@ namespace limber
             largest =
               std::max(largest, body.initial_velocity.vector(place, 0.).norm());
         }
-      return largest;
+      return largest + of_list;
     }
 
 

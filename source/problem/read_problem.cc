@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/from_file.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/read_problem.h>
 
@@ -77,13 +78,24 @@ namespace limber
   namespace
   {
     // When a run is resumed it may end at another time and write other files,
-    // but not become another run.
+    // but not become another run. A file may be at another place by then, but
+    // not hold something else.
+    template <int dim>
     std::vector<std::string>
-    fixed_entries(const Parameters &parameters)
+    fixed_entries(const Parameters &parameters, const Problem<dim> &problem)
     {
+      const auto is_path = [](const std::string &name) {
+        const std::string end = "/File";
+        return name.size() > end.size() &&
+               name.compare(name.size() - end.size(), end.size(), end) == 0;
+      };
       std::vector<std::string> result;
+      for (const Body<dim> &body : problem.bodies)
+        if (const auto *file = dynamic_cast<const FromFile *>(body.shape.get()))
+          result.push_back("File of body " + body.name + " = " +
+                           file->checksum);
       for (const auto &[name, value] : parameters.entries())
-        if (name != "End time" && name != "End step" &&
+        if (!is_path(name) && name != "End time" && name != "End step" &&
             name != "Memory limit" && name.rfind("Output/", 0) != 0 &&
             name.rfind("Checkpoint/", 0) != 0 &&
             name.rfind("Reference/", 0) != 0 &&
@@ -129,7 +141,7 @@ namespace limber
     read_observables(root, problem);
     read_checks(root, problem);
     check_levels(root, problem);
-    problem.fixed_entries = fixed_entries(scene.parameters());
+    problem.fixed_entries = fixed_entries(scene.parameters(), problem);
     return problem;
   }
 

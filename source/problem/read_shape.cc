@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/file_shapes.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -25,6 +26,8 @@ namespace limber
     for_each_shape(const Function &function)
     {
       for_each_shape(static_cast<const ShapeList<dim> *>(nullptr), function);
+      for_each_shape(static_cast<const FileShapeList<dim> *>(nullptr),
+                     function);
     }
 
 
@@ -153,10 +156,19 @@ namespace limber
     {
       details.required_text("Shapes");
       std::vector<std::shared_ptr<const Shape<dim>>> parts;
+      std::vector<std::string>                       checksums;
       for (const std::string &name : details.list("Shapes"))
-        parts.push_back(
-          read_shape(details.subsection("Shape " + name), constants, grid));
-      return std::make_shared<UnionShape<dim>>(parts);
+        {
+          parts.push_back(
+            read_shape(details.subsection("Shape " + name), constants, grid));
+          if (const auto *file =
+                dynamic_cast<const FromFile *>(parts.back().get()))
+            checksums.push_back(file->checksum);
+        }
+      if (checksums.empty())
+        return std::make_shared<UnionShape<dim>>(parts);
+      return std::make_shared<UnionFromFiles<dim>>(parts,
+                                                   join(checksums, "; "));
     }
   } // namespace
 

@@ -5,6 +5,7 @@
 #include <limber/problem/read_problem.h>
 
 #include <algorithm>
+#include <filesystem>
 
 namespace limber
 {
@@ -140,6 +141,49 @@ namespace limber
 
 
 
+    /**
+     * Paths of files are relative to the folder of the scene. Absolute ones
+     * mean the same in the run folder, where the entries are kept.
+     */
+    std::string
+    path_from(const std::string &folder, const std::string &path)
+    {
+      namespace fs = std::filesystem;
+      return path.empty() ? path :
+                            fs::absolute(fs::path(folder) / path)
+                              .lexically_normal()
+                              .string();
+    }
+
+
+
+    constexpr const char *path_entry = "File";
+
+    void
+    make_paths_absolute(const std::string        &folder,
+                        Scan                     &scan,
+                        std::vector<std::string> &overrides)
+    {
+      for (ScannedEntry &entry : scan.entries)
+        if (entry.name == path_entry)
+          entry.value = path_from(folder, entry.value);
+      const std::string end = std::string("/") + path_entry;
+      for (std::string &text : overrides)
+        for (std::size_t name = text.find(end); name != std::string::npos;
+             name             = text.find(end, name + 1))
+          {
+                        const std::size_t equals =
+                          text.find_first_not_of(' ', name + end.size());
+                        if (equals == std::string::npos || text[equals] != '=')
+              continue;
+            text = text.substr(0, equals + 1) +
+                               path_from(folder, trimmed(text.substr(equals + 1)));
+                        break;
+          }
+    }
+
+
+
     void
     declare_top_level(Parameters &parameters)
     {
@@ -214,10 +258,15 @@ namespace limber
 
 
   SceneFile::SceneFile(const ParameterText            &text,
-                       const std::vector<std::string> &overrides)
+                       const std::vector<std::string> &given_overrides)
     : input(text)
   {
-    const Scan scan = scan_parameters(text.text, text.format, text.origin);
+    Scan scan = scan_parameters(text.text, text.format, text.origin);
+    std::vector<std::string> overrides = given_overrides;
+    make_paths_absolute(
+      std::filesystem::path(text.origin).parent_path().string(),
+      scan,
+      overrides);
     const NameReader reader(scan, overrides);
     declare_scene(values, reader.dimension(), read_names(reader));
     values.read(scan, overrides);

@@ -4,6 +4,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/memory.h>
 #include <limber/base/text.h>
+#include <limber/problem/point_list.h>
 #include <limber/problem/size_estimate.h>
 
 #include <algorithm>
@@ -133,6 +134,9 @@ namespace limber
     {
       if (body.placement == Placement::fitted)
         return product(body.lattice);
+      if (const auto *list =
+            dynamic_cast<const PointListShape<dim> *>(body.shape.get()))
+        return list->points.size();
       double cell = 1;
       for (int d = 0; d < dim; ++d)
         cell *= grid.edge(d);

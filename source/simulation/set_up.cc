@@ -119,7 +119,7 @@ namespace limber
           const auto velocity =
             body.description.initial_velocity.vector(place, 0);
           for (int d = 0; d < dim; ++d)
-            points.velocity[d][p] = velocity[d];
+            points.velocity[d][p] += velocity[d]; // to that of a point list
         }
     }
   } // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 /** @file What a scene may do without: fluids, points, treatments, steps. */
 namespace limber
@@ -18,12 +19,12 @@ namespace limber
                       const std::string &setting,
                       const std::string &name)
     {
-      const bool is_json = scene.original_name() == "original.json";
+      std::ostringstream entries;
+      scene.parameters().print(entries, PrintStyle::prm);
       try
         {
-          const SceneFile softer(ParameterText{scene.original_text(),
-                                               is_json ? FileFormat::json :
-                                                         FileFormat::prm,
+          const SceneFile softer(ParameterText{entries.str(),
+                                               FileFormat::prm,
                                                "the scene"},
                                  {setting});
           for (const Body<dim> &body : read_problem<dim>(softer).bodies)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
-#include <limber/fem/mesh_file.h>
+#include <limber/problem/mesh_file.h>
 
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ TEST(MeshFiles, OfAllFormatsAreTheSame)
         {ucd, "a.inp"},
         {vtk, "a.vtk"}})
     {
-      const CoarseMesh<2> mesh = read_mesh_text<2>(text, path);
+      const CoarseMesh<2> mesh = read_mesh_text<2>(text, {path, "test"});
       EXPECT_EQ(mesh.vertices.size(), 6u) << path;
       ASSERT_EQ(mesh.cells.size(), 2u) << path;
       for (const unsigned int cell : {0, 1})
@@ -116,7 +116,8 @@ TEST(MeshFiles, CubesMayGoAroundEitherWay)
   for (const std::string nodes : {"1 2 3 4 5 6 7 8", "5 6 7 8 1 2 3 4"})
     {
       const CoarseMesh<3> mesh =
-        read_mesh_text<3>(replaced(cube, "1 2 3 4 5 6 7 8", nodes), "a.inp");
+        read_mesh_text<3>(replaced(cube, "1 2 3 4 5 6 7 8", nodes),
+                          {"a.inp", "test"});
       ASSERT_EQ(mesh.cells.size(), 1u);
       EXPECT_DOUBLE_EQ(corner_volume(mesh, 0), 1);
     }
@@ -129,7 +130,8 @@ TEST_P(BadMeshes, AreRefusedWithTheLine)
   const BadMesh &bad = GetParam();
   try
     {
-      read_mesh_text<2>(bad.text, "panel" + bad.ending);
+      read_mesh_text<2>(bad.text,
+                        {"panel" + bad.ending, "'Reference/Mesh file'"});
       FAIL() << "The mesh was accepted.";
     }
   catch (const InputError &error)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/fem/mesh_builder.h>
+#include <limber/problem/mesh_builder.h>
 
 #include <algorithm>
 #include <array>
@@ -273,13 +273,35 @@ namespace limber
 
 
   template <int dim>
-  CoarseMesh<dim>
-  read_mesh_text(const std::string &text, const std::string &path)
+  const std::vector<std::vector<unsigned int>> &
+  faces_of_element(const std::size_t n_nodes)
   {
-    const std::string ending =
+    using Faces = std::vector<std::vector<unsigned int>>;
+    static const Faces simplex =
+      dim == 2 ? Faces{{0, 1}, {1, 2}, {2, 0}} :
+                 Faces{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    static const Faces hypercube = dim == 2 ?
+                                     Faces{{0, 1}, {1, 3}, {3, 2}, {2, 0}} :
+                                     Faces{{0, 4, 6, 2},
+                                           {1, 3, 7, 5},
+                                           {0, 1, 5, 4},
+                                           {2, 6, 7, 3},
+                                           {0, 2, 3, 1},
+                                           {4, 5, 7, 6}};
+    return n_nodes == dim + 1 ? simplex : hypercube;
+  }
+
+
+
+  template <int dim>
+  CoarseMesh<dim>
+  read_mesh_text(const std::string &text, const MeshRequest &request)
+  {
+    const std::string &path = request.path;
+    const std::string  ending =
       path.substr(std::min(path.rfind('.'), path.size()));
-    MeshWords        words(text, path);
-    MeshBuilder<dim> mesh(words);
+    MeshWords        words(text, request);
+    MeshBuilder<dim> mesh(words, request.simplices);
     if (ending == ".msh")
       read_gmsh(words, mesh);
     else if (ending == ".vtk")
@@ -290,17 +312,21 @@ namespace limber
         read_ucd(words, mesh);
       }
     else
-      throw InputError("The mesh " + in_quotes(path) +
-                       " in entry 'Reference/Mesh file' has an ending that "
-                       "names no known format. Known are msh (Gmsh), inp (UCD) "
-                       "and vtk. Save it as 'panel.msh', for instance.");
+      throw InputError(
+        "The mesh " + in_quotes(path) + " in entry " + request.entry +
+        " has an ending that names no known format. Known are msh (Gmsh), inp (UCD) "
+        "and vtk. Save it as 'panel.msh', for instance.");
     return mesh.finish();
   }
 
 
 
+  template const std::vector<std::vector<unsigned int>> &
+    faces_of_element<2>(std::size_t);
+  template const std::vector<std::vector<unsigned int>> &
+    faces_of_element<3>(std::size_t);
   template CoarseMesh<2>
-  read_mesh_text(const std::string &, const std::string &);
+  read_mesh_text(const std::string &, const MeshRequest &);
   template CoarseMesh<3>
-  read_mesh_text(const std::string &, const std::string &);
+  read_mesh_text(const std::string &, const MeshRequest &);
 } // namespace limber

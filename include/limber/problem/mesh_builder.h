@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_fem_mesh_builder_h
-#define limber_fem_mesh_builder_h
+#ifndef limber_problem_mesh_builder_h
+#define limber_problem_mesh_builder_h
 
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
-#include <limber/fem/mesh_file.h>
+#include <limber/problem/mesh_file.h>
 
 #include <algorithm>
 #include <array>
@@ -34,9 +34,9 @@ namespace limber
   class MeshWords
   {
   public:
-    MeshWords(const std::string &text, const std::string &path)
+    MeshWords(const std::string &text, const MeshRequest &request)
       : text(text)
-      , path(path)
+      , request(request)
     {
       skip_blanks();
     }
@@ -45,8 +45,8 @@ namespace limber
     refuse(const std::string &what, const std::string &remedy) const
     {
       throw InputError(what + " in line " + std::to_string(line) +
-                       " of the mesh " + in_quotes(path) +
-                       " ('Reference/Mesh file'). " + remedy);
+                       " of the mesh " + in_quotes(request.path) + " (" +
+                       request.entry + "). " + remedy);
     }
 
     bool
@@ -146,7 +146,7 @@ namespace limber
     }
 
     const std::string &text;
-    const std::string &path;
+    const MeshRequest &request;
     std::size_t        next = 0, line_of_next = 1;
   };
 
@@ -159,8 +159,9 @@ namespace limber
   public:
     static constexpr unsigned int n_corners = 1 << dim;
 
-    explicit MeshBuilder(MeshWords &words)
+    MeshBuilder(MeshWords &words, const bool simplices)
       : words(words)
+      , simplices(simplices)
     {}
 
     void
@@ -185,14 +186,20 @@ namespace limber
     void
     read_element(const long number, const ElementKind &kind)
     {
-      const bool wanted = kind.dimension == dim && kind.n_nodes == n_corners;
+      const bool wanted =
+        kind.dimension == dim &&
+        (kind.n_nodes == n_corners || (simplices && kind.n_nodes == dim + 1));
       if (!wanted && kind.dimension >= dim)
         words.refuse("Element " + std::to_string(number) + " is a " + kind.name,
                      std::string("Only ") +
+                       (simplices ?
+                          (dim == 2 ? "triangles and " : "tetrahedra and ") :
+                          "") +
                        (dim == 2 ? "quadrilaterals of four nodes" :
                                    "hexahedra of eight nodes") +
-                       " are taken. In Gmsh, recombine the mesh and set its "
-                       "order to 1.");
+                       " are taken. In Gmsh, " +
+                       (simplices ? "" : "recombine the mesh and ") +
+                       "set its order to 1.");
       std::vector<long> nodes(kind.n_nodes);
       for (long &node : nodes)
         node = words.integer("a node of element " + std::to_string(number));
@@ -205,7 +212,9 @@ namespace limber
     {
       if (mesh.cells.empty())
         words.refuse(std::string("No ") +
-                       (dim == 2 ? "quadrilateral" : "hexahedron") +
+                       (simplices ? "element" :
+                        dim == 2  ? "quadrilateral" :
+                                    "hexahedron") +
                        " was found until the end",
                      "Usually the mesh was saved without its elements, or "
                      "'Dimension' is another. In Gmsh, save all elements.");
@@ -218,8 +227,8 @@ namespace limber
     add_element(const long number, const std::vector<long> &nodes)
     {
       const std::string     name = "Element " + std::to_string(number);
-      dealii::CellData<dim> cell(n_corners);
-      for (unsigned int i = 0; i < n_corners; ++i)
+      dealii::CellData<dim> cell(nodes.size());
+      for (unsigned int i = 0; i < nodes.size(); ++i)
         {
           const auto found = places.find(nodes[i]);
           if (found == places.end())
@@ -227,8 +236,9 @@ namespace limber
                            ", which is not given",
                          "Usually nodes were removed. Make the mesh anew.");
           // around the bottom and around the top, as in all three formats
-          const unsigned int corner = i % 4 < 2 ? i : i ^ 1u;
-          cell.vertices[corner]     = found->second;
+          const unsigned int corner =
+            nodes.size() == dim + 1 || i % 4 < 2 ? i : i ^ 1u;
+          cell.vertices[corner] = found->second;
         }
       auto sorted = cell.vertices;
       std::sort(sorted.begin(), sorted.end());
@@ -245,11 +255,18 @@ namespace limber
       mesh.cells.push_back(cell);
     }
 
-    /** The volume that the edges at a corner span. */
+    /** The volume that the edges at a corner span, positive in our order. */
     double
     volume_at(const dealii::CellData<dim> &cell, const unsigned int v) const
     {
       dealii::Tensor<2, dim> edges;
+      if (cell.vertices.size() == dim + 1)
+        {
+          for (unsigned int d = 0; d < dim; ++d)
+            edges[d] = mesh.vertices[cell.vertices[d + 1]] -
+                       mesh.vertices[cell.vertices[0]];
+          return determinant(edges);
+        }
       for (unsigned int d = 0; d < dim; ++d)
         edges[d] = mesh.vertices[cell.vertices[v | 1u << d]] -
                    mesh.vertices[cell.vertices[v & ~(1u << d)]];
@@ -265,33 +282,33 @@ namespace limber
         size =
           std::max(size,
                    mesh.vertices[v].distance(mesh.vertices[cell.vertices[0]]));
-      const double flat       = 1e-12 * std::pow(size, dim);
-      unsigned int n_positive = 0, n_negative = 0;
-      for (unsigned int v = 0; v < n_corners; ++v)
+      const double       flat       = 1e-12 * std::pow(size, dim);
+      const unsigned int n          = cell.vertices.size();
+      unsigned int       n_positive = 0, n_negative = 0;
+      for (unsigned int v = 0; v < n; ++v)
         {
           n_positive += volume_at(cell, v) > flat;
           n_negative += volume_at(cell, v) < -flat;
         }
-      if (n_positive != n_corners && n_negative != n_corners)
+      if (n_positive != n && n_negative != n)
         words.refuse(name + (n_positive > 0 && n_negative > 0 ?
                                " is twisted" :
                                " is flat at a corner"),
                      "Usually its nodes are in a wrong order, or an angle "
                      "has 180 degrees. Improve the mesh there.");
-      if (n_negative == n_corners)
-        for (unsigned int v = 0; v < n_corners; v += 2)
+      if (n_negative == n)
+        for (unsigned int v = 0; v < (n == dim + 1 ? 2 : n); v += 2)
           std::swap(cell.vertices[v], cell.vertices[v + 1]);
     }
 
     void
     count_faces(const std::string &name, const dealii::CellData<dim> &cell)
     {
-      for (unsigned int f = 0; f < 2 * dim; ++f)
+      for (const auto &corners : faces_of_element<dim>(cell.vertices.size()))
         {
           std::vector<unsigned int> face;
-          for (unsigned int v = 0; v < n_corners; ++v)
-            if ((v >> f / 2 & 1) == f % 2)
-              face.push_back(cell.vertices[v]);
+          for (const unsigned int v : corners)
+            face.push_back(cell.vertices[v]);
           std::sort(face.begin(), face.end());
           if (++n_elements_at[face] > 2)
             words.refuse(name + " is the third one at a face",
@@ -318,6 +335,7 @@ namespace limber
     }
 
     MeshWords                                        &words;
+    const bool                                        simplices;
     CoarseMesh<dim>                                   mesh;
     std::unordered_map<long, unsigned int>            places;
     std::map<std::vector<unsigned int>, long>         elements;
