@@ -165,6 +165,9 @@ namespace limber
            const Problem<dim> &problem,
            const bool          unstable)
   {
+    // Newton's method has told what it could not balance.
+    if (is_solved_by_newton(problem.method.integration))
+      return {};
     if (unstable)
       {
         const Diagnosis found = diagnose_unstable(symptoms, problem);

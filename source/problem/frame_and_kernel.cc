@@ -247,10 +247,8 @@ namespace limber
         problem.notes.push_back("Kernel 'auto' is " + choice + ".");
       };
       problem.grid.kernel = KernelKind::linear;
-      if (read_word(root.subsection("Method"),
-                    "Time integration",
-                    time_integration_words()) == TimeIntegration::semi_implicit)
-        return say("'linear', which semi-implicit steps are made for");
+      if (problem.method.integration != TimeIntegration::explicit_steps)
+        return say("'linear', which the time integration is made for");
       if (problem.grid.levels > 0)
         return say("'linear', as splines need cells of one size "
                    "('Grid/Levels')");

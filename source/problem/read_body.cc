@@ -431,19 +431,22 @@ namespace limber
         const char *reason;
       };
       const Choice choice =
-        fluid ? Choice{Projection::cell,
-                       "'cell', as a liquid resists volume changes only."} :
+        fluid ?
+          Choice{Projection::cell,
+                 "'cell', as a liquid resists volume changes only."} :
+        is_solved_by_newton(problem.method.integration) ?
+          Choice{Projection::cell, "'cell', which does not lock in volume."} :
         !linear && body.is_plastic ?
-                Choice{Projection::node,
-                       "'node', as plastic flow keeps its volume."} :
+          Choice{Projection::node,
+                 "'node', as plastic flow keeps its volume."} :
         !linear && soft ?
-                Choice{Projection::none,
-                       "'none', as smooth functions do not lock at this "
-                       "Poisson's ratio."} :
+          Choice{Projection::none,
+                 "'none', as smooth functions do not lock at this "
+                 "Poisson's ratio."} :
         !linear && body.frame == Frame::initial ?
-                Choice{Projection::cell,
-                       "'cell', which does not lock in volume, and nothing "
-                       "crosses cells."} :
+          Choice{Projection::cell,
+                 "'cell', which does not lock in volume, and nothing "
+                 "crosses cells."} :
         !linear ? Choice{Projection::node,
                          "'node', which does not lock in volume and does not "
                          "jump where points cross cells."} :

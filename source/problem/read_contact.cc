@@ -189,7 +189,7 @@ namespace limber
                     loads  = root.subsection("Loads");
       if (problem.grid.kernel != KernelKind::linear)
         refuse(method, "Kernel", "'Kernel = linear'");
-      if (problem.method.integration == TimeIntegration::semi_implicit)
+      if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse(method, "Time integration", "'Time integration = explicit'");
       if (problem.method.transfer != Transfer::flip &&
           problem.method.transfer != Transfer::pic)

@@ -237,11 +237,10 @@ namespace limber
                "domains look for their corners in a lattice" :
                "splines need a lattice",
              "'Kernel = linear'");
-    if (read_word(method, "Time integration", time_integration_words()) ==
-        TimeIntegration::semi_implicit)
+    if (problem.method.integration != TimeIntegration::explicit_steps)
       refuse(method,
              "Time integration",
-             "the pressure equation has not been tried across a change of size",
+             "its equations have not been tried across a change of size",
              "'Time integration = explicit'");
     if (filters_velocity(problem.method.transfer))
       refuse(method,

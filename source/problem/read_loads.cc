@@ -86,6 +86,12 @@ namespace limber
                                           " components",
                                         for_each_direction(dim, "0", "; ")),
                        "Force per mass b beside gravity, m/s^2.");
+    parameters.declare("Load factor",
+                       "auto",
+                       admissible::text("formula of t, or auto", "t / 2"),
+                       "Of a quasi-static run: share of gravity, body force "
+                       "and face loads that acts at time t, no unit; auto: t "
+                       "/ 'End time'.");
     declare_constants(parameters);
     parameters.declare_list("Face loads",
                             "",
@@ -112,6 +118,12 @@ namespace limber
                                                    corners(problem.grid));
     if (!formula.is_zero())
       problem.loads.body_force = formula;
+    if (section.text("Load factor") != "auto")
+      problem.loads.factor = read_formula<dim>(section,
+                                               "Load factor",
+                                               1,
+                                               read_constants(section),
+                                               corners(problem.grid));
   }
 
 

@@ -65,6 +65,19 @@ namespace limber
                        "0",
                        admissible::non_negative_number("1e-4"),
                        "dt, s; 0: from the Courant number.");
+    parameters.declare("Newton tolerance",
+                       "1e-6",
+                       admissible::number_from_to(1e-12, 0.01, "1e-8"),
+                       "Forces out of balance over forces, at which Newton's "
+                       "method of implicit and quasi-static steps ends, no "
+                       "unit.");
+    parameters.declare("Ghost penalty",
+                       "0.03",
+                       admissible::non_negative_number("0.03"),
+                       "Stiffness of quasi-static steps against "
+                       "jumps of the strain next to a free surface, over "
+                       "Young's modulus, no unit: holds the nodes of cells "
+                       "that are hardly filled.");
     parameters.declare("Lost points limit",
                        "0",
                        admissible::number_from_to(0, 1, "0.01"),
@@ -96,6 +109,8 @@ namespace limber
     method.damping_rate        = section.number("Damping rate");
     method.courant_number      = section.number("Courant number");
     method.time_step           = section.number("Time step");
+    method.newton_tolerance    = section.number("Newton tolerance");
+    method.ghost_penalty       = section.number("Ghost penalty");
     method.lost_points_limit   = section.number("Lost points limit");
     method.energy_growth_limit = section.number("Energy growth limit");
 

@@ -126,11 +126,11 @@ namespace limber
     if (root.text("Memory limit") != "auto")
       problem.memory_limit = 1e9 * root.number("Memory limit");
     problem.grid = read_grid<dim>(root.subsection("Grid"), root.list("Bodies"));
+    problem.method = read_method(root.subsection("Method"));
     read_boundaries(root.subsection("Boundaries"), problem);
     read_volume_loads(loads, problem);
     read_bodies(root, problem);
     read_face_loads(loads, problem);
-    problem.method = read_method(root.subsection("Method"));
     choose_time_integration(root, problem);
     choose_stress_update(problem);
     read_contact(root, problem);

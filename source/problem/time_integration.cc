@@ -86,6 +86,15 @@ namespace limber
   {
     for (auto &body : problem.bodies)
       read_density_control(root.subsection("Body " + body.name), problem, body);
+    if (is_solved_by_newton(problem.method.integration))
+      return check_newton_scene(root, problem);
+    if (!problem.loads.factor.empty())
+      throw InputError("The entry " +
+                       in_quotes(root.subsection("Loads").text("Load factor")) +
+                       " in " + root.subsection("Loads").where("Load factor") +
+                       " is for 'Method/Time integration = quasi-static'; in "
+                       "motion loads are as their formulas say. Set 'Load "
+                       "factor = auto'.");
     if (problem.method.integration == TimeIntegration::explicit_steps)
       return;
 

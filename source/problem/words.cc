@@ -4,13 +4,6 @@
 
 namespace limber
 {
-  namespace
-  {
-    const std::string not_available = "not available in this version";
-  }
-
-
-
   const Words<LawDescription> &
   law_words()
   {
@@ -80,7 +73,14 @@ namespace limber
        TimeIntegration::semi_implicit,
        "the pressure of liquids is that of the end of the step, so that sound "
        "in them does not limit it"},
-      {"implicit", std::nullopt, not_available}};
+      {"implicit",
+       TimeIntegration::implicit_steps,
+       "Newmark's trapezoidal rule; elastic solids, solved by Newton's method, "
+       "with steps of any length"},
+      {"quasi-static",
+       TimeIntegration::quasi_static,
+       "elastic solids in equilibrium under growing loads, solved by Newton's "
+       "method; time counts the load"}};
     return words;
   }
 

@@ -139,7 +139,12 @@ namespace limber
         adapt_if_due();
         if (!(integrator->longest_step() > smallest_step * first_step))
           refuse_step(first_step);
-        const double step = integrator->advance(state.time, next_step());
+        const double asked = next_step();
+        const double step  = integrator->advance(state.time, asked);
+        if (step < asked)
+          console.say("step " + std::to_string(state.step + 1) + " from time " +
+                      brief(state.time) + " s: no solution over " +
+                      brief(asked) + " s, so it is " + brief(step) + " s long");
         state.time += step;
         state.step_size = step;
         ++state.step;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/explicit_integrator.h>
+#include <limber/time/newton_integrator.h>
 #include <limber/time/semi_implicit_integrator.h>
 
 namespace limber
@@ -14,6 +15,9 @@ namespace limber
           break;
         case TimeIntegration::semi_implicit:
           return std::make_unique<SemiImplicitIntegrator<dim>>(parts);
+        case TimeIntegration::implicit_steps:
+        case TimeIntegration::quasi_static:
+          return std::make_unique<NewtonIntegrator<dim>>(parts);
       }
     return std::make_unique<ExplicitIntegrator<dim>>(parts);
   }

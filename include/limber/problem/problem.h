@@ -49,8 +49,18 @@ namespace limber
   enum class TimeIntegration
   {
     explicit_steps, // nothing
-    semi_implicit   // the pressure of liquids
+    semi_implicit,  // the pressure of liquids
+    implicit_steps, // all forces, and those of the beginning as much
+    quasi_static    // all forces, which are in equilibrium
   };
+
+  /** Whether a step is solved by Newton's method. */
+  constexpr bool
+  is_solved_by_newton(const TimeIntegration integration)
+  {
+    return integration == TimeIntegration::implicit_steps ||
+           integration == TimeIntegration::quasi_static;
+  }
 
   /** When in a step the stress follows the motion. */
   enum class StressUpdateOrder
@@ -246,6 +256,9 @@ namespace limber
     std::optional<Formula<dim>> body_force; // dim components, per mass, m/s^2;
                                             // empty where identically zero
     std::vector<FaceLoad<dim>> faces;
+    // Share of gravity and loads that acts, of a quasi-static run: 1 component,
+    // a function of time; empty: the share of the run that has passed
+    Formula<dim> factor;
   };
 
   /** What two bodies do where they touch. */
@@ -277,6 +290,10 @@ namespace limber
     double       time_step       = 0;   // s; 0: from the Courant number
     double       lost_points_limit = 0; // share of all points that may be lost
     double energy_growth_limit = 1; // drift over energy scale that stops a run
+    // Of Newton's method: residual over forces; stiffness against jumps of the
+    // strain next to the surface, over Young's modulus
+    double newton_tolerance = 1e-6;
+    double ghost_penalty    = 0.03;
   };
 
   struct OutputRequest

@@ -217,6 +217,13 @@ namespace limber
   void
   choose_time_integration(const Section &root, Problem<dim> &problem);
 
+  // Steps that Newton's method solves (source/problem/newton_scene.cc)
+
+  /** Whether they can do all that the scene asks for; else InputError. */
+  template <int dim>
+  void
+  check_newton_scene(const Section &root, Problem<dim> &problem);
+
   void
   declare_output(Parameters &parameters);
 

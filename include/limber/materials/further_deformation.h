@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_further_deformation_h
+#define limber_materials_further_deformation_h
+
+#include <limber/materials/isochoric_strain.h>
+
+namespace limber
+{
+  /**
+   * An elastic law that can deform a state further by f of any size, in one
+   * go: Law::update() takes motions as short as explicit steps make them, and
+   * bounds what a cell that is hardly touched does to its points.
+   */
+  template <class Law>
+  class FurtherDeformation : public Law
+  {
+  public:
+    static_assert(Law::is_elastic);
+
+    explicit FurtherDeformation(const Law &law)
+      : Law(law)
+    {}
+
+    /**
+     * The state after f, in which the volume ratio grows by the factor
+     * @p growth; where the strain is small, by @p growth less one.
+     */
+    template <int dim>
+    void
+    deform(const SquareMatrix<dim>                   &f,
+           const double                               growth,
+           typename Law::template State<dim, double> &state) const
+    {
+      if constexpr (Law::finite_strain)
+        {
+          isochoric::deform<dim>(state.history, f, determinant<dim>(f));
+          state.history[0] *= growth;
+          this->template set_stress<dim>(state);
+        }
+      else
+        {
+          const auto added = this->template at_deformation<dim>(f, growth);
+          state.pressure += added.pressure;
+          for (unsigned int k = 0; k < state.deviator.size(); ++k)
+            state.deviator[k] += added.deviator[k];
+        }
+    }
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_trial_stress_h
+#define limber_stress_trial_stress_h
+
+#include <limber/materials/frame.h>
+#include <limber/materials/projection.h>
+#include <limber/points/point_view.h>
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * How the points of a body in a cell resist a displacement of its nodes.
+   * Degrees of freedom node by node: component d of node i is i * dim + d.
+   */
+  template <int dim>
+  struct CellResponse
+  {
+    static constexpr int n = dim << dim;
+
+    double                    energy = 0; // of strain, J
+    std::array<double, n>     force{};    // derivative of the energy, N
+    std::array<double, n * n> tangent{};  // derivative of the force, N/m
+  };
+
+
+
+  /**
+   * The stress at the end of a step as a function of the displacements of the
+   * nodes in it, for elastic laws and linear functions. Trials leave the points
+   * as they are; one of them is then accepted.
+   *
+   * In the frame of the initial configuration the functions are those of the
+   * initial places and F grows by the gradient of the displacement; in the
+   * current one they are those of the places at the beginning of the step, and
+   * what follows is deformed further by f = 1 + grad u. With
+   * Projection::cell the volume of all points in a cell grows by the mean of
+   * det f (current frame) or is the mean of det F (initial frame), weighted by
+   * initial volume, in energy, force and tangent alike, so that the tangent is
+   * symmetric (doc/theory/implicit_steps.md).
+   */
+  template <int dim>
+  class TrialStress
+  {
+  public:
+    virtual ~TrialStress() = default;
+
+    using Work =
+      std::function<void(std::uint32_t cell, const CellResponse<dim> &)>;
+
+    /**
+     * Call @p work for each occupied cell, with the tangent on request. All
+     * points of a cell must follow each other in @p points. @p displacement: by
+     * number of a node and component, m. False where a point is turned inside
+     * out; not all cells have been called for then.
+     *
+     * With @p former displacements, those of the iterate before, the stress in
+     * the tangent is the one that they and their linearisation lead to, instead
+     * of the one at @p displacement: where thin bodies turn the two differ by
+     * much, and Newton's method takes fewer iterations (mixed integration
+     * points: Magisano, Leonetti and Garcea, Int. J. Numer. Methods Eng. 2017).
+     */
+    virtual bool
+    respond(const PointView<dim> &points,
+            const GridView<dim>  &grid,
+            const double         *displacement,
+            const double         *former,
+            bool                  with_tangent,
+            const Work           &work) const = 0;
+
+    /**
+     * Strain the points by a displacement at which they have responded, and
+     * move them; returns the longest way over the edge of its cell.
+     */
+    virtual double
+    accept(const PointView<dim> &points,
+           const GridView<dim>  &grid,
+           const double         *displacement) const = 0;
+
+    /** At rest, Pa. */
+    virtual double
+    young_modulus() const = 0;
+  };
+
+
+
+  /**
+   * For the elastic law of that name; @p values in the order of its entries,
+   * the projection 'none' or 'cell'.
+   */
+  template <int dim>
+  std::unique_ptr<const TrialStress<dim>>
+  make_trial_stress(const std::string         &law,
+                    const std::vector<double> &values,
+                    Projection                 kind,
+                    Frame                      frame);
+} // namespace limber
+
+#endif

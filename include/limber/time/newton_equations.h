@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_newton_equations_h
+#define limber_time_newton_equations_h
+
+#include <limber/fem/linear_solver.h>
+#include <limber/grid/side_constraints.h>
+#include <limber/stress/trial_stress.h>
+#include <limber/time/integrator.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * The equations of a step whose unknowns are the displacements of nodes in
+   * it: nodes of occupied cells alone, dim equations each, in the order of
+   * nodes. They are made anew when points have moved. For one rank, linear
+   * functions and cells of one size.
+   *
+   * Besides what the points resist with (TrialStress) there is a stiffness
+   * against jumps of the normal derivative across faces of cells next to the
+   * surface (ghost penalty; Sticko, Ludvigsson and Kreiss 2020, Coombs 2023),
+   *
+   *   energy  g E h/6  int [du/dn] . [du/dn] dA,
+   *
+   * without which nodes of cells that are hardly filled would resist some
+   * motions with nothing.
+   */
+  template <int dim>
+  class NewtonEquations
+  {
+  public:
+    explicit NewtonEquations(const RunParts<dim> &parts);
+    ~NewtonEquations();
+
+    /**
+     * Number the nodes of the cells that hold points, and find which components
+     * the sides hold. Points must be sorted.
+     */
+    void
+    begin_step();
+
+    /** Of the unknowns. */
+    std::size_t
+    size() const
+    {
+      return nodes.size() * dim;
+    }
+
+    /** By number of equations / dim: numbers of nodes on the grid. */
+    const std::vector<std::uint32_t> &
+    node_numbers() const
+    {
+      return nodes;
+    }
+
+    bool
+    is_held(const std::size_t equation) const
+    {
+      return held[equation] != 0;
+    }
+
+    /** The side that holds a component. */
+    unsigned int
+    side(const std::size_t equation) const
+    {
+      return side_of[equation];
+    }
+
+    /** Velocities of the sides at @p time, m/s; zero where nothing is held. */
+    std::vector<double>
+    held_velocities(double time);
+
+    /** Empty if all that is connected is held; see free_rigid_motion(). */
+    std::string
+    free_motion() const;
+
+    /**
+     * Strain energy, the forces that resist these displacements, and on
+     * request the tangent, to which the diagonal @p inertia (kg/s^2) is added.
+     * False where a point is turned inside out. @p former: see TrialStress, may
+     * be null.
+     */
+    bool
+    evaluate(const std::vector<double> &displacement,
+             const std::vector<double> *inertia,
+             const std::vector<double> *former = nullptr);
+
+    double
+    energy() const
+    {
+      return total_energy;
+    }
+
+    /** Of it, what is against jumps of the strain, J. */
+    double
+    ghost_energy() const
+    {
+      return energy_of_jumps;
+    }
+
+    /** Forces this small are noise: stresses know a strain to its last bits. */
+    double
+    round_off() const
+    {
+      return noise;
+    }
+
+    const std::vector<double> &
+    forces() const
+    {
+      return total_forces;
+    }
+
+    /**
+     * The correction of displacements by the last tangent, with held
+     * components corrected by @p of_held. False where there is no solution.
+     */
+    bool
+    solve(const std::vector<double> &unbalanced,
+          const std::vector<double> &of_held,
+          std::vector<double>       &correction);
+
+    /** Let the points take these displacements; their longest way in cells. */
+    double
+    accept(const std::vector<double> &displacement);
+
+  private:
+    struct Matrix;
+
+    // A face between two cells with points, near the surface
+    struct GhostFace
+    {
+      // equations of nodes / dim: along the normal, for each place across it
+      std::array<std::array<std::uint32_t, 3>, 1 << (dim - 1)> lines;
+      double                                                   stiffness; // N/m
+    };
+
+    double
+    modulus() const;
+    void
+    number_nodes();
+    void
+    find_held();
+    void
+    find_ghost_faces();
+    void
+    make_matrix();
+    void
+    add_ghost_forces(const std::vector<double> &displacement);
+    void
+    add_ghost_tangent();
+    void
+    add_to_matrix(const std::uint32_t *nodes_of_block,
+                  unsigned int         n_nodes,
+                  const double        *block);
+    void
+    spread(const std::vector<double> &displacement,
+           std::vector<double>       &on_grid) const;
+    std::array<std::uint32_t, 1 << dim>
+    numbers_in(std::uint32_t cell) const;
+
+    const RunParts<dim>                                  parts;
+    std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
+    SideConstraints<dim>                                 constraints;
+    std::vector<std::uint32_t>      cells, nodes;   // with points, sorted
+    std::vector<std::uint32_t>      number_of_node; // by node on the grid
+    std::vector<dealii::Point<dim>> places;         // of nodes, m
+    std::vector<unsigned char>      held, side_of;  // by equation
+    std::vector<GhostFace>          ghost_faces;
+    std::vector<double>             by_node, former_by_node; // displacements, m
+    std::vector<double>             total_forces;
+    double                  total_energy = 0, energy_of_jumps = 0, noise = 0;
+    std::unique_ptr<Matrix> matrix;
+  };
+} // namespace limber
+
+#endif

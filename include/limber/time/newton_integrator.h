@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_newton_integrator_h
+#define limber_time_newton_integrator_h
+
+#include <limber/base/timing.h>
+#include <limber/time/newton_equations.h>
+#include <limber/time/relocation.h>
+
+#include <array>
+
+namespace limber
+{
+  /**
+   * Steps at whose end forces are in equilibrium (quasi-static), or those of
+   * beginning and end together give the change of momentum (implicit: Newmark's
+   * trapezoidal rule, beta = 1/4, gamma = 1/2). The displacements of the nodes
+   * in the step are found by Newton's method with line search; points take them
+   * when they are found, so that a step that fails leaves all as it was. It is
+   * then tried with half the length. doc/theory/implicit_steps.md
+   */
+  template <int dim>
+  class NewtonIntegrator final : public Integrator<dim>
+  {
+  public:
+    /** Throws InputError on several ranks. */
+    explicit NewtonIntegrator(const RunParts<dim> &parts);
+
+    bool
+    reorganise() override
+    {
+      return false;
+    }
+    bool
+    bring_points_home() override
+    {
+      return false;
+    }
+    double
+    longest_step() const override
+    {
+      return next_step;
+    }
+    double
+    advance(double time, double step) override;
+    void
+    synchronise() override
+    {}
+    void
+    reinit() override;
+    IntegratorState<dim>
+    state() const override;
+    void
+    restore(const IntegratorState<dim> &former) override;
+    double
+    imbalance() const override
+    {
+      return 1;
+    }
+    double
+    largest_displacement() const override
+    {
+      return extremes.displacement;
+    }
+    bool
+    points_were_lost() const override
+    {
+      return relocation.points_were_lost();
+    }
+    const std::vector<LostPointOfBody<dim>> &
+    lost_points() const override
+    {
+      return relocation.lost_points();
+    }
+    std::vector<std::pair<std::string, double>>
+    verb_seconds() const override;
+    std::string
+    effort() const override;
+
+  private:
+    using Layout = NodeLayout<dim>;
+    using Values = std::vector<double>; // by equation
+
+    enum Verb
+    {
+      number_nodes,
+      evaluate_forces,
+      assemble_tangent,
+      solve_equations,
+      move_points,
+      n_verbs
+    };
+
+    /** What Newton's method asks for in a step. */
+    struct Question
+    {
+      Values held;     // displacements of held components, m; else zero
+      Values external; // forces that do not depend on displacements, N
+      Values inertia;  // nodal masses times 4 / dt^2, kg/s^2
+      // displacement without acceleration, m
+      Values inertial_displacement;
+    };
+
+    void
+    begin_step();
+    void
+    gather_nodes();
+    bool
+    try_step(double time, double step);
+    void
+    guess(const Question &question, Values &displacement);
+    bool
+    solve(const Question &question, bool search, Values &displacement);
+    double
+    unbalance(const Question &question,
+              const Values   &displacement,
+              Values         &left);
+    double
+    potential(const Question &question, const Values &displacement) const;
+    bool
+    improves(const Question &question,
+             const Values   &correction,
+             double          former_potential,
+             double          former_rest,
+             Values         &displacement,
+             Values         &left);
+    Values
+    loads_at(double time, Values *given);
+    double
+    load_factor(double time) const;
+    double
+    kinetic_energy() const;
+    void
+    take_motion(const Values &displacement, const Values &new_velocity);
+    void
+    account(const Question &question,
+            const Values   &displacement,
+            const Values   &new_velocity,
+            const Values   &given,
+            const Values   &net,
+            double          time,
+            double          step);
+    [[noreturn]] void
+    fail(double time, double step) const;
+
+    void
+    lap(const Verb verb)
+    {
+      stopwatch.lap(seconds[verb]);
+    }
+
+    const RunParts<dim>  parts;
+    const bool           in_motion; // has inertia
+    ExternalLoads<dim>   loads;
+    Relocation<dim>      relocation;
+    NewtonEquations<dim> equations;
+
+    Values masses, velocities; // of the nodes of the step, kg, m/s
+
+    const double longest;   // of steps that may be asked for, s
+    double       next_step; // s
+    double       last_step = 0;
+    StepExtremes extremes;
+
+    double                      rest = 0; // unbalanced share of the forces
+    std::string                 obstacle; // why the last step failed
+    unsigned long               steps = 0, iterations = 0, halvings = 0;
+    unsigned long               most_iterations = 0, last_iterations = 0;
+    Stopwatch                   stopwatch;
+    std::array<double, n_verbs> seconds{};
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,556 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <limber/base/exceptions.h>
+#include <limber/points/cell_batch.h>
+#include <limber/time/free_motions.h>
+#include <limber/time/newton_equations.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+namespace limber
+{
+  namespace
+  {
+    constexpr std::uint32_t not_numbered = 0xffffffffu;
+
+    /** Up to so many unknowns a factorisation is quicker. */
+    template <int dim>
+    constexpr std::size_t largest_direct = dim == 2 ? 60000 : 12000;
+  } // namespace
+
+
+
+  template <int dim>
+  struct NewtonEquations<dim>::Matrix
+  {
+    dealii::TrilinosWrappers::SparseMatrix values;
+    std::optional<LinearSolver>            solver;
+    // rows and columns of held components meet nothing else; this is what
+    // their correction does to the others
+    std::vector<std::uint32_t> rows, columns;
+    std::vector<double>        of_held;
+    double                     largest       = 0; // of the diagonal
+    bool                       is_factorised = false;
+  };
+
+
+
+  template <int dim>
+  NewtonEquations<dim>::NewtonEquations(const RunParts<dim> &parts)
+    : parts(parts)
+    , constraints(parts.problem.sides)
+    , matrix(std::make_unique<Matrix>())
+  {
+    for (const auto &body : parts.bodies)
+      responses.push_back(make_trial_stress<dim>(body->description.law,
+                                                 body->description.material,
+                                                 body->description.treatment,
+                                                 body->description.frame));
+  }
+
+
+
+  template <int dim>
+  NewtonEquations<dim>::~NewtonEquations() = default;
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::begin_step()
+  {
+    number_nodes();
+    find_held();
+    find_ghost_faces();
+    make_matrix();
+    total_forces.assign(size(), 0.);
+    noise = 1e-14 * modulus() * std::pow(parts.grid.smallest_edge, dim - 1) *
+            std::sqrt(double(size()));
+  }
+
+
+
+  // Young's, of the stiffest body
+  template <int dim>
+  double
+  NewtonEquations<dim>::modulus() const
+  {
+    double result = 0;
+    for (const auto &response : responses)
+      result = std::max(result, response->young_modulus());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::number_nodes()
+  {
+    cells.clear();
+    for (const auto &body : parts.bodies)
+      for_each_batch(body->points.view(), [&](const CellBatch &batch) {
+        cells.push_back(batch.cell);
+      });
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+
+    number_of_node.assign(parts.nodes.table.n(), not_numbered);
+    for (const std::uint32_t cell : cells)
+      for (const std::uint32_t offset : parts.grid.geometry[cell].node)
+        number_of_node[offset / NodeLayout<dim>::stride] = 0;
+    nodes.clear();
+    for (std::uint32_t node = 0; node < number_of_node.size(); ++node)
+      if (number_of_node[node] == 0)
+        {
+          number_of_node[node] = nodes.size();
+          nodes.push_back(node);
+        }
+
+    places.resize(nodes.size());
+    for (const std::uint32_t cell : cells)
+      {
+        const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
+        const auto               numbers  = numbers_in(cell);
+        for (unsigned int i = 0; i < numbers.size(); ++i)
+          for (int d = 0; d < dim; ++d)
+            places[numbers[i]][d] =
+              geometry.origin[d] + (i >> d & 1) / geometry.inverse_edge[d];
+      }
+  }
+
+
+
+  template <int dim>
+  std::array<std::uint32_t, 1 << dim>
+  NewtonEquations<dim>::numbers_in(const std::uint32_t cell) const
+  {
+    std::array<std::uint32_t, 1 << dim> result;
+    for (unsigned int i = 0; i < result.size(); ++i)
+      result[i] = number_of_node[parts.grid.geometry[cell].node[i] /
+                                 NodeLayout<dim>::stride];
+    return result;
+  }
+
+
+
+  // Of several sides for a component the last counts, as in explicit steps.
+  template <int dim>
+  void
+  NewtonEquations<dim>::find_held()
+  {
+    held.assign(size(), 0);
+    side_of.assign(size(), 0);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (const HeldComponent &entry :
+           constraints.of_sides(parts.nodes.table.sides[nodes[i]]))
+        {
+          held[i * dim + entry.component]    = 1;
+          side_of[i * dim + entry.component] = entry.side;
+        }
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  NewtonEquations<dim>::held_velocities(const double time)
+  {
+    std::vector<double> result(size());
+    for (std::size_t k = 0; k < size(); ++k)
+      if (is_held(k))
+        result[k] =
+          parts.problem.sides[side_of[k]].prescribed_velocity(places[k / dim],
+                                                              time,
+                                                              k % dim);
+    return result;
+  }
+
+
+
+  // Those of a cell that has a neighbour without points, and of its neighbours
+  // with points. What lies beyond a side of the box does not count.
+  template <int dim>
+  void
+  NewtonEquations<dim>::find_ghost_faces()
+  {
+    ghost_faces.clear();
+    if (!(parts.problem.method.ghost_penalty > 0) ||
+        parts.problem.method.integration != TimeIntegration::quasi_static)
+      return; // in motion nodes have inertia, and this would damp it
+    const auto neighbour =
+      [&](const std::uint32_t cell, const int direction, const double step) {
+        const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
+        std::array<double, dim>  place;
+        for (int d = 0; d < dim; ++d)
+          place[d] = geometry.origin[d] + (0.5 + (d == direction ? step : 0)) /
+                                            geometry.inverse_edge[d];
+        return parts.grid.bins.cell_at(place);
+      };
+    const auto has_points = [&](const std::uint32_t cell) {
+      return std::binary_search(cells.begin(), cells.end(), cell);
+    };
+    std::vector<unsigned char> at_surface(cells.size());
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (int d = 0; d < dim; ++d)
+        for (const double step : {-1., 1.})
+          {
+            const std::uint32_t other = neighbour(cells[c], d, step);
+            if (other != invalid_cell && !has_points(other))
+              at_surface[c] = 1;
+          }
+
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      for (int d = 0; d < dim; ++d)
+        {
+          const std::uint32_t other = neighbour(cells[c], d, 1);
+          const auto          found =
+            std::lower_bound(cells.begin(), cells.end(), other);
+          if (found == cells.end() || *found != other ||
+              !(at_surface[c] || at_surface[found - cells.begin()]))
+            continue;
+          const auto own = numbers_in(cells[c]), next = numbers_in(other);
+          GhostFace  face;
+          double     area = 1;
+          for (int e = 0; e < dim; ++e)
+            if (e != d)
+              area /= parts.grid.geometry[cells[c]].inverse_edge[e];
+          // h/3 area / h^2: jumps are differences over h
+          face.stiffness = parts.problem.method.ghost_penalty * modulus() *
+                           area *
+                           parts.grid.geometry[cells[c]].inverse_edge[d] / 3;
+          unsigned int line = 0;
+          for (unsigned int i = 0; i < own.size(); ++i)
+            if ((i >> d & 1) == 0)
+              face.lines[line++] = {
+                {own[i], own[i | 1u << d], next[i | 1u << d]}};
+          ghost_faces.push_back(face);
+        }
+  }
+
+
+
+  namespace
+  {
+    /** Entry of the mass matrix of linear functions on the unit face. */
+    template <int dim>
+    double
+    face_mass(const unsigned int i, const unsigned int j)
+    {
+      double result = 1;
+      for (int d = 0; d < dim - 1; ++d)
+        result *= (i >> d & 1) == (j >> d & 1) ? 1. / 3. : 1. / 6.;
+      return result;
+    }
+
+    constexpr std::array<double, 3> second_difference{{1, -2, 1}};
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::make_matrix()
+  {
+    dealii::DynamicSparsityPattern               pattern(size(), size());
+    std::vector<dealii::types::global_dof_index> rows;
+    const auto add = [&](const auto &numbers) {
+      rows.clear();
+      for (const std::uint32_t number : numbers)
+        for (int d = 0; d < dim; ++d)
+          rows.push_back(std::size_t(number) * dim + d);
+      std::sort(rows.begin(), rows.end());
+      for (const auto row : rows)
+        pattern.add_entries(row, rows.begin(), rows.end(), true);
+    };
+    for (const std::uint32_t cell : cells)
+      add(numbers_in(cell));
+    for (const GhostFace &face : ghost_faces)
+      {
+        std::vector<std::uint32_t> numbers;
+        for (const auto &line : face.lines)
+          numbers.insert(numbers.end(), line.begin(), line.end());
+        add(numbers);
+      }
+    matrix->solver.reset();
+    matrix->values.reinit(pattern);
+  }
+
+
+
+  template <int dim>
+  std::string
+  NewtonEquations<dim>::free_motion() const
+  {
+    // Parts that hang together by cells
+    std::vector<std::uint32_t> root(nodes.size());
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](std::uint32_t i) {
+      while (root[i] != i)
+        i = root[i] = root[root[i]];
+      return i;
+    };
+    for (const std::uint32_t cell : cells)
+      {
+        const auto numbers = numbers_in(cell);
+        for (const std::uint32_t number : numbers)
+          root[find(number)] = find(numbers[0]);
+      }
+    for (std::uint32_t r = 0; r < nodes.size(); ++r)
+      {
+        if (find(r) != r)
+          continue;
+        std::vector<dealii::Point<dim>>    of_part;
+        std::vector<std::array<bool, dim>> held_there;
+        for (std::uint32_t i = 0; i < nodes.size(); ++i)
+          if (find(i) == r)
+            {
+              of_part.push_back(places[i]);
+              held_there.emplace_back();
+              for (int d = 0; d < dim; ++d)
+                held_there.back()[d] = is_held(std::size_t(i) * dim + d);
+            }
+        const std::string motion = free_rigid_motion<dim>(of_part, held_there);
+        if (!motion.empty())
+          return motion;
+      }
+    return "";
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::spread(const std::vector<double> &displacement,
+                               std::vector<double>       &on_grid) const
+  {
+    on_grid.resize(std::size_t(parts.nodes.table.n()) * dim);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      std::copy_n(&displacement[i * dim], dim, &on_grid[nodes[i] * dim]);
+  }
+
+
+
+  template <int dim>
+  bool
+  NewtonEquations<dim>::evaluate(const std::vector<double>       &displacement,
+                                 const std::vector<double> *const inertia,
+                                 const std::vector<double> *const former)
+  {
+    constexpr unsigned int n = 1 << dim;
+    spread(displacement, by_node);
+    if (former != nullptr)
+      spread(*former, former_by_node);
+    std::fill(total_forces.begin(), total_forces.end(), 0.);
+    total_energy = 0;
+    if (inertia != nullptr)
+      {
+        matrix->values        = 0;
+        matrix->is_factorised = false;
+        matrix->rows.clear();
+        matrix->columns.clear();
+        matrix->of_held.clear();
+      }
+    for (std::size_t b = 0; b < responses.size(); ++b)
+      if (!responses[b]->respond(
+            parts.bodies[b]->points.view(),
+            parts.nodes.view(),
+            by_node.data(),
+            former != nullptr ? former_by_node.data() : nullptr,
+            inertia != nullptr,
+            [&](const std::uint32_t cell, const CellResponse<dim> &response) {
+              const auto numbers = numbers_in(cell);
+              total_energy += response.energy;
+              for (unsigned int i = 0; i < n; ++i)
+                for (int d = 0; d < dim; ++d)
+                  total_forces[std::size_t(numbers[i]) * dim + d] +=
+                    response.force[i * dim + d];
+              if (inertia != nullptr)
+                add_to_matrix(numbers.data(), n, response.tangent.data());
+            }))
+        return false;
+    add_ghost_forces(displacement);
+    total_energy += energy_of_jumps;
+    if (inertia == nullptr)
+      return true;
+
+    add_ghost_tangent();
+    matrix->largest = 0;
+    for (std::size_t k = 0; k < size(); ++k)
+      if (!is_held(k))
+        matrix->values.add(k, k, (*inertia)[k]);
+    matrix->values.compress(dealii::VectorOperation::add);
+    for (std::size_t k = 0; k < size(); ++k)
+      if (!is_held(k))
+        matrix->largest =
+          std::max(matrix->largest, matrix->values.diag_element(k));
+    for (std::size_t k = 0; k < size(); ++k)
+      if (is_held(k))
+        matrix->values.set(k, k, matrix->largest);
+    matrix->values.compress(dealii::VectorOperation::insert);
+    return true;
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::add_to_matrix(const std::uint32_t *const numbers,
+                                      const unsigned int         n_nodes,
+                                      const double *const        block)
+  {
+    constexpr unsigned int most = 3 * dim << dim; // of a cell or two
+    std::array<dealii::types::global_dof_index, most> columns;
+    std::array<double, most>                          values;
+    const unsigned int                                n = n_nodes * dim;
+    for (unsigned int k = 0; k < n; ++k)
+      {
+        const std::size_t row = std::size_t(numbers[k / dim]) * dim + k % dim;
+        if (is_held(row))
+          continue;
+        unsigned int found = 0;
+        for (unsigned int l = 0; l < n; ++l)
+          {
+            const std::size_t column =
+              std::size_t(numbers[l / dim]) * dim + l % dim;
+            if (is_held(column))
+              {
+                matrix->rows.push_back(row);
+                matrix->columns.push_back(column);
+                matrix->of_held.push_back(block[k * n + l]);
+                continue;
+              }
+            columns[found]  = column;
+            values[found++] = block[k * n + l];
+          }
+        matrix->values.add(
+          row, found, columns.data(), values.data(), false, false);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::add_ghost_forces(
+    const std::vector<double> &displacement)
+  {
+    constexpr unsigned int n = 1 << (dim - 1);
+    energy_of_jumps          = 0;
+    for (const GhostFace &face : ghost_faces)
+      for (int d = 0; d < dim; ++d)
+        {
+          std::array<double, n> jump{};
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int k = 0; k < 3; ++k)
+              jump[i] += second_difference[k] *
+                         displacement[std::size_t(face.lines[i][k]) * dim + d];
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              double force = 0;
+              for (unsigned int j = 0; j < n; ++j)
+                force += face.stiffness * face_mass<dim>(i, j) * jump[j];
+              energy_of_jumps += 0.5 * force * jump[i];
+              for (unsigned int k = 0; k < 3; ++k)
+                total_forces[std::size_t(face.lines[i][k]) * dim + d] +=
+                  second_difference[k] * force;
+            }
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::add_ghost_tangent()
+  {
+    constexpr unsigned int n_lines = 1 << (dim - 1), n = 3 * n_lines * dim;
+    std::vector<double>    block(n * n);
+    std::array<std::uint32_t, 3 * n_lines> numbers;
+    for (const GhostFace &face : ghost_faces)
+      {
+        for (unsigned int i = 0; i < n_lines; ++i)
+          for (unsigned int k = 0; k < 3; ++k)
+            {
+              numbers[3 * i + k] = face.lines[i][k];
+              for (unsigned int j = 0; j < n_lines; ++j)
+                for (unsigned int l = 0; l < 3; ++l)
+                  for (int d = 0; d < dim; ++d)
+                    block[((3 * i + k) * dim + d) * n + (3 * j + l) * dim + d] =
+                      face.stiffness * face_mass<dim>(i, j) *
+                      second_difference[k] * second_difference[l];
+            }
+        add_to_matrix(numbers.data(), 3 * n_lines, block.data());
+      }
+  }
+
+
+
+  template <int dim>
+  bool
+  NewtonEquations<dim>::solve(const std::vector<double> &unbalanced,
+                              const std::vector<double> &of_held,
+                              std::vector<double>       &correction)
+  {
+    NodalVector right_side(size()), solution(size());
+    for (std::size_t k = 0; k < size(); ++k)
+      right_side[k] = is_held(k) ? of_held[k] * matrix->largest : unbalanced[k];
+    for (std::size_t e = 0; e < matrix->rows.size(); ++e)
+      right_side[matrix->rows[e]] -=
+        matrix->of_held[e] * of_held[matrix->columns[e]];
+    try
+      {
+        if (!matrix->solver)
+          {
+            std::vector<double> motions(n_rigid_motions<dim> * size());
+            for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
+              for (std::size_t k = 0; k < size(); ++k)
+                motions[m * size() + k] =
+                  rigid_motion<dim>(m, k % dim, places[k / dim], places[0]);
+            matrix->solver.emplace(size() <= largest_direct<dim>, dim, motions);
+          }
+        if (!matrix->is_factorised)
+          matrix->solver->set_matrix(matrix->values);
+        matrix->is_factorised = true;
+        matrix->solver->solve(solution, right_side);
+      }
+    catch (const ComputationError &)
+      {
+        return false;
+      }
+    correction.resize(size());
+    double all = 0;
+    for (std::size_t k = 0; k < size(); ++k)
+      {
+        correction[k] = solution[k];
+        all += std::abs(correction[k]);
+      }
+    return std::isfinite(all);
+  }
+
+
+
+  template <int dim>
+  double
+  NewtonEquations<dim>::accept(const std::vector<double> &displacement)
+  {
+    spread(displacement, by_node);
+    double longest = 0;
+    for (std::size_t b = 0; b < responses.size(); ++b)
+      longest = std::max(longest,
+                         responses[b]->accept(parts.bodies[b]->points.view(),
+                                              parts.nodes.view(),
+                                              by_node.data()));
+    return longest;
+  }
+
+
+
+  template class NewtonEquations<2>;
+  template class NewtonEquations<3>;
+} // namespace limber

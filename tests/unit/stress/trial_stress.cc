@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/materials/linear_elastic.h>
+#include <limber/materials/neo_hookean.h>
+#include <limber/stress/trial_stress.h>
+
+#include <gtest/gtest.h>
+#include <support/small_grid.h>
+
+#include <cmath>
+
+using namespace limber;
+using namespace limber::testing_support;
+
+namespace
+{
+  template <class LawType,
+            int        dimension,
+            Projection projection,
+            Frame      frame_kind>
+  struct TrialCase
+  {
+    using Law                         = LawType;
+    static constexpr int        dim   = dimension;
+    static constexpr Projection kind  = projection;
+    static constexpr Frame      frame = frame_kind;
+  };
+
+
+
+  /** Points in two cells, strained before, and what they respond. */
+  template <class Case>
+  class TrialStresses : public testing::Test
+  {
+  public:
+    static constexpr int dim = Case::dim;
+    using Law                = typename Case::Law;
+
+    TrialStresses()
+      : own(n_points,
+            true,
+            Law::template n_history<dim>,
+            Law::volumetric,
+            false)
+      , deformation(dim * dim,
+                    std::vector<double>(n_points + SmallPoints<dim>::room))
+      , places(dim, std::vector<double>(n_points + SmallPoints<dim>::room))
+      , displacement(grid.n_nodes * dim)
+      , trial(make_trial_stress<dim>(Law::name,
+                                     {1000, 1e6, 0.4},
+                                     Case::kind,
+                                     Case::frame))
+    {
+      const auto points = view();
+      const Law  law(std::array<double, 3>{{1000, 1e6, 0.4}});
+      for (std::size_t p = 0; p < n_points; ++p)
+        {
+          own.cell[p]      = p < 5 ? 1 : 6; // share a corner or an edge
+          const auto &cell = grid.cells[own.cell[p]];
+          for (int d = 0; d < dim; ++d)
+            {
+              points.position[d][p] =
+                cell.origin[d] + grid.edge[d] * random(0, 1);
+              places[d][p]                  = points.position[d][p];
+              deformation[d * (dim + 1)][p] = 1;
+            }
+          points.mass[p]     = random(0.5, 2);
+          const auto state   = law.template initialise<dim>(0.);
+          points.pressure[p] = state.pressure;
+          for (unsigned int k = 0; k < state.deviator.size(); ++k)
+            points.deviator[k][p] = state.deviator[k];
+          for (unsigned int k = 0; k < state.history.size(); ++k)
+            points.history[k][p] = state.history[k];
+        }
+      // A former step leaves stress; in the current frame also volume ratios
+      // that differ within a cell
+      set_random(0.05);
+      trial->accept(points, grid.view(), displacement.data());
+      for (std::size_t p = 0; p < n_points; ++p)
+        {
+          own.cell[p] = p < 5 ? 1 : 6;
+          for (int d = 0; d < dim; ++d)
+            points.position[d][p] = Case::frame == Frame::initial ?
+                                      points.position[d][p] :
+                                      places[d][p];
+        }
+      set_random(0.04);
+    }
+
+    PointView<dim>
+    view()
+    {
+      auto result = own.view();
+      if (Case::frame == Frame::initial)
+        {
+          for (int k = 0; k < dim * dim; ++k)
+            result.deformation[k] = deformation[k].data();
+          for (int d = 0; d < dim; ++d)
+            result.place[d] = places[d].data();
+        }
+      return result;
+    }
+
+    void
+    set_random(const double size)
+    {
+      for (double &u : displacement)
+        u = size * random();
+    }
+
+    /** Energy, force, tangent of all. */
+    struct Total
+    {
+      double              energy = 0;
+      std::vector<double> force, tangent;
+      bool                admissible = false;
+    };
+
+    Total
+    respond(const bool with_tangent = false, const double *former = nullptr)
+    {
+      const std::size_t n = displacement.size();
+      Total             result;
+      result.force.resize(n);
+      if (with_tangent)
+        result.tangent.resize(n * n);
+      result.admissible = trial->respond(
+        view(),
+        grid.view(),
+        displacement.data(),
+        former,
+        with_tangent,
+        [&](const std::uint32_t cell, const CellResponse<dim> &response) {
+          result.energy += response.energy;
+          const auto dof = [&](const int k) {
+            return grid.node_number(cell, k / dim) * dim + k % dim;
+          };
+          for (int k = 0; k < response.n; ++k)
+            {
+              result.force[dof(k)] += response.force[k];
+              if (with_tangent)
+                for (int l = 0; l < response.n; ++l)
+                  result.tangent[dof(k) * n + dof(l)] +=
+                    response.tangent[k * response.n + l];
+            }
+        });
+      return result;
+    }
+
+    static constexpr std::size_t            n_points = 12;
+    SmallGrid<dim>                          grid{3};
+    Random                                  random;
+    SmallPoints<dim>                        own;
+    std::vector<std::vector<double>>        deformation, places;
+    std::vector<double>                     displacement;
+    std::unique_ptr<const TrialStress<dim>> trial;
+  };
+
+
+
+  template <class Law, int dim>
+  using TrialCasesOf =
+    testing::Types<TrialCase<Law, dim, Projection::none, Frame::current>,
+                   TrialCase<Law, dim, Projection::cell, Frame::current>,
+                   TrialCase<Law, dim, Projection::none, Frame::initial>,
+                   TrialCase<Law, dim, Projection::cell, Frame::initial>>;
+
+  TYPED_TEST_SUITE_P(TrialStresses);
+
+
+
+  TYPED_TEST_P(TrialStresses, ForceIsTheDerivativeOfTheEnergy)
+  {
+    const auto   here = this->respond();
+    const double step = 1e-6;
+    ASSERT_TRUE(here.admissible);
+    double largest = 0, error = 0;
+    for (std::size_t k = 0; k < this->displacement.size(); ++k)
+      {
+        const double u        = this->displacement[k];
+        this->displacement[k] = u + step;
+        const double above    = this->respond().energy;
+        this->displacement[k] = u - step;
+        const double below    = this->respond().energy;
+        this->displacement[k] = u;
+        largest               = std::max(largest, std::abs(here.force[k]));
+        error =
+          std::max(error,
+                   std::abs(here.force[k] - (above - below) / (2 * step)));
+      }
+    EXPECT_GT(largest, 1); // N
+    EXPECT_LT(error, 1e-7 * largest);
+  }
+
+
+
+  TYPED_TEST_P(TrialStresses, TangentIsTheDerivativeOfTheForce)
+  {
+    const auto        here    = this->respond(true);
+    const std::size_t n       = this->displacement.size();
+    const double      step    = 1e-6;
+    double            largest = 0, error = 0, skew = 0;
+    for (std::size_t l = 0; l < n; ++l)
+      {
+        const double u        = this->displacement[l];
+        this->displacement[l] = u + step;
+        const auto above      = this->respond().force;
+        this->displacement[l] = u - step;
+        const auto below      = this->respond().force;
+        this->displacement[l] = u;
+        for (std::size_t k = 0; k < n; ++k)
+          {
+            const double entry = here.tangent[k * n + l];
+            largest            = std::max(largest, std::abs(entry));
+            skew = std::max(skew, std::abs(entry - here.tangent[l * n + k]));
+            error =
+              std::max(error,
+                       std::abs(entry - (above[k] - below[k]) / (2 * step)));
+          }
+      }
+    EXPECT_GT(largest, 1e3); // N/m
+    EXPECT_LT(error, 1e-7 * largest);
+    EXPECT_LT(skew, 1e-13 * largest);
+  }
+
+
+
+  // From displacements that are nearly the same the extrapolation is exact to
+  // second order; from those themselves it is exact.
+  TYPED_TEST_P(TrialStresses, StressInTheTangentIsExtrapolated)
+  {
+    const auto exact   = this->respond(true).tangent;
+    auto       former  = this->displacement;
+    double     largest = 0;
+    for (const double entry : exact)
+      largest = std::max(largest, std::abs(entry));
+    const auto error_from = [&](const double distance) {
+      Random random(3);
+      for (std::size_t k = 0; k < former.size(); ++k)
+        former[k] = this->displacement[k] + distance * random();
+      const auto tangent = this->respond(true, former.data()).tangent;
+      double     error   = 0;
+      for (std::size_t k = 0; k < exact.size(); ++k)
+        error = std::max(error, std::abs(tangent[k] - exact[k]));
+      return error / largest;
+    };
+    EXPECT_LT(error_from(0), 1e-13);
+    if (!TypeParam::Law::finite_strain)
+      return;
+    const double far = error_from(4e-3), near = error_from(2e-3);
+    EXPECT_GT(far, 1e-6);
+    EXPECT_GT(far / near, 3.5);
+  }
+
+
+
+  TYPED_TEST_P(TrialStresses, TrialsLeaveThePointsAsTheyAre)
+  {
+    const auto fields = this->own.fields;
+    const auto F      = this->deformation;
+    this->respond(true);
+    EXPECT_EQ(fields, this->own.fields);
+    EXPECT_EQ(F, this->deformation);
+    this->trial->accept(this->view(),
+                        this->grid.view(),
+                        this->displacement.data());
+    EXPECT_NE(fields, this->own.fields);
+  }
+
+
+
+  // Places and functions stay, so what has been accepted is where the next step
+  // begins.
+  TYPED_TEST_P(TrialStresses, AcceptedStateIsThatOfTheTrial)
+  {
+    const auto before = this->respond();
+    const auto places = this->own.fields;
+    this->trial->accept(this->view(),
+                        this->grid.view(),
+                        this->displacement.data());
+    for (int d = 0; d < this->dim; ++d)
+      if (TypeParam::frame == Frame::current)
+        this->own.fields[d] = places[d];
+    for (std::size_t p = 0; p < this->n_points; ++p)
+      this->own.cell[p] = p < 5 ? 1 : 6;
+    this->set_random(0);
+    const auto after = this->respond();
+    EXPECT_NEAR(after.energy, before.energy, 1e-12 * before.energy);
+    if (TypeParam::frame == Frame::initial)
+      for (std::size_t k = 0; k < before.force.size(); ++k)
+        EXPECT_NEAR(after.force[k], before.force[k], 1e-7);
+  }
+
+
+
+  TYPED_TEST_P(TrialStresses, PointsTurnedInsideOutAreRefused)
+  {
+    if (!TypeParam::Law::finite_strain)
+      return;
+    // the mirror image of the cells
+    for (std::size_t node = 0; node < this->grid.n_nodes; ++node)
+      this->displacement[node * this->dim] = -3 * this->grid.place(node)[0];
+    EXPECT_FALSE(this->respond().admissible);
+  }
+
+
+
+  REGISTER_TYPED_TEST_SUITE_P(TrialStresses,
+                              ForceIsTheDerivativeOfTheEnergy,
+                              TangentIsTheDerivativeOfTheForce,
+                              StressInTheTangentIsExtrapolated,
+                              TrialsLeaveThePointsAsTheyAre,
+                              AcceptedStateIsThatOfTheTrial,
+                              PointsTurnedInsideOutAreRefused);
+
+  template <int dim>
+  using NeoHookeanTrials = TrialCasesOf<NeoHookean, dim>;
+  template <int dim>
+  using LinearTrials = TrialCasesOf<LinearElastic, dim>;
+  INSTANTIATE_TYPED_TEST_SUITE_P(NeoHookean2d,
+                                 TrialStresses,
+                                 NeoHookeanTrials<2>);
+  INSTANTIATE_TYPED_TEST_SUITE_P(NeoHookean3d,
+                                 TrialStresses,
+                                 NeoHookeanTrials<3>);
+  INSTANTIATE_TYPED_TEST_SUITE_P(Linear2d, TrialStresses, LinearTrials<2>);
+  INSTANTIATE_TYPED_TEST_SUITE_P(Linear3d, TrialStresses, LinearTrials<3>);
+} // namespace

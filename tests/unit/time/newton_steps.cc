@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/time/free_motions.h>
+
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+#include <cmath>
+
+/**
+ * @file Steps that Newton's method solves: equilibrium under growing loads, and
+ * the trapezoidal rule (NewtonIntegrator).
+ */
+
+using namespace limber;
+
+namespace
+{
+  // A column between slip walls on a slip floor, E = rho g H
+  const std::string column = R"(
+    set End time = 1
+    set Bodies = column
+    subsection Body column
+      subsection Box
+        set Upper corner = 1, 16
+      end
+      set Points per cell edge = 2
+      set Material = neo hookean
+      subsection Neo hookean
+        set Density = 100
+        set Young's modulus = 1.6e4
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Grid
+      set Upper corner = 1, 18
+      set Cells = 1, 18
+    end
+    subsection Loads
+      set Gravity = 0, -10
+    end
+    subsection Method
+      set Time integration = quasi-static
+    end)";
+
+  // A strip that is held at its left end; the current frame, so that points
+  // leave their cells
+  const std::string held_strip = R"(
+    set End time = 1
+    set Bodies = strip
+    subsection Body strip
+      subsection Box
+        set Lower corner = 0, 2
+        set Upper corner = 8, 3
+      end
+      set Points per cell edge = 2
+      set Material = neo hookean
+      subsection Neo hookean
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Grid
+      set Upper corner = 10, 5
+      set Cells = 20, 10
+    end
+    subsection Boundaries
+      set left = no slip
+      set right = free
+      set bottom = free
+      set top = free
+    end)";
+
+  /** Of all points, m. */
+  double
+  mean_height(SceneRun<2> &run)
+  {
+    const auto points = run.points();
+    double     result = 0;
+    for (std::size_t p = 0; p < points.size; ++p)
+      result += points.position[1][p] / double(points.size);
+    return result;
+  }
+} // namespace
+
+
+
+// Nominal stress - rho g (H - Z) at any deformation; the shortening of the
+// column by quadrature of the stretch that the law has under it.
+TEST(NewtonSteps, ColumnSettlesUnderItsWeight)
+{
+  for (const std::string frame : {"initial", "current"})
+    {
+      SCOPED_TRACE(frame);
+      SceneRun<2>  run(column,
+                      {"Body column/Frame=" + frame,
+                        // in the current frame without crossing cells
+                        "Body column/Neo hookean/Young's modulus=" +
+                          std::string(frame == "initial" ? "1.6e4" : "1.6e6")});
+      const double before = mean_height(run);
+      run.advance_to(1);
+      // sinking of the mean of all places over H, q = rho g H / E = 1 and .01:
+      // quadrature of the stretch of the law
+      const double q       = frame == "initial" ? 1 : 0.01;
+      double       sinking = 0;
+      const int    n       = 2000;
+      const double E = 1, third = 1. / 3.;
+      double       top = 0; // of a place, and of those before
+      for (int k = 0; k < n; ++k)
+        {
+          const double load = q * (1 - (k + 0.5) / n);
+          double       J    = 1; // laterally held: J is the stretch
+          for (int i = 0; i < 100; ++i)
+            {
+              const auto stress = [&](const double l) {
+                // Kirchhoff: G dev(be) + K/2 (J^2 - 1), K = E/3, G = E/2
+                return E / 2 * (2 * third) * std::pow(l, -2 * third) *
+                         (l * l - 1) +
+                       E * third / 2 * (l * l - 1);
+              };
+              const auto unbalance = [&](const double l) {
+                return stress(l) / l + load;
+              };
+              J -= unbalance(J) /
+                   ((unbalance(J + 1e-7) - unbalance(J - 1e-7)) / 2e-7);
+            }
+          const double shortening = (1 - J) / n;
+          sinking += (top + 0.5 * shortening) / n;
+          top += shortening;
+        }
+      if (q == 1)
+        {
+          EXPECT_NEAR(top, 0.30428, 2e-5); // as published by other codes' tests
+        }
+      EXPECT_NEAR((before - mean_height(run)) / 16, sinking, 0.005 * sinking);
+    }
+}
+
+
+
+// Sides work and loads work as much as strain stores.
+TEST(NewtonSteps, WorkOfLoadsIsStored)
+{
+  SceneRun<2> run(held_strip,
+                  {"Method/Time integration=quasi-static",
+                   "Loads/Gravity=0, -2",
+                   "Body strip/Frame=initial"});
+  run.advance_to(1);
+  EXPECT_LT(std::abs(run.totals().energy_drift), 2e-3);
+}
+
+
+
+TEST(NewtonSteps, FewIterationsWhereABeamTurns)
+{
+  SceneRun<2> run(held_strip,
+                  {"Method/Time integration=quasi-static",
+                   "Loads/Gravity=0, -2",
+                   "Body strip/Frame=initial"});
+  run.advance_to(1);
+  const std::string effort = run.integrator.effort();
+  EXPECT_NE(effort.find("steps halved: 0"), std::string::npos) << effort;
+  EXPECT_EQ(run.n_done, 10u);
+}
+
+
+
+// A body that nothing holds has no place of equilibrium, and nothing has moved.
+TEST(NewtonSteps, FreeMotionIsNamed)
+{
+  struct Case
+  {
+    std::vector<std::string> changes;
+    std::string              motion;
+  };
+  for (const Case &wrong :
+       {Case{{"Boundaries/left=free"}, "the translation along x"},
+        Case{{"Boundaries/left=slip"}, "the translation along y"}})
+    {
+      std::vector<std::string> changes = wrong.changes;
+      changes.push_back("Method/Time integration=quasi-static");
+      changes.push_back("Loads/Gravity=0, -1");
+      SceneRun<2> run(held_strip, changes);
+      const auto  before = run.positions();
+      try
+        {
+          run.advance(0.1);
+          ADD_FAILURE() << "ran";
+        }
+      catch (const ComputationError &failure)
+        {
+          EXPECT_NE(std::string(failure.what()).find(wrong.motion),
+                    std::string::npos)
+            << failure.what();
+        }
+      EXPECT_EQ(before, run.positions());
+    }
+}
+
+
+
+TEST(NewtonSteps, FreeMotionsOfPlaces)
+{
+  using Held = std::vector<std::array<bool, 3>>;
+  const std::vector<dealii::Point<3>> corners = {{0, 0, 0},
+                                                 {1, 0, 0},
+                                                 {0, 1, 0},
+                                                 {0, 0, 1}};
+  const std::array<bool, 3>           all{{true, true, true}}, none{},
+    z{{false, false, true}};
+  EXPECT_EQ(free_rigid_motion<3>(corners, Held{all, all, all, none}), "");
+  EXPECT_EQ(free_rigid_motion<3>(corners, Held{none, none, none, none}),
+            "the translation along x");
+  EXPECT_EQ(free_rigid_motion<3>(corners, Held{z, z, z, none}),
+            "the translation along x");
+  // a hinge along the first axis
+  EXPECT_EQ(free_rigid_motion<3>(corners, Held{all, all, none, none}),
+            "the rotation about x");
+  EXPECT_EQ(
+    free_rigid_motion<3>(corners, Held{all, none, none, none}).substr(0, 12),
+    "the rotation");
+}
+
+
+
+// Where the step is too long for the sides, it is found in parts, or not at
+// all; then the points are what they were.
+TEST(NewtonSteps, StepsThatAreNotFoundLeaveThePoints)
+{
+  SceneRun<2> run(held_strip,
+                  {"Method/Time integration=quasi-static",
+                   "Boundaries/left=velocity",
+                   "Boundaries/Side left/Velocity=100000; 0",
+                   "Boundaries/right=no slip",
+                   "Body strip/Box/Upper corner=10, 3"});
+  const auto  before = run.positions();
+  EXPECT_THROW(run.advance(1), ComputationError);
+  EXPECT_EQ(before, run.positions());
+}
+
+
+
+// What a swinging strip loses is on record: the lumped mass of short waves that
+// points do not get. The rest is what the rule does not keep of a large motion.
+TEST(NewtonSteps, SwingingStripKeepsItsEnergy)
+{
+  for (const double step : {0.2, 0.1})
+    {
+      SceneRun<2>  run(held_strip,
+                      {"Method/Time integration=implicit",
+                        "Method/Time step=" + digits(step),
+                        "Body strip/Frame=initial",
+                        "Body strip/Initial velocity=0; x*x/40"});
+      const double start = run.totals().all.total_energy();
+      run.advance(step, std::lround(10 / step));
+      const auto totals = run.totals();
+      EXPECT_LT(std::abs(totals.energy_drift), 5e-3);
+      EXPECT_NEAR(totals.all.total_energy() / start, 1, 0.03);
+      EXPECT_GT(totals.all.strain_energy, 0.3 * start); // it has bent
+    }
+}
