@@ -200,11 +200,13 @@ namespace limber
       HealthLine         line;
       line.value   = creep(body);
       line.verdict = check.verdict(line.value);
-      // What creep takes, the work of loads, is missing from the balance; in
-      // swings about zero it goes to and fro.
+      // What creep takes, the work of loads, is missing from the balance, or
+      // goes into the sides that hold the body; in swings about zero it goes to
+      // and fro.
       constexpr double balance_holds = 0.01;
       if (line.verdict == Verdict::bad &&
-          std::abs(figures.drift) <= balance_holds)
+          std::abs(figures.drift) <= balance_holds &&
+          -figures.sides <= balance_holds * figures.energy_scale)
         line.verdict = Verdict::look;
       const bool smooth = body.kernel != KernelKind::linear;
       line.entry = of_body(body, smooth ? "Points per cell edge" : "Frame");

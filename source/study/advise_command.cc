@@ -85,8 +85,16 @@ stopped by signal n.
       // "... 512 points of 1 body in 720 cells of 0.25 m; first step 0.0027 s"
       const auto step = text.str().find("first step ");
       if (end.exit_code != 0 || step == std::string::npos)
-        throw InputError("The scene " + in_quotes(scene) +
-                         " cannot be built. " + text.str());
+        {
+          // its message alone, behind what it has noted
+          const std::string all   = text.str();
+          const auto        start = all.rfind("Error: ");
+          throw InputError("The scene " + in_quotes(scene) +
+                           " cannot be built. " +
+                           (start == std::string::npos ?
+                              "See what 'limber " + scene + "' says." :
+                              limber::trimmed(all.substr(start + 7))));
+        }
       return std::stod(text.str().substr(step + 11));
     }
 
