@@ -165,10 +165,14 @@ TEST(Balances, DropOnSlipFloor)
         else
           EXPECT_GE(coarse.drift_falling / short_steps.drift_falling, 3.2);
         if (order == "usf")
-          EXPECT_GE(short_steps.drift / small_cells.drift, 1.6);
+          {
+            EXPECT_GE(short_steps.drift / small_cells.drift, 1.6);
+          }
         else
           for (const Drop *const drop : {&short_steps, &small_cells})
-            EXPECT_LT(drop->drift, 0.01);
+            {
+              EXPECT_LT(drop->drift, 0.01);
+            }
       }
 }
 

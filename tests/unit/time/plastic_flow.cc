@@ -106,13 +106,18 @@ TEST(PlasticFlow, TakesTheEnergyOfAnImpact)
 // and 63 with linear functions.
 TEST(PlasticFlow, GoesWithEveryKernel)
 {
-  const std::map<std::string, double> kernels = {{"quadratic", 0.04},
-                                                 {"cubic", 0.042},
-                                                 {"cpdi", 0.04}};
-  for (const auto &[kernel, tolerance] : kernels)
-    test_impact<2>("subsection Method\n set Kernel = " + kernel + "\nend\n",
-                   tolerance,
-                   0.27);
+  struct Kernel
+  {
+    std::string word;
+    double      tolerance, share;
+  };
+  for (const Kernel &kernel : {Kernel{"quadratic", 0.04, 0.3},
+                               Kernel{"cubic", 0.042, 0.27},
+                               Kernel{"cpdi", 0.04, 0.29}})
+    test_impact<2>("subsection Method\n set Kernel = " + kernel.word +
+                     "\nend\n",
+                   kernel.tolerance,
+                   kernel.share);
   test_impact<3>("subsection Method\n set Kernel = quadratic\nend\n", 0.04);
 }
 
