@@ -85,8 +85,8 @@ namespace
 
 
 
-// An elastic block leaves as much of this impact to the steps: 2.3 to 3.6 %
-// with linear functions, 3.5 % with splines, 2.6 % with CPDI. With USL it is
+// The balance closes to 0.8 %, with USF, where nobody knows what the floor
+// takes of velocities that points give back, to 2.9 %. With USL the block is
 // lost to small cut cells, or loses 9 to 11 %.
 TEST(PlasticFlow, TakesTheEnergyOfAnImpact)
 {
@@ -96,8 +96,8 @@ TEST(PlasticFlow, TakesTheEnergyOfAnImpact)
         "subsection Method\n set Stress update = " + order +
           "\nend\nsubsection Body block\n set Locking treatment = " +
           treatment + "\nend\n",
-        0.04);
-  test_impact<3>("", 0.04);
+        order == "usf" ? 0.03 : 0.01);
+  test_impact<3>("", 0.01);
 }
 
 
@@ -106,19 +106,14 @@ TEST(PlasticFlow, TakesTheEnergyOfAnImpact)
 // and 63 with linear functions.
 TEST(PlasticFlow, GoesWithEveryKernel)
 {
-  struct Kernel
-  {
-    std::string word;
-    double      tolerance, share;
-  };
-  for (const Kernel &kernel : {Kernel{"quadratic", 0.04, 0.3},
-                               Kernel{"cubic", 0.042, 0.27},
-                               Kernel{"cpdi", 0.04, 0.29}})
-    test_impact<2>("subsection Method\n set Kernel = " + kernel.word +
-                     "\nend\n",
-                   kernel.tolerance,
-                   kernel.share);
-  test_impact<3>("subsection Method\n set Kernel = quadratic\nend\n", 0.04);
+  const std::map<std::string, double> shares = {{"quadratic", 0.3},
+                                                {"cubic", 0.27},
+                                                {"cpdi", 0.29}};
+  for (const auto &[kernel, share] : shares)
+    test_impact<2>("subsection Method\n set Kernel = " + kernel + "\nend\n",
+                   0.005,
+                   share);
+  test_impact<3>("subsection Method\n set Kernel = quadratic\nend\n", 0.01);
 }
 
 
