@@ -22,7 +22,7 @@ _limber() {
       mapfile -t COMPREPLY < <(compgen -W "prm json markdown" -- "$word")
       return ;;
     --list)
-      mapfile -t COMPREPLY < <(compgen -W "laws kernels schemes shapes exact" \
+      mapfile -t COMPREPLY < <(compgen -W "laws kernels schemes shapes sides contact exact" \
         -- "$word")
       return ;;
     --set)

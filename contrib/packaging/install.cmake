@@ -29,9 +29,17 @@ install(DIRECTORY doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/doc)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME limber)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-set(CPACK_PACKAGE_CONTACT "The Limber authors <maintainers@example.org>")
+# Whoever builds a package answers for it: name yourself before handing it on.
+set(LIMBER_MAINTAINER "built locally <root@localhost>" CACHE STRING
+  "Name and address in the Debian package")
+set(CPACK_PACKAGE_CONTACT "${LIMBER_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY
   "material point method for solids and fluids that do not lock")
+set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
+  "Material points on a background grid, explicit, semi-implicit or implicit in
+time, in two and three dimensions, parallel by MPI. Commands run scenes, compare
+them with finite elements, and draw pictures and films. Scenes and documents
+come along.")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES YES)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)

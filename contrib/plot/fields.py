@@ -60,6 +60,44 @@ class Source:
             cloud["arrays"] = arrays  # read only if a field is not here
         return cloud
 
+    def cells(self, index):
+        """Lower and upper corners (n, 2) of the grid's cells in picture i, in two
+        dimensions; where cells have levels, those of each, coarsest first."""
+        times, files = run_folder.series(self.folder, "grid")
+        if not len(times) or self.dimension != 2 or self.is_reference:
+            fail(f"The grid of '{self.folder}' cannot be drawn: "
+                 + ("lines are drawn in two dimensions only."
+                    if self.dimension != 2 else "there is no 'grid.pvd', as runs "
+                    "write it."))
+        arrays = run_folder.points(
+            files[int(np.argmin(abs(times - self.times[index])))])
+        corners = arrays["position"][:, :2].reshape(-1, 4, 2)
+        level = arrays.get("level", np.zeros(4 * len(corners)))[::4].round()
+        order = np.argsort(level, kind="stable")
+        return corners[order].min(axis=1), corners[order].max(axis=1)
+
+    @property
+    def has_levels(self):
+        return not self.is_reference and int(
+            self.parameters.get("Grid/Levels", "0")) > 0
+
+    def shrinking(self, index, places):
+        """For each place the edge of its cell over that of a coarse one, in two
+        dimensions; elsewhere 1."""
+        if not self.has_levels or self.dimension != 2:
+            return np.ones(len(places))
+        p = self.parameters
+        low, high, cells = (run_folder.numbers(p[f"Grid/{name}"])[:2] for name in
+                            ("Lower corner", "Upper corner", "Cells"))
+        fine = (high - low) / cells / 2**int(p["Grid/Levels"])
+        lower, upper = (((corner - low) / fine).round().astype(int)
+                        for corner in self.cells(index))
+        width = np.ones(((high - low) / fine).round().astype(int))
+        for (i, j), (k, l) in zip(lower, upper):
+            width[i:k, j:l] = (k - i) * fine[0] * cells[0] / (high - low)[0]
+        at = ((places[:, :2] - low) / fine).astype(int)
+        return width[tuple(np.clip(at, 0, np.array(width.shape) - 1).T)]
+
     def spacing(self, cloud, body=None):
         """Mean distance of neighbouring points at the start, in m."""
         p = self.parameters

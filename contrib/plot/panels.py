@@ -4,11 +4,12 @@ same size for all of them."""
 import charts
 from charts import np
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import EllipseCollection
+from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.tri import Triangulation
 
 import fields
+import obstacles
 import run_folder
 import spheres
 
@@ -32,11 +33,15 @@ class State:
                                           source.folder) for d in "xyz"], axis=1)
             self.start = self.place - move
             self.place = self.start + look.enlarge * move
+        self.cells = source.cells(index) if look.grid else None
         self.spacing = source.spacing(cloud, look.body)
         self.sizes = np.full(len(self.place), self.spacing)  # one a point
         if "body" in cloud and look.body is None:
             own = [source.spacing(cloud, name) for name in source.bodies]
             self.sizes = np.array(own)[np.round(cloud["body"]).astype(int)]
+        # Points of fine cells are small.
+        self.sizes = self.sizes * source.shrinking(
+            index, np.array(cloud["position"], float))
 
 
 class Look:
@@ -44,11 +49,13 @@ class Look:
 
     field, body: names; enlarge: factor of displacements; limits: lower and upper
     end of the colours, in the unit of the field, or nothing; view: azimuth and
-    elevation in degrees; zoom: (lower, upper) corner of what is seen, or nothing.
+    elevation in degrees; zoom: (lower, upper) corner of what is seen, or nothing;
+    grid: whether the lines of the cells are drawn.
     """
 
     def __init__(self, field, body=None, enlarge=1., limits=None,
-                 view=(30., 20.), zoom=None):
+                 view=(30., 20.), zoom=None, grid=False):
+        self.grid = grid
         self.field, self.body, self.enlarge = field, body, enlarge
         self.limits, self.view, self.zoom = limits, view, zoom
         self.is_body = field == "body"
@@ -140,7 +147,11 @@ def draw(axis, state, look):
     axis.set_xlim(look.lower[0], look.upper[0])
     axis.set_ylim(look.lower[1], look.upper[1])
     axis.set_aspect("equal")
+    if state.cells is not None:
+        _draw_cells(axis, *state.cells)
     _draw_box(axis, state, look)
+    obstacles.draw(axis, state.source.parameters, state.time, look.lower,
+                   look.upper)
 
 
 def _draw_box(axis, state, look):
@@ -150,6 +161,15 @@ def _draw_box(axis, state, look):
     axis.plot([lower[0], upper[0], upper[0], lower[0], lower[0]],
               [lower[1], lower[1], upper[1], upper[1], lower[1]],
               color="0.6", linewidth=0.8, zorder=0, scalex=False, scaley=False)
+
+
+def _draw_cells(axis, lower, upper):
+    """The edges of cells, each line once; finer ones over coarser ones."""
+    lines = np.concatenate([
+        np.stack([lower, np.stack([upper[:, 0], lower[:, 1]], axis=1)], axis=1),
+        np.stack([lower, np.stack([lower[:, 0], upper[:, 1]], axis=1)], axis=1)])
+    axis.add_collection(LineCollection(lines, colors="0.55", linewidths=0.45,
+                                       zorder=3))
 
 
 def _draw_elements(axis, state, look):
@@ -194,6 +214,11 @@ def _upwards(source):
     return int(np.argmax(abs(gravity))) if np.any(gravity) else 1
 
 
+def _upwards_of(camera):
+    """The axis that is seen upright: no part of it goes to the right."""
+    return int(np.argmin(abs(camera.turn[0])))
+
+
 def _draw_edges(axis, camera, look):
     """The box that is seen, with its sizes in metres."""
     lower, upper = look.lower, look.upper
@@ -210,8 +235,18 @@ def _draw_edges(axis, camera, look):
                 axis.plot(*seen[[i, j], :2].T, color="0.7", linewidth=0.7,
                           zorder=3 if hidden else 1,
                           alpha=0.35 if hidden else 1)
-    lowest = np.argsort(seen[:, 1])[:4]
+    up = _upwards_of(camera)
+    lowest = [i for i in range(8) if not i >> up & 1]
     for d, name in enumerate("xyz"):
+        size = f"{name} = {lower[d]:.2g} to {upper[d]:.3g} m"
+        if d == up:  # along the edge at the left
+            i = np.argmin(seen[:, 0])
+            middle = seen[[i, i ^ (1 << d)], :2].mean(axis=0)
+            axis.annotate(size, middle, textcoords="offset points",
+                          xytext=(-4, 0), fontsize=7, color="0.35", rotation=90,
+                          horizontalalignment="right",
+                          verticalalignment="center")
+            continue
         edges = [(i, i ^ (1 << d)) for i in lowest if i < i ^ (1 << d)
                  and i ^ (1 << d) in lowest]
         if not edges:
@@ -220,10 +255,11 @@ def _draw_edges(axis, camera, look):
         middle = seen[[i, j], :2].mean(axis=0)
         centre = seen[:, :2].mean(axis=0)
         outward = np.sign(middle - centre)
-        axis.annotate(f"{name} = {lower[d]:.2g} to {upper[d]:.3g} m", middle,
+        axis.annotate(size, middle,
                       textcoords="offset points",
-                      xytext=(14 * outward[0], -9), fontsize=7, color="0.35",
-                      horizontalalignment="center", verticalalignment="top")
+                      xytext=(4 * outward[0], -4), fontsize=7, color="0.35",
+                      horizontalalignment="left" if outward[0] > 0 else "right",
+                      verticalalignment="top")
 
 
 def figure_of(states, look, labels, width=None):

@@ -45,6 +45,9 @@ def parser_for(word, description):
     parser.add_argument("--view", type=float, nargs=2, default=(30., 20.),
                         metavar=("AZIMUTH", "ELEVATION"),
                         help="of the camera in three dimensions, in degrees")
+    parser.add_argument("--grid", action="store_true",
+                        help="draw the lines of the grid's cells, of all their "
+                        "sizes; in two dimensions")
     parser.add_argument("--labels", nargs="+", metavar="NAME",
                         help="names of the runs, instead of their folders'")
     parser.add_argument("--output", type=Path, metavar="PATH",
@@ -74,7 +77,8 @@ def look_of(arguments, sources):
                         "Set 'Output/Fields' in the scene.")
         field = "pressure" if "pressure" in names else names[0]
     return panels.Look(field, arguments.body, arguments.enlarge,
-                       arguments.range, tuple(arguments.view))
+                       arguments.range, tuple(arguments.view),
+                       grid=arguments.grid)
 
 
 def snapshots(arguments, sources, labels):

@@ -71,9 +71,10 @@ def floor_of(rows, measure, meta):
     return 0.3 * min((y for y in values if y > largest * 10.**-DECADES))
 
 
-def draw_line(axis, rows, measure, meta, style, floor, marks):
+def draw_line(axis, rows, measure, meta, style, floor, marks, grown=1.):
     """One method: its points, joined in the order of the horizontal axis. Of
-    several variations against cost only the last one goes along a line."""
+    several variations against cost only the last one goes along a line. Marks and
+    line are @p grown times as large."""
     points = points_of(rows, measure, meta)
     joined = {}
     for x, y, row in points:
@@ -84,8 +85,8 @@ def draw_line(axis, rows, measure, meta, style, floor, marks):
     for line in joined.values():
         seen = [p for p in line if floor is None or p[1] >= floor]
         axis.plot([p[0] for p in seen], [p[1] for p in seen], label=label,
-                  markersize=7 if style["marker"] == "*" else 4.5,
-                  linewidth=1, **style)
+                  markersize=grown * (7 if style["marker"] == "*" else 4.5),
+                  linewidth=grown, **style)
         label = None
         for p in line:
             if p not in seen:
@@ -109,6 +110,15 @@ def draw_line(axis, rows, measure, meta, style, floor, marks):
     return bool(points)
 
 
+def coincide(rows, others, measure, meta):
+    """Whether two methods have the same points, to what is seen: 1 %."""
+    own, other = ({x: y for x, y, _ in points_of(r, measure, meta)}
+                  for r in (rows, others))
+    return bool(own) and own.keys() == other.keys() and all(
+        abs(own[x] - other[x]) <= 0.01 * max(abs(own[x]), abs(other[x]))
+        for x in own)
+
+
 def draw_failed(axis, rows, meta, colour):
     """Crosses at the upper edge; a failed run may have no cost at all."""
     transform = axis.get_xaxis_transform()
@@ -126,9 +136,11 @@ def draw_failed(axis, rows, meta, colour):
             " ..." if len(places) > 3 else "")
         axis.annotate(f"{which}: {reason}" if meta["against cost"] else reason,
                       (places[0][0] if len(places) < 3 else x, 0.98),
-                      fontsize=6, xycoords=transform, rotation=90, color=colour,
-                      textcoords="offset points", xytext=(0, -5),
-                      horizontalalignment="center", verticalalignment="top")
+                      fontsize=7, xycoords=transform, rotation=90, color=colour,
+                      textcoords="offset points", xytext=(0, -5), zorder=4,
+                      horizontalalignment="center", verticalalignment="top",
+                      bbox={"facecolor": "white", "alpha": 0.8, "pad": 1,
+                            "linewidth": 0})
 
 
 def draw_closed_forms(axis, methods, meta):
@@ -150,8 +162,8 @@ def place_marks(axis, marks):
     inside = axis.get_window_extent()
     for _, x, y, text, colour in sorted(marks, key=lambda m: -m[0]):
         px, py = axis.transData.transform((x, y))
-        width, height = 4.2 * len(text) + 2, 8
-        for dx, dy in ((5, 3), (5, -9), (-width - 3, 3), (-width - 3, -9)):
+        width, height = 5 * len(text) + 2, 10
+        for dx, dy in ((5, 3), (5, -11), (-width - 3, 3), (-width - 3, -11)):
             box = (px + dx, py + dy, px + dx + width, py + dy + height)
             if (box[2] < inside.x1 and box[0] > inside.x0 and
                     box[1] > inside.y0 and all(
@@ -159,7 +171,7 @@ def place_marks(axis, marks):
                         box[3] < o[1] for o in taken)):
                 taken.append(box)
                 scale = 72 / axis.figure.dpi
-                axis.annotate(text, (x, y), fontsize=6, color=colour,
+                axis.annotate(text, (x, y), fontsize=7, color=colour,
                               textcoords="offset points",
                               xytext=(dx * scale, dy * scale))
                 break
@@ -187,8 +199,14 @@ def draw_panel(axis, rows, measure, meta):
         if meta["closed forms"]:
             style.update(linestyle="none", fillstyle="none",
                          markeredgewidth=1.2)
-        if not draw_line(axis, own, measure, meta, style, floor, marks) and any(
-                row["outcome"] != "finished" for row in own):
+        # larger below those that would hide it
+        grown = 1. if meta["against cost"] or meta["closed forms"] else (
+            1 + 0.6 * min(2, sum(coincide(own, [row for row in rows
+                                         if row["method"] == other],
+                                   measure, meta)
+                          for other in methods[index + 1:])))
+        drawn = draw_line(axis, own, measure, meta, style, floor, marks, grown)
+        if not drawn and any(row["outcome"] != "finished" for row in own):
             axis.plot([], [], "x", color=style["color"], label=method)
         draw_failed(axis, own, meta, style["color"])
     if is_logarithmic(meta, "horizontal"):
@@ -237,39 +255,51 @@ def panels_of(rows, meta):
     return panels
 
 
-def draw_measure(row_of_axes, panels, measure, meta):
+def draw_measure(axes, panels, measure, meta):
     todo = []
-    for axis, (title, own) in zip(row_of_axes, panels.items()):
+    for axis, (title, own) in zip(axes, panels.items()):
         todo.append((axis, draw_panel(axis, own, measure, meta)))
         title = ", ".join(([measure] if len(meta["measures"]) > 1 else []) +
                           ([title] if title else []))
         if title:
-            axis.set_title(title, fontsize=9)
-        if axis is not row_of_axes[0]:
-            axis.set_ylabel("")
-    limits = [axis.get_ylim() for axis in row_of_axes]
-    for axis in row_of_axes:
+            axis.set_title(title, fontsize=10)
+    limits = [axis.get_ylim() for axis in axes]
+    for axis in axes:
         axis.set_ylim(min(low for low, _ in limits),
                       max(high for _, high in limits))
     return todo
 
 
+def measures_of(rows, meta):
+    """Those that are drawn: one that repeats another, as the mean over a single
+    filling does, is not."""
+    known = {}
+    for measure in meta["measures"]:
+        values = tuple(row[measure + " error"] for row in rows)
+        known.setdefault(values, measure)
+    return list(known.values())
+
+
+PER_ROW = 2  # panels; with more of them texts are too small on a page
+
+
 def draw(rows, meta):
     """The chart of a study as a figure: rows of study.csv, study.json."""
+    meta = {**meta, "measures": measures_of(rows, meta)}
     measures = meta["measures"]
     panels = panels_of(rows, meta)
-    # many panels make a second row
-    per_row = len(panels) * len(measures)
-    lines = 1
-    if len(measures) > 1 and len(panels) > 1:
-        per_row, lines = len(panels), len(measures)
-    width = 6 if len(panels) == 1 else 3
-    total = 2.5 + width * per_row
-    caption = "\n".join(textwrap.wrap(meta["caption"], int(15 * total)))
+    number_of_panels = len(panels) * len(measures)
+    per_row = min(number_of_panels, PER_ROW)
+    lines = -(-number_of_panels // per_row)
+    total = 2.5 + (6.5 if per_row == 1 else 4.5 * per_row)
+    caption = "\n".join(textwrap.wrap(meta["caption"], int(14 * total)))
     figure, axes = plt.subplots(
         lines, per_row, squeeze=False, layout="constrained",
-        figsize=(total, 0.7 + 4.5 * lines))
+        figsize=(total, 0.9 + (4.5 if per_row == 1 else 3.9) * lines))
     flat, marks = list(axes.flat), []
+    for axis in flat[number_of_panels:]:
+        axis.set_axis_off()
+    flat = flat[:number_of_panels]
     for index, measure in enumerate(measures):
         marks += draw_measure(
             flat[index * len(panels):(index + 1) * len(panels)], panels,
@@ -279,10 +309,10 @@ def draw(rows, meta):
         for handle, label in zip(*axis.get_legend_handles_labels()):
             entries.setdefault(label, handle)
     if entries:
-        axes[0][-1].legend(entries.values(), entries.keys(), fontsize=7,
+        axes[0][-1].legend(entries.values(), entries.keys(), fontsize=8,
                            loc="upper left", bbox_to_anchor=(1.01, 1))
     figure.suptitle(meta["title"])
-    figure.supxlabel(caption, fontsize=6, color="grey")
+    figure.supxlabel(caption, fontsize=7, color="grey")
     for axis, texts in marks:
         place_marks(axis, texts)
     return figure

@@ -95,9 +95,9 @@ def points(path):
             for name in pieces[0]}
 
 
-def series(folder):
-    """Returns the times and the files of points.pvd, in order."""
-    path = Path(folder) / "points.pvd"
+def series(folder, name="points"):
+    """Returns the times and the files of NAME.pvd, in order."""
+    path = Path(folder) / f"{name}.pvd"
     if not path.exists():
         return np.array([]), []
     files = {}

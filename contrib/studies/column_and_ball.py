@@ -96,6 +96,32 @@ def column_error(arguments, method, cells, modulus):
     return np.abs(yy - exact).mean() / (WEIGHT * LENGTH), sinks
 
 
+def draw_column(curves, target):
+    """The chart: errors for each (modulus, method) and COLUMN_CELLS."""
+    figure, axes = plt.subplots(1, 3, figsize=(13, 4.4), sharey=True,
+                                layout="constrained")
+    for axis, modulus in zip(axes, COLUMN_MODULI):
+        for name in COLUMN_METHODS:
+            axis.loglog(COLUMN_CELLS, curves[modulus, name], markersize=5,
+                        linewidth=1, label=name, **charts.style_of(name))
+        begin = curves["1e7", "splines, 3 x 3"][0]
+        for power in (1, 2):
+            axis.loglog(COLUMN_CELLS, [begin * (COLUMN_CELLS[0] / n)**power
+                                       for n in COLUMN_CELLS], "k:",
+                        linewidth=power,
+                        label=("first", "second")[power - 1] + " order")
+        share = WEIGHT * LENGTH / float(modulus)
+        axis.set_title(f"E = {modulus} Pa: stress over E up to {share:g}",
+                       fontsize=9)
+        axis.set_xticks(COLUMN_CELLS, COLUMN_CELLS)
+        axis.minorticks_off()
+        axis.set_xlabel("cells over the height")
+        axis.grid(alpha=0.25)
+    axes[0].set_ylabel("mean error of the stress over rho g l0")
+    charts.legend_outside(axes[-1])
+    charts.save(figure, target / "column_stress.png")
+
+
 def column(arguments):
     rows, curves = [], {}
     for modulus in COLUMN_MODULI:
@@ -109,26 +135,7 @@ def column(arguments):
             rows.append(f"| {modulus} | {name} | " + " | ".join(words) + " | " +
                         " / ".join(f"{o:.1f}" for o in order) + " |")
             print(rows[-1], flush=True)
-    figure, axes = plt.subplots(1, 3, figsize=(13, 4.4), sharey=True,
-                                layout="constrained")
-    for axis, modulus in zip(axes, COLUMN_MODULI):
-        for name in COLUMN_METHODS:
-            axis.loglog(COLUMN_CELLS, curves[modulus, name], markersize=5,
-                        linewidth=1, label=name, **charts.style_of(name))
-        begin = curves["1e7", "splines, 3 x 3"][0]
-        for power in (1, 2):
-            axis.loglog(COLUMN_CELLS, [begin * (COLUMN_CELLS[0] / n)**power
-                                       for n in COLUMN_CELLS], "k:", linewidth=1)
-        share = WEIGHT * LENGTH / float(modulus)
-        axis.set_title(f"E = {modulus} Pa: stress over E up to {share:g}",
-                       fontsize=9)
-        axis.set_xticks(COLUMN_CELLS, COLUMN_CELLS)
-        axis.minorticks_off()
-        axis.set_xlabel("cells over the height")
-        axis.grid(alpha=0.25)
-    axes[0].set_ylabel("mean error of the stress over rho g l0")
-    charts.legend_outside(axes[-1])
-    charts.save(figure, arguments.target / "column_stress.png")
+    draw_column(curves, arguments.target)
     text = ["# Column under its own weight: error of the stress", "",
             "![Column under its own weight](column_stress.png)", "",
             "An elastic column of 50 m without Poisson's effect comes to rest "
@@ -269,6 +276,8 @@ def ball(arguments):
         axis.set_aspect("equal")
         axis.set_xlim(-1.25, 1.25)
         axis.set_ylim(-1.25, 1.25)
+        axis.set_xlabel("x from the centre of mass [m]", fontsize=8)
+    axes[0].set_ylabel("y from the centre of mass [m]", fontsize=8)
     charts.save(figure, arguments.target / "flying_ball.png")
     text = ["# A rubber ball after two turns and a hundred cells", "",
             "![A rubber ball](flying_ball.png)", "",

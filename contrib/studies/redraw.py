@@ -5,7 +5,7 @@ computed, only colours, names and marks change.
     redraw.py [NAME ...] [--target FOLDER]
 
 Without NAME all pages of doc/studies that `limber study`, `limber stability` or
-`limber inf-sup` wrote.
+`limber inf-sup` wrote, and column_stress.
 """
 
 import argparse
@@ -16,6 +16,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "contrib/plot"))
 import charts  # noqa: E402
+import column_and_ball  # noqa: E402
 import plot_study  # noqa: E402
 
 COSTS = ("CPU seconds", "wall seconds", "memory", "steps")
@@ -130,6 +131,14 @@ def problems_of(name):
             value == "true"]
 
 
+def redraw_column(text, target):
+    """The chart of column_and_ball.py, which has panels of its own."""
+    _, cells = table_of(text)
+    column_and_ball.draw_column(
+        {(modulus, method): [plot_study.number(word) for word in words]
+         for modulus, method, *words in (line[:6] for line in cells)}, target)
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -140,9 +149,12 @@ def main():
     names = arguments.names or sorted(
         path.stem for path in pages.glob("*.md")
         if (TOP / f"prm/studies/{path.stem}.prm").exists()
-        or path.stem in SWEEPS)
+        or path.stem in SWEEPS | {"column_stress"})
     for name in names:
         text = (pages / f"{name}.md").read_text()
+        if name == "column_stress":
+            redraw_column(text, arguments.target)
+            continue
         header, cells = table_of(text)
         meta = meta_of(name, text, header)
         rows = rows_of(header, cells, meta)

@@ -99,10 +99,11 @@ def column(runner):
     stress = data["stress"].reshape(len(place), -1)
     yy = stress[:, 4 if stress.shape[1] == 9 else 1]
     exact = -80 * 10 * (50 - place)
-    figure, axes = plt.subplots(figsize=(5, 4))
+    figure, axes = plt.subplots(figsize=(7, 4.4))
     axes.plot(exact / 1e3, place, "k-", label="exact")
     axes.plot(yy / 1e3, place, ".", ms=4, label="points")
-    axes.set(xlabel="vertical stress [kPa]", ylabel="Y [m]")
+    axes.set(xlabel="vertical stress [kPa]",
+             ylabel="height in the initial state [m]")
     axes.legend()
     runner.save(figure, "column")
     error = np.abs(yy - exact).mean() / (80 * 10 * 50)
@@ -136,7 +137,7 @@ def bar(runner):
 
 def manufactured_solution(runner):
     """Largest error of the displacement at t = 0.5 s against the edge."""
-    figure, axes = plt.subplots(figsize=(5, 4))
+    figure, axes = plt.subplots(figsize=(7, 4.4))
     cells = np.array([8, 16, 32, 64])
     for name, settings in {
             "cell": [], "assumed strain": ["treatment=assumed strain"],
@@ -163,6 +164,8 @@ def manufactured_solution(runner):
               + ", ".join(f"{r:.2f}" for r in ratios))
     axes.loglog(1 / cells, 0.5 * errors[0] * (cells[0] / cells)**2, "k:",
                 label="second order")
+    axes.set_xticks(1 / cells, [f"1/{n}" for n in cells])
+    axes.minorticks_off()
     axes.set(xlabel="edge of a cell [m]",
              ylabel="rms error of the displacement / A")
     axes.legend()
@@ -230,7 +233,7 @@ def cantilever_3d(runner):
     axes.plot(time, 1e3 * amplitude * np.sin(2 * np.pi * 0.07891 * time),
               "k:", label="Timoshenko")
     axes.set(xlabel="time [s]", ylabel="deflection of the tip [mm]")
-    axes.legend()
+    charts.legend_outside(axes)
     runner.save(figure, "cantilever_3d")
 
 

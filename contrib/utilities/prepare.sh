@@ -66,15 +66,26 @@ jobs_that_fit() {
   echo $((memory < cores ? memory : cores))
 }
 
-# Passes nothing on, but says so once when a compiler is at work.
+# Says that a compiler is at work, and how far it has come: on a terminal in one
+# line that changes, else once a minute.
 announce_building() {
-  local line said=
+  local line said= started=$SECONDS last=$SECONDS now
   while read -r line; do
+    [[ $line =~ ^\[([0-9]+)/([0-9]+)\] ]] || continue
     if [[ -z $said && $line == *"Building CXX"* ]]; then
-      echo "Building Limber, a few minutes the first time; see $1"
+      echo "Building Limber, some minutes the first time; see $1"
       said=yes
     fi
+    [[ -n $said ]] || continue
+    now="  ${BASH_REMATCH[1]} of ${BASH_REMATCH[2]} steps after $((SECONDS - started)) s"
+    if [[ -t 1 ]]; then
+      printf '\r%s' "$now"
+    elif ((SECONDS - last >= 60)); then
+      echo "$now"
+      last=$SECONDS
+    fi
   done
+  [[ -z $said || ! -t 1 ]] || echo
 }
 
 # prepare [target...]: everything if no target is named.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/adaptation/adaptation.h>
 #include <limber/adaptation/criteria.h>
+#include <limber/adaptation/joining.h>
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
@@ -16,8 +17,8 @@ namespace limber
     // points may go most of that way before criteria are asked again.
     constexpr double longest_way = 1.5;
 
-    // Where the time alone moves a region nobody knows how fast.
-    constexpr std::uint64_t steps_of_formulas = 50;
+    // What formulas of the time and fields want may change while points rest.
+    constexpr std::uint64_t steps_at_rest = 50;
   } // namespace
 
 
@@ -50,8 +51,8 @@ namespace limber
     if (grid.description.adapt_every > 0)
       return memory.steps >= grid.description.adapt_every;
     return memory.way + displacement > longest_way ||
-           (grid.description.has_moving_formula() &&
-            memory.steps >= steps_of_formulas);
+           (grid.description.may_change_at_rest() &&
+            memory.steps >= steps_at_rest);
   }
 
 
@@ -85,8 +86,10 @@ namespace limber
     if (split || changed)
       for (auto &body : bodies)
         body->points.hand_over();
+    removed           = 0;
+    const bool joined = grid.description.joins_points && join_points(kept);
     seconds_spent += wall_time() - before;
-    return split || changed;
+    return split || changed || joined;
   }
 
 
@@ -145,6 +148,30 @@ namespace limber
       }
     memory.points_added += added;
     return added > 0;
+  }
+
+
+
+  template <int dim>
+  bool
+  Adaptation<dim>::join_points(const KeptPoints &kept)
+  {
+    if (!any_finer_than_cells(grid, bodies))
+      return false;
+    for (auto &body : bodies)
+      body->points.hand_over();
+    const Occupancy<dim> occupancy(grid, bodies);
+    unsigned long        gone = 0;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        const auto sets = sets_to_join(grid, occupancy, *bodies[b], kept[b]);
+        for (const auto &set : sets)
+          gone += set.size() - 1;
+        removed += join(sets, *bodies[b]);
+      }
+    memory.points_joined +=
+      dealii::Utilities::MPI::sum(gone, grid.communicator);
+    return true;
   }
 
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/adaptation/cell_values.h>
 #include <limber/adaptation/criteria.h>
 #include <limber/adaptation/occupancy.h>
 #include <limber/base/exceptions.h>
@@ -98,12 +99,17 @@ namespace limber
           }
         most_points = static_cast<std::uint64_t>(most);
         for (const Refinement<dim> &refinement : grid.description.refinements)
-          of_bodies.push_back(
-            refinement.criterion == RefinementCriterion::body ?
-              std::make_unique<Occupancy<dim>>(grid,
-                                               bodies,
-                                               refinement.bodies) :
-              nullptr);
+          {
+            of_bodies.push_back(
+              refinement.criterion == RefinementCriterion::body ?
+                std::make_unique<Occupancy<dim>>(grid,
+                                                 bodies,
+                                                 refinement.bodies) :
+                nullptr);
+            values.push_back(has_scale(refinement.criterion) ?
+                               cell_values(refinement, grid, bodies) :
+                               std::vector<double>());
+          }
       }
 
       /** The level wanted in a cell, but at most one beyond its own. */
@@ -132,6 +138,15 @@ namespace limber
                   break;
                 case RefinementCriterion::surface:
                   level = level_by_surface(refinement, cell);
+                  break;
+                case RefinementCriterion::stress:
+                case RefinementCriterion::rate:
+                case RefinementCriterion::plastic_strain:
+                  level =
+                    std::min(refinement.level,
+                             level_by_value(values[r][grid.cell_number(cell)] /
+                                              refinement.scale,
+                                            own));
                   break;
               }
             result = std::max(result, level);
@@ -182,12 +197,26 @@ namespace limber
         return level;
       }
 
+      // Stress and rate jump by half as much on half the size, so what has just
+      // been divided is not joined at once, nor the other way round.
+      static unsigned int
+      level_by_value(const double share, const unsigned int own)
+      {
+        constexpr double share_to_join = 0.25;
+        return share > 1             ? own + 1 :
+               share > share_to_join ? own :
+               own > 0 && share > 0  ? own - 1 :
+                                       0;
+      }
+
       const BackgroundGrid<dim> &grid;
       const double               time;
       const Occupancy<dim>       occupancy; // by all bodies
       // By refinement, where it asks for some
       std::vector<std::unique_ptr<Occupancy<dim>>> of_bodies;
-      std::uint64_t                                most_points = 0;
+      // Likewise by cell, where it has a scale
+      std::vector<std::vector<double>> values;
+      std::uint64_t                    most_points = 0;
     };
   } // namespace
 

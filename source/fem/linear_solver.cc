@@ -98,7 +98,7 @@ namespace limber
 
 
 
-  void
+  unsigned int
   LinearSolver::solve(NodalVector &solution, const NodalVector &right_side)
   {
     if (direct)
@@ -111,13 +111,13 @@ namespace limber
           {
             refuse_singular_matrix(right_side.size());
           }
-        return;
+        return 0;
       }
     const double          size = right_side.l2_norm();
     dealii::SolverControl control(most_iterations, accuracy * size);
     solution = 0;
     if (size == 0)
-      return;
+      return 0;
     try
       {
         dealii::SolverCG<NodalVector>(control).solve(*methods->matrix,
@@ -136,5 +136,6 @@ namespace limber
           "Poisson's ratio is too close to 0.5. Set 'Reference/Load steps' or "
           "'Reference/Time step' finer, or take 'Element = Q1-P0-P0'.");
       }
+    return control.last_step();
   }
 } // namespace limber

@@ -79,6 +79,10 @@ namespace limber
                        " bodies in its entry 'Bodies'; the finite element "
                        "reference knows one, and no contact. Make a scene for "
                        "each body, or compare with a finer run.");
+    if (!problem.obstacles.empty())
+      throw InputError("The scene has obstacles ('Obstacles'), which the "
+                       "finite element reference does not know. Make a scene "
+                       "without them, or compare with a finer run.");
     if (problem.method.damping_rate > 0 &&
         problem.reference.method != ReferenceMethod::quasi_static)
       throw InputError("The scene damps all motion ('Method/Damping rate'), "

@@ -31,10 +31,11 @@ namespace limber
                 std::max(result.largest_volume, states[q].volume_ratio);
             }
         }
-    using namespace dealii::Utilities::MPI;
-    result.strain_energy   = sum(result.strain_energy, model.communicator);
-    result.smallest_volume = min(result.smallest_volume, model.communicator);
-    result.largest_volume  = max(result.largest_volume, model.communicator);
+    namespace MPI        = dealii::Utilities::MPI;
+    result.strain_energy = MPI::sum(result.strain_energy, model.communicator);
+    result.smallest_volume =
+      MPI::min(result.smallest_volume, model.communicator);
+    result.largest_volume = MPI::max(result.largest_volume, model.communicator);
     return result;
   }
 

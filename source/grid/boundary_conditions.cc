@@ -111,12 +111,11 @@ namespace limber
 
 
 
-  // An impulse does work with the velocity that the side leaves. Where the
-  // stress bears against the side, it does no work; what it takes from what the
-  // points bring is lost. With points that it keeps, the stress works with the
-  // mean velocity of the step, and so does the side; where it accelerates, its
-  // points do so from a velocity of their own. Friction works with the mean
-  // velocity where the node goes on sliding.
+  // An impulse does work with the velocity of the side, at rest none. What the
+  // points bring against that is lost, as in an impact. With points that it
+  // keeps, the stress works with the mean velocity of the step, and so does the
+  // side; where it accelerates, its points do so from a velocity of their own.
+  // Friction works with the mean velocity where the node goes on sliding.
   template <int dim>
   typename BoundaryConditions<dim>::Action
   BoundaryConditions<dim>::action(const unsigned int side,
@@ -143,8 +142,10 @@ namespace limber
         else if (is_friction && change[d] != 0)
           result.friction += 0.5 * mass * increment[d] * increment[d];
         else if (change[d] != 0)
-          result.work += mass * (change[d] * velocity[d] -
-                                 0.5 * increment[d] * increment[d]);
+          {
+            result.work += mass * change[d] * velocity[d];
+            result.loss += 0.5 * mass * increment[d] * increment[d];
+          }
         result.transfer_work +=
           mass * (1 - flip_share) * former_change[d] * velocity[d];
       }
@@ -300,7 +301,7 @@ namespace limber
         const auto held = this->held(nodes, node);
         for (int d = 0; d < dim; ++d)
           if (held[d] != 0)
-            result.work += 0.5 * record[Layout::mass] *
+            result.loss -= 0.5 * record[Layout::mass] *
                            record[Layout::increment + d] *
                            (record[slot + d] - record[Layout::velocity + d]);
       }

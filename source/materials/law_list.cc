@@ -67,6 +67,19 @@ namespace limber
 
 
 
+  bool
+  flows_by_rate(const std::string &name, const std::vector<double> &values)
+  {
+    bool result = false;
+    with_law(name, values, [&](const auto &law) {
+      if constexpr (std::decay_t<decltype(law)>::is_plastic)
+        result = law.depends_on_rate();
+    });
+    return result;
+  }
+
+
+
   std::vector<StateVariable>
   variables_of(const std::string &name, const std::vector<double> &values)
   {

@@ -190,17 +190,28 @@ namespace limber
 
   template <int dim>
   void
-  Observables<dim>::update_side_forces(const double       time,
-                                       const Totals<dim> &totals)
+  Observables<dim>::update_forces(const double time, const Totals<dim> &totals)
   {
     if (memory.has_row && time > memory.time)
-      for (unsigned int s = 0; s < 2 * dim; ++s)
-        memory.side_force[s] =
-          -(totals.side_impulse[s] - memory.side_impulse[s]) /
-          (time - memory.time);
-    memory.has_row      = true;
-    memory.time         = time;
-    memory.side_impulse = totals.side_impulse;
+      {
+        const double length = time - memory.time;
+        for (unsigned int s = 0; s < 2 * dim; ++s)
+          memory.side_force[s] =
+            -(totals.side_impulse[s] - memory.side_impulse[s]) / length;
+        for (unsigned int o = 0; o < totals.obstacles.size(); ++o)
+          {
+            const ObstacleAction<dim> &now    = totals.obstacles[o],
+                                      &before = memory.obstacle_impulse[o];
+            ObstacleAction<dim> &force        = memory.obstacle_force[o];
+            force.impulse = -(now.impulse - before.impulse) / length;
+            force.moment  = -(now.moment - before.moment) / length;
+          }
+      }
+    memory.obstacle_force.resize(totals.obstacles.size());
+    memory.obstacle_impulse = totals.obstacles;
+    memory.has_row          = true;
+    memory.time             = time;
+    memory.side_impulse     = totals.side_impulse;
   }
 
 
@@ -232,6 +243,10 @@ namespace limber
           return seen;
         case ObservedPart::side:
           seen.force = memory.side_force[observable.side];
+          return seen;
+        case ObservedPart::obstacle:
+          seen.force  = memory.obstacle_force[observable.obstacle].impulse;
+          seen.moment = memory.obstacle_force[observable.obstacle].moment;
           return seen;
         case ObservedPart::column:
           break;
@@ -281,7 +296,7 @@ namespace limber
   std::vector<double>
   Observables<dim>::evaluate(const State<dim> &state, const Totals<dim> &totals)
   {
-    update_side_forces(state.time, totals);
+    update_forces(state.time, totals);
     const auto samples = points.sample(state, with_stress);
     const auto largest = has_extremes ? extents(state) : std::vector<double>();
     return observed_row(problem.observables,

@@ -154,17 +154,26 @@ namespace limber
       return std::any_of(problem.sides.begin(), problem.sides.end(), rubs) ||
              std::any_of(problem.contacts.begin(),
                          problem.contacts.end(),
+                         rubs) ||
+             std::any_of(problem.obstacles.begin(),
+                         problem.obstacles.end(),
                          rubs);
     }
 
 
 
-    /** Whether bodies may press on each other and part. */
+    /** Whether bodies may press on each other or an obstacle and part. */
     template <int dim>
     bool
     may_part(const Problem<dim> &problem)
     {
-      return std::any_of(problem.contacts.begin(),
+      return !problem.obstacles.empty() ||
+             std::any_of(problem.sides.begin(),
+                         problem.sides.end(),
+                         [](const Side<dim> &side) {
+                           return side.held != HeldComponents::none;
+                         }) ||
+             std::any_of(problem.contacts.begin(),
                          problem.contacts.end(),
                          [](const ContactPair &pair) {
                            return pair.law == ContactLaw::separate;

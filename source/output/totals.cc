@@ -234,6 +234,7 @@ namespace limber
     totals.boundary_work        = ledger.boundary_work;
     totals.load_work            = ledger.load_work;
     totals.side_impulse         = ledger.side_impulse;
+    totals.obstacles            = ledger.obstacles;
     balance_energy(ledger, totals);
     balance_momentum(ledger, sums.absolute_momentum(), totals);
     return totals;
@@ -277,14 +278,17 @@ namespace limber
     dealii::Tensor<1, dim> unexplained =
       totals.all.momentum - start.momentum + ledger.lost_momentum -
       ledger.gravity_impulse - ledger.load_impulse;
-    double scale = std::max({absolute_momentum,
-                             ledger.gravity_impulse.norm(),
-                             ledger.load_impulse.norm()});
+    double     scale   = std::max({absolute_momentum,
+                                   ledger.gravity_impulse.norm(),
+                                   ledger.load_impulse.norm()});
+    const auto explain = [&](const dealii::Tensor<1, dim> &impulse) {
+      unexplained -= impulse;
+      scale = std::max(scale, impulse.norm());
+    };
     for (const auto &impulse : ledger.side_impulse)
-      {
-        unexplained -= impulse;
-        scale = std::max(scale, impulse.norm());
-      }
+      explain(impulse);
+    for (const auto &obstacle : ledger.obstacles)
+      explain(obstacle.impulse);
     start.momentum_scale = std::max(start.momentum_scale, scale);
     totals.momentum_error =
       start.momentum_scale > 0 ? unexplained.norm() / start.momentum_scale : 0;

@@ -557,6 +557,36 @@ namespace limber
 
   template <int dim>
   void
+  MaterialPoints<dim>::join(const std::vector<std::vector<std::size_t>> &sets)
+  {
+    double *const mass = view().mass;
+    for (const auto &set : sets)
+      {
+        double all = 0;
+        for (const std::size_t p : set)
+          all += mass[p];
+        for (auto &field : fields)
+          {
+            if (field.data() == mass)
+              continue;
+            // Differences from the first: a mean of equal numbers is that one.
+            double sum = 0;
+            for (const std::size_t p : set)
+              sum += mass[p] * (field[p] - field[set[0]]);
+            field[set[0]] += sum / all;
+          }
+        mass[set[0]] = all;
+        --size_classes[set[0]];
+        for (std::size_t i = 1; i < set.size(); ++i)
+          cell[set[i]] = invalid_cell;
+      }
+    remove_lost();
+  }
+
+
+
+  template <int dim>
+  void
   MaterialPoints<dim>::find_cells()
   {
     const PointView<dim> points = view();

@@ -4,6 +4,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/signed_distance.h>
 
 namespace limber
 {
@@ -52,6 +53,14 @@ namespace limber
            (dim == 2 ? radius * radius : 4. / 3 * radius * radius * radius);
   }
 
+
+
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  BallShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    return distance_from_ball(point, centre, radius);
+  }
 
 
   template <int dim>

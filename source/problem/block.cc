@@ -4,6 +4,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/signed_distance.h>
 
 #include <algorithm>
 
@@ -129,6 +130,24 @@ namespace limber
     return volume({Point<dim>(), upper});
   }
 
+
+
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  BlockShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    if constexpr (dim == 2)
+      {
+        std::array<std::array<Point<2>, 2>, 4> edges;
+        constexpr unsigned int                 around[] = {0, 1, 3, 2, 0};
+        for (unsigned int i = 0; i < 4; ++i)
+          edges[i] = {{vertices[around[i]], vertices[around[i + 1]]}};
+        return distance_from_edges(point, edges, [this](const Point<2> &place) {
+          return contains(place);
+        });
+      }
+    return std::nullopt; // faces may be curved
+  }
 
 
   template <int dim>

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/signed_distance.h>
 
 namespace limber
 {
@@ -44,6 +45,18 @@ namespace limber
     return true;
   }
 
+
+
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  BoxShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    auto result = distance_from_slab(point, 0, lower[0], upper[0]);
+    for (unsigned int d = 1; d < dim; ++d)
+      result = distance_from_common_part(
+        result, distance_from_slab(point, d, lower[d], upper[d]));
+    return result;
+  }
 
 
   template <int dim>

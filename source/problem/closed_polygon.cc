@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/problem/closed_polygon.h>
+#include <limber/problem/signed_distance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -120,6 +121,16 @@ namespace limber
       inside ^=
         crossing(place, edges[in_rows[i]][0], edges[in_rows[i]][1]) != 0;
     return inside;
+  }
+
+
+
+  SignedDistance<2>
+  ClosedPolygon::signed_distance(const Point<2> &place) const
+  {
+    return distance_from_edges(place, edges, [this](const Point<2> &other) {
+      return contains(other);
+    });
   }
 
 

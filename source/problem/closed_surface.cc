@@ -464,4 +464,37 @@ namespace limber
       }
     return winding != 0;
   }
+
+
+
+  SignedDistance<3>
+  ClosedSurface::signed_distance(const Point<3> &place) const
+  {
+    if (nearest == nullptr)
+      {
+        std::vector<NearestFacet::Facet> all(facets.size());
+        for (std::size_t f = 0; f < facets.size(); ++f)
+          for (unsigned int i = 0; i < 3; ++i)
+            {
+              all[f][i][ray]           = facets[f].along[i];
+              all[f][i][(ray + 1) % 3] = facets[f].across[i][0];
+              all[f][i][(ray + 2) % 3] = facets[f].across[i][1];
+            }
+        nearest = std::make_shared<const NearestFacet>(all, box);
+      }
+    const NearestFacet::Found  found = (*nearest)(place);
+    const dealii::Tensor<1, 3> way   = place - found.place;
+    const double               far   = way.norm();
+    SignedDistance<3>          result;
+    const bool                 inside = contains(place);
+    result.value                      = inside ? -far : far;
+    const double size                 = box.first.distance(box.second);
+    if (far > 1e-9 * size)
+      result.normal = way / result.value;
+    else // on a facet, whose outside is where the surface does not contain
+      result.normal = contains(found.place + 1e-6 * size * found.normal) ?
+                        -1. * found.normal :
+                        found.normal;
+    return result;
+  }
 } // namespace limber

@@ -5,6 +5,7 @@
 #include <limber/base/text.h>
 #include <limber/problem/axis_ends.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/signed_distance.h>
 
 namespace limber
 {
@@ -95,6 +96,18 @@ namespace limber
     return numbers::PI * radius * radius * (upper - lower);
   }
 
+
+
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  CylinderShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    Point<dim> on_axis = centre;
+    on_axis[axis]      = point[axis];
+    return distance_from_common_part(
+      distance_from_ball(point, on_axis, radius),
+      distance_from_slab(point, axis, lower, upper));
+  }
 
 
   template <int dim>

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/signed_distance.h>
 
 namespace limber
 {
@@ -32,6 +33,33 @@ namespace limber
   FormulaShape<dim>::bounding_box() const
   {
     return box.bounding_box();
+  }
+
+
+
+  // Of first order: exact where the formula is linear across the surface.
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  FormulaShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    const double        reach = 1e-5 * box.lower.distance(box.upper);
+    SignedDistance<dim> result;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        Point<dim> before = point, after = point;
+        before[d] -= reach;
+        after[d] += reach;
+        result.normal[d] =
+          (inside.value(before, 0.) - inside.value(after, 0.)) / (2 * reach);
+      }
+    const double slope = result.normal.norm();
+    if (!(slope > 0))
+      return SignedDistance<dim>{inside.value(point, 0.) > 0 ? -1e300 : 1e300,
+                                 {}};
+    result.value = -inside.value(point, 0.) / slope;
+    result.normal /= slope;
+    const auto around = box.signed_distance(point);
+    return around->value > result.value ? around : result;
   }
 
 

@@ -10,7 +10,7 @@ namespace limber
   namespace
   {
     /** An entry that a choice does not go with. */
-    struct Obstacle
+    struct Hindrance
     {
       std::string cause;
       std::string remedy; // what to set, besides leaving the choice
@@ -25,54 +25,54 @@ namespace limber
 
 
     /** What the frame of the initial configuration cannot do. */
-    std::optional<Obstacle>
+    std::optional<Hindrance>
     obstacle_to_initial_frame(const Section &section, const Section &root)
     {
       if (!read_word(section, "Material", law_words()).is_elastic)
-        return Obstacle{"needs a stress that follows from the deformation "
-                        "alone, which the material " +
-                          in_quotes(section.text("Material")) +
-                          " does not have",
-                        ", or an elastic material, for instance 'neo hookean'"};
+        return Hindrance{
+          "needs a stress that follows from the deformation "
+          "alone, which the material " +
+            in_quotes(section.text("Material")) + " does not have",
+          ", or an elastic material, for instance 'neo hookean'"};
       const Projection treatment =
         read_word(section, "Locking treatment", locking_words());
       if (!treatment_of(treatment).in_initial_frame)
-        return Obstacle{
+        return Hindrance{
           "has no locking treatment " +
             in_quotes(section.text("Locking treatment")),
           ", or 'Locking treatment = assumed strain', 'cell' or 'none'"};
       if (is_set(section, "Hourglass control"))
-        return Obstacle{"leaves no motion of a cell without resistance, so "
-                        "that 'Hourglass control' has nothing to do",
-                        ", or 'Hourglass control = 0'"};
+        return Hindrance{"leaves no motion of a cell without resistance, so "
+                         "that 'Hourglass control' has nothing to do",
+                         ", or 'Hourglass control = 0'"};
       if (is_set(section, "Chequerboard control"))
-        return Obstacle{"has no chequerboard control",
-                        ", or 'Chequerboard control = 0'"};
+        return Hindrance{"has no chequerboard control",
+                         ", or 'Chequerboard control = 0'"};
       for (const std::string history : {"History", "Deviatoric history"})
         if (read_word(section, history, history_words()) !=
             HistoryTreatment::keep)
-          return Obstacle{"has no histories that could scatter: the stress "
-                          "follows from the deformation",
-                          ", or '" + history + " = keep'"};
+          return Hindrance{"has no histories that could scatter: the stress "
+                           "follows from the deformation",
+                           ", or '" + history + " = keep'"};
       const Section method = root.subsection("Method");
       if (read_word(method, "Stress update", stress_update_words()) ==
           StressUpdateOrder::usf)
-        return Obstacle{"does not go with 'Method/Stress update = usf'",
-                        ", or 'Stress update = musl'"};
+        return Hindrance{"does not go with 'Method/Stress update = usf'",
+                         ", or 'Stress update = musl'"};
       const auto kernel = read_word(method, "Kernel", kernel_words());
       if (has_domains(kernel))
-        return Obstacle{"has no points with domains, as none moves through "
-                        "its cells",
-                        ", or 'Method/Kernel = linear', 'quadratic' or "
-                        "'auto'"};
+        return Hindrance{"has no points with domains, as none moves through "
+                         "its cells",
+                         ", or 'Method/Kernel = linear', 'quadratic' or "
+                         "'auto'"};
       if (is_spline(kernel) && treatment == Projection::assumed_strain)
-        return Obstacle{"has an assumed strain with linear functions only",
-                        ", or 'Method/Kernel = linear', or 'Locking treatment "
-                        "= cell' or 'none'"};
+        return Hindrance{"has an assumed strain with linear functions only",
+                         ", or 'Method/Kernel = linear', or 'Locking treatment "
+                         "= cell' or 'none'"};
       if (root.list("Bodies").size() > 1)
-        return Obstacle{"is for a scene of one body: it would not notice that "
-                        "it meets another one",
-                        ""};
+        return Hindrance{"is for a scene of one body: it would not notice that "
+                         "it meets another one",
+                         ""};
       return {};
     }
 
@@ -215,8 +215,11 @@ namespace limber
       const Section section  = root.subsection("Body " + body.name);
       auto          obstacle = obstacle_to_initial_frame(section, root);
       if (!obstacle && problem.grid.levels > 0)
-        obstacle = Obstacle{"does not go with cells of several sizes yet",
-                            ", or 'Grid/Levels = 0'"};
+        obstacle = Hindrance{"does not go with cells of several sizes yet",
+                             ", or 'Grid/Levels = 0'"};
+      if (!obstacle && !root.list("Obstacles").empty())
+        obstacle = Hindrance{"does not notice obstacles",
+                             ", or leave 'Obstacles' empty"};
       if (body.frame == Frame::initial && obstacle)
         throw InputError("The frame 'initial' in " + section.where("Frame") +
                          " " + obstacle->cause + ". Set 'Frame = current'" +
@@ -254,6 +257,8 @@ namespace limber
                    "('Grid/Levels')");
       if (!root.subsection("Contact").list("Pairs").empty())
         return say("'linear', which bodies touch with ('Contact/Pairs')");
+      if (!root.list("Obstacles").empty())
+        return say("'linear', which obstacles are met with ('Obstacles')");
       for (const auto &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);

@@ -127,6 +127,15 @@ namespace limber
 
 
   template <int dim>
+  std::optional<SignedDistance<dim>>
+  MeshShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    return region.signed_distance(point);
+  }
+
+
+
+  template <int dim>
   void
   MeshShape<dim>::declare(Parameters &parameters)
   {

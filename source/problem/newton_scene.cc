@@ -80,11 +80,17 @@ namespace limber
                Body<dim>          &body,
                const Refusal      &refuse)
     {
-      if (!read_word(section, "Material", law_words()).is_elastic)
+      if (const auto &law = read_word(section, "Material", law_words());
+          !law.is_elastic && !law.is_plastic)
         refuse(section,
                "Material",
-               "which knows elastic materials alone",
+               "which knows solids alone",
                "'Material = neo hookean'");
+      if (flows_by_rate(body.law, body.material))
+        refuse(section,
+               "Material",
+               "in which flow has no rate",
+               "'Viscosity' or 'Limit friction angle' of the law to 0");
       if (body.treatment != Projection::none &&
           body.treatment != Projection::cell)
         refuse(section,

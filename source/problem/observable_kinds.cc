@@ -16,6 +16,10 @@ namespace limber
     const std::vector<std::string> at_place  = {"Location"};
     const std::vector<std::string> component = {"Location", "Direction"};
     const std::vector<std::string> body      = {"Body"};
+    // In the plane there is one axis to turn about.
+    const std::vector<std::string> about_obstacle =
+      dim == 2 ? std::vector<std::string>{"Obstacle"} :
+                 std::vector<std::string>{"Obstacle", "Direction"};
 
     static const std::vector<ObservableKind<dim>> kinds = {
       {"displacement",
@@ -118,7 +122,19 @@ namespace limber
        Part::side,
        {"Side", "Direction"},
        {},
-       [](O o, S s) { return s.force[o.axis]; }}};
+       [](O o, S s) { return s.force[o.axis]; }},
+      {"obstacle force",
+       "N",
+       Part::obstacle,
+       {"Obstacle", "Direction"},
+       {},
+       [](O o, S s) { return s.force[o.axis]; }},
+      {"obstacle moment",
+       "N m",
+       Part::obstacle,
+       about_obstacle,
+       {},
+       [](O o, S s) { return s.moment[dim == 2 ? 2 : o.axis]; }}};
     return kinds;
   }
 

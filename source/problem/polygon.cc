@@ -4,6 +4,7 @@
 #include <limber/problem/axis_ends.h>
 #include <limber/problem/polygon.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/signed_distance.h>
 
 #include <algorithm>
 #include <cmath>
@@ -232,6 +233,24 @@ namespace limber
     return polygon.area() * (dim == 2 ? 1 : upper - lower);
   }
 
+
+
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  PolygonShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    const unsigned int first = axis < dim && axis == 0 ? 1 : 0;
+    const unsigned int other = axis < dim && axis <= 1 ? 2 : 1;
+    const auto in_plane = polygon.signed_distance({point[first], point[other]});
+    SignedDistance<dim> result;
+    result.value         = in_plane.value;
+    result.normal[first] = in_plane.normal[0];
+    result.normal[other] = in_plane.normal[1];
+    return axis == dim ?
+             result :
+             distance_from_common_part(
+               result, distance_from_slab(point, axis, lower, upper));
+  }
 
 
   template <int dim>

@@ -73,8 +73,10 @@ namespace limber
                    "Locking treatment",
                    "auto",
                    locking_words(),
-                   "What keeps a nearly incompressible material from locking; "
-                   "see doc/theory.");
+                   "What keeps a nearly incompressible material from locking: "
+                   "'cell' takes the mean strain of a cell for the volume, as "
+                   "B-bar and F-bar do, 'node' that around nodes; see "
+                   "doc/theory.");
       declare_word(parameters,
                    "Hourglass response",
                    "auto",

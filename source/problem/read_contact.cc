@@ -38,6 +38,15 @@ namespace limber
 
 
 
+  const Words<std::string> &
+  contact_law_words()
+  {
+    static const Words<std::string> words = without_values(contact_words());
+    return words;
+  }
+
+
+
   void
   declare_contact(Parameters &parameters, const std::vector<std::string> &pairs)
   {

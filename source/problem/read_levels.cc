@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -40,7 +41,15 @@ namespace limber
                        admissible::positive_integer("200").or_word("auto"),
                        "Steps after which criteria are asked again; 'auto': "
                        "when a point may have moved by 1.5 cells, and for "
-                       "formulas of the time after 50 at most.");
+                       "formulas of the time and criteria with a scale after "
+                       "50 at most.");
+    parameters.declare("Join points",
+                       "false",
+                       admissible::flag(),
+                       "Whether points that are finer than their cells become "
+                       "one where that changes little: inside a body, in slow "
+                       "and even motion and stress. The energy that goes is "
+                       "'energy removed with history'.");
     for (const std::string &name : refinements)
       {
         parameters.enter_subsection("Refine " + name);
@@ -76,7 +85,16 @@ namespace limber
         parameters.declare("Bodies",
                            "",
                            admissible::names("block"),
-                           "Names of bodies, for the criterion 'body'.");
+                           "Names of bodies that are asked: for the criterion "
+                           "'body', and those with a scale; empty: all, with "
+                           "'plastic strain' those that have one.");
+        parameters.declare("Scale",
+                           "",
+                           admissible::positive_number("0.01").or_empty(),
+                           "For the criteria 'stress' (Pa), 'rate' and "
+                           "'plastic strain' (without dimension): cells beyond "
+                           "it are divided, those below a quarter of it are "
+                           "joined.");
         parameters.declare("Distance",
                            "1",
                            admissible::integer_from_to(1, 8, "2"),
@@ -107,6 +125,29 @@ namespace limber
           ++levels;
         }
       return levels;
+    }
+
+
+
+    template <int dim>
+    void
+    read_scale(const Section &section, Refinement<dim> &refinement)
+    {
+      const bool given = !section.is_empty("Scale");
+      if (given != has_scale(refinement.criterion))
+        throw InputError(
+          "The criterion " + in_quotes(section.text("Criterion")) + " in " +
+          section.where("Criterion") +
+          (given ?
+             " has no use for a scale. Usually it was not changed along "
+             "with the scale. Leave 'Scale' empty, or set 'Criterion = "
+             "stress', 'rate' or 'plastic strain'." :
+             " has no scale, so no cell would be divided. Set 'Scale' " +
+               std::string(refinement.criterion == RefinementCriterion::stress ?
+                             "to a stress in Pa." :
+                             "to a number without dimension, as 0.01.")));
+      if (given)
+        refinement.scale = section.number("Scale");
     }
 
 
@@ -146,10 +187,12 @@ namespace limber
       static const std::regex time("(^|[^A-Za-z_0-9.])t($|[^A-Za-z_0-9])");
       result.depends_on_time = std::regex_search(section.text("Where"), time);
 
-      result.bodies      = split(section.text("Bodies"), ',');
-      result.distance    = static_cast<int>(section.number("Distance"));
+      result.bodies   = split(section.text("Bodies"), ',');
+      result.distance = static_cast<int>(section.number("Distance"));
+      read_scale(section, result);
       const bool by_body = result.criterion == RefinementCriterion::body;
-      if (by_body != !result.bodies.empty())
+      if (by_body ? result.bodies.empty() :
+                    !result.bodies.empty() && !has_scale(result.criterion))
         throw InputError(
           (by_body ? "The criterion 'body' in " + section.where("Criterion") +
                        " has no bodies. Set 'Bodies' to a name of the list at "
@@ -202,6 +245,13 @@ namespace limber
     if (section.text("Adapt every") != "auto")
       grid.adapt_every =
         static_cast<unsigned int>(section.number("Adapt every"));
+    grid.joins_points = section.flag("Join points");
+    if (grid.levels == 0 && grid.joins_points)
+      throw InputError("Points cannot be joined (" +
+                       section.where("Join points") +
+                       "), as the grid has one level only and none is split. "
+                       "Usually 'Levels' was forgotten. Set 'Levels = 1', or "
+                       "'Join points = false'.");
   }
 
 
@@ -223,12 +273,69 @@ namespace limber
 
 
 
+  namespace
+  {
+    template <int dim>
+    bool
+    has_plastic_strain(const Body<dim> &body)
+    {
+      for (const StateVariable &variable :
+           variables_of(body.law, body.material))
+        if (std::string(variable.name) == "equivalent plastic strain")
+          return true;
+      return false;
+    }
+
+
+
+    /** Of bodies that the scene names each has one, else at least one of all.
+     */
+    template <int dim>
+    void
+    check_plastic_strains(const Section &grid, const Problem<dim> &problem)
+    {
+      for (const Refinement<dim> &refinement : problem.grid.refinements)
+        if (refinement.criterion == RefinementCriterion::plastic_strain)
+          {
+            unsigned int n = 0;
+            for (const Body<dim> &body : problem.bodies)
+              {
+                const auto &names = refinement.bodies;
+                const bool  named =
+                  std::find(names.begin(), names.end(), body.name) !=
+                  names.end();
+                n += has_plastic_strain(body);
+                if (named && !has_plastic_strain(body))
+                  throw InputError(
+                    "The criterion 'plastic strain' in " +
+                    grid.subsection("Refine " + refinement.name)
+                      .where("Bodies") +
+                    " names the body " + in_quotes(body.name) +
+                    ", whose material " + in_quotes(body.law) +
+                    " has none. Remove it, or set its 'Material' to 'j2' or "
+                    "'drucker prager'.");
+              }
+            if (n == 0)
+              throw InputError(
+                "The criterion 'plastic strain' in " +
+                grid.subsection("Refine " + refinement.name)
+                  .where("Criterion") +
+                " has nothing to look at: no body's material has one. Set a "
+                "'Material' to 'j2' or 'drucker prager', or 'Criterion = "
+                "rate'.");
+          }
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   check_levels(const Section &root, const Problem<dim> &problem)
   {
     if (problem.grid.levels == 0)
       return;
+    check_plastic_strains(root.subsection("Grid"), problem);
     const Section method = root.subsection("Method");
     if (problem.grid.kernel != KernelKind::linear)
       refuse(method,

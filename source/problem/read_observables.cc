@@ -100,6 +100,11 @@ namespace limber
                          "",
                          admissible::one_of(side_names(dim)).or_empty(),
                          "For reaction force: the side of the grid.");
+      parameters.declare("Obstacle",
+                         "",
+                         admissible::text("name of an obstacle, or empty",
+                                          "pillar"),
+                         "For obstacle force and obstacle moment: of which.");
       parameters.declare("Variable",
                          "",
                          admissible::one_of(names_of_variables()).or_empty(),
@@ -139,6 +144,7 @@ namespace limber
                                       "Within",
                                       "Observable",
                                       "Side",
+                                      "Obstacle",
                                       "Variable"})
         if (contains(kind.required, entry))
           section.required_text(entry);
@@ -293,6 +299,33 @@ namespace limber
 
 
     template <int dim>
+    void
+    read_observed_obstacle(const Section      &section,
+                           const Problem<dim> &problem,
+                           Observable<dim>    &observable)
+    {
+      if (section.is_empty("Obstacle"))
+        return;
+      if (problem.obstacles.empty())
+        throw InputError("The obstacle " + in_quotes(section.text("Obstacle")) +
+                         " in " + section.where("Obstacle") +
+                         " is none, as the scene has no obstacles. Name them "
+                         "in the list 'Obstacles'.");
+      std::vector<std::string> known;
+      for (const Obstacle<dim> &obstacle : problem.obstacles)
+        known.push_back(obstacle.name);
+      check_name("obstacle",
+                 section.text("Obstacle"),
+                 known,
+                 section.where("Obstacle"));
+      observable.obstacle =
+        std::find(known.begin(), known.end(), section.text("Obstacle")) -
+        known.begin();
+    }
+
+
+
+    template <int dim>
     Observable<dim>
     read_observable(const Section      &section,
                     const std::string  &name,
@@ -307,6 +340,7 @@ namespace limber
       read_direction(section, observable);
       read_within(section, observable);
       read_variable(section, problem, observable);
+      read_observed_obstacle(section, problem, observable);
       observable.observable = section.text("Observable");
       if (!section.is_empty("Side"))
         observable.side = side_index(section.text("Side"));

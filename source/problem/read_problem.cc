@@ -94,6 +94,11 @@ namespace limber
         if (const auto *file = dynamic_cast<const FromFile *>(body.shape.get()))
           result.push_back("File of body " + body.name + " = " +
                            file->checksum);
+      for (const Obstacle<dim> &obstacle : problem.obstacles)
+        if (const auto *file =
+              dynamic_cast<const FromFile *>(obstacle.shape.get()))
+          result.push_back("File of obstacle " + obstacle.name + " = " +
+                           file->checksum);
       for (const auto &[name, value] : parameters.entries())
         if (!is_path(name) && name != "End time" && name != "End step" &&
             name != "Memory limit" && name.rfind("Output/", 0) != 0 &&
@@ -134,6 +139,7 @@ namespace limber
     choose_time_integration(root, problem);
     choose_stress_update(problem);
     read_contact(root, problem);
+    read_obstacles(root, problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
     problem.reference  = read_reference(root.subsection("Reference"));
@@ -201,6 +207,14 @@ namespace limber
         set Tolerance  = 0.05
       end
     )";
+    // The table has entries that do not go together yet, a scene has not.
+    if (style == PrintStyle::markdown)
+      example.text += R"(
+        set Obstacles = floor
+        subsection Obstacle floor
+          set Shape = half-space
+        end
+      )";
     SceneFile(example).parameters().print(out, style);
   }
 

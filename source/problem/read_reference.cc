@@ -39,7 +39,8 @@ namespace limber
                                         "panel.msh"),
                        "Mesh of quadrilaterals or hexahedra that fits the "
                        "body: msh (Gmsh 2 or 4.1, ASCII), inp (UCD) or vtk "
-                       "(legacy, ASCII), by ending; empty: a box.");
+                       "(legacy, ASCII), by ending, relative to the folder of "
+                       "the scene; empty: a box.");
     parameters.declare("Refinements",
                        "0",
                        admissible::non_negative_integer("1"),

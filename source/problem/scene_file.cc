@@ -131,11 +131,15 @@ namespace limber
       result.refinements = reader.names({"Grid"}, "Refine", "Refine ");
       result.face_loads  = reader.names({"Loads"}, "Face loads", "Face load ");
       result.contacts    = reader.names({"Contact"}, "Pairs", "Pair ");
+      result.obstacles   = reader.names({}, "Obstacles", "Obstacle ");
       result.observables = reader.names({}, "Observables", "Observable ");
       result.checks      = reader.names({}, "Checks", "Check ");
       for (const std::string &body : result.bodies)
         result.shapes[body] =
           reader.names({"Body " + body, "Union"}, "Shapes", "Shape ");
+      for (const std::string &obstacle : result.obstacles)
+        result.obstacle_shapes[obstacle] =
+          reader.names({"Obstacle " + obstacle, "Union"}, "Shapes", "Shape ");
       return result;
     }
 
@@ -157,7 +161,14 @@ namespace limber
 
 
 
-    constexpr const char *path_entry = "File";
+    /** Entries that are paths, in whatever section. */
+    bool
+    is_path(const std::string &entry)
+    {
+      return entry == "File" || entry == "Mesh file";
+    }
+
+
 
     void
     make_paths_absolute(const std::string        &folder,
@@ -165,21 +176,17 @@ namespace limber
                         std::vector<std::string> &overrides)
     {
       for (ScannedEntry &entry : scan.entries)
-        if (entry.name == path_entry)
+        if (is_path(entry.name))
           entry.value = path_from(folder, entry.value);
-      const std::string end = std::string("/") + path_entry;
-      for (std::string &text : overrides)
-        for (std::size_t name = text.find(end); name != std::string::npos;
-             name             = text.find(end, name + 1))
-          {
-                        const std::size_t equals =
-                          text.find_first_not_of(' ', name + end.size());
-                        if (equals == std::string::npos || text[equals] != '=')
-              continue;
+      for (std::string &text : overrides) // Section/Name=value
+        {
+          const std::size_t equals = text.find('=');
+          const std::size_t name   = text.rfind('/', equals);
+          if (equals != std::string::npos && name < equals &&
+              is_path(trimmed(text.substr(name + 1, equals - name - 1))))
             text = text.substr(0, equals + 1) +
-                               path_from(folder, trimmed(text.substr(equals + 1)));
-                        break;
-          }
+                   path_from(folder, trimmed(text.substr(equals + 1)));
+        }
     }
 
 
@@ -238,6 +245,7 @@ namespace limber
       declare_boundaries(parameters, dim);
       declare_loads(parameters, dim, names.face_loads);
       declare_contact(parameters, names.contacts);
+      declare_obstacles(parameters, dim, names);
       declare_method(parameters);
       declare_output(parameters);
       declare_checkpoint(parameters);

@@ -53,6 +53,15 @@ namespace limber
 
 
 
+  const Words<std::string> &
+  side_condition_words()
+  {
+    static const Words<std::string> words = without_values(side_words());
+    return words;
+  }
+
+
+
   void
   declare_boundaries(Parameters &parameters, const unsigned int dim)
   {

@@ -205,7 +205,9 @@ namespace limber
           const bool domains =
             has_domains(problem.grid.kernel) && !body.is_liquid;
           const unsigned int of_domain =
-            problem.grid.kernel == KernelKind::gimp ? dim : dim * dim;
+            problem.grid.kernel == KernelKind::gimp  ? dim :
+            problem.grid.kernel == KernelKind::cpdi2 ? dim * ((1 << dim) - 1) :
+                                                       dim * dim;
           const double own =
             per_point + (domains ? of_domain * sizeof(double) : 0);
           // The places in one cell are kept while points are placed.

@@ -350,6 +350,18 @@ namespace limber
 
 
   template <int dim>
+  std::optional<SignedDistance<dim>>
+  StlShape<dim>::signed_distance([[maybe_unused]] const Point<dim> &point) const
+  {
+    if constexpr (dim == 3)
+      return surface.signed_distance(point);
+    else
+      return std::nullopt;
+  }
+
+
+
+  template <int dim>
   void
   StlShape<dim>::declare(Parameters &parameters)
   {

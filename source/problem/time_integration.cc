@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace limber
 {
@@ -16,6 +18,172 @@ namespace limber
 
     // of what nodes hold beyond their room, pushed apart in a step
     constexpr double density_control = 0.2;
+
+
+
+    // Sound over all other speeds, from where 'auto' is semi-implicit: such a
+    // run takes about a quarter of the time
+    constexpr double fast_sound = 30;
+
+    // Time of a semi-implicit step over that of an explicit one, as measured in
+    // doc/theory/implicit_pressure.md (7 to 12)
+    constexpr double cost_of_step = 10;
+
+
+
+    /** What the choice of 'auto' depends on; SI units. */
+    struct Speeds
+    {
+      double sound   = 0; // in liquids, the fastest
+      double motion  = 0; // of liquids and sides, at first
+      double surface = 0; // sqrt(g H), H the height of the liquid
+      double waves   = 0; // in solids
+    };
+
+
+
+    template <int dim>
+    Speeds
+    speeds_of(const Problem<dim> &problem)
+    {
+      constexpr unsigned int n              = 9; // places along each edge
+      const auto             for_each_place = [](const Corners<dim> &box,
+                                     const auto         &work) {
+        for (unsigned int k = 0; k < std::pow(n, dim); ++k)
+          {
+            dealii::Point<dim> place;
+            for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= n)
+              place[d] = box.first[d] +
+                         (box.second[d] - box.first[d]) * (rest % n) / (n - 1.);
+            work(place);
+          }
+      };
+      Speeds       result;
+      const double g = problem.loads.gravity.norm();
+      for (const Body<dim> &body : problem.bodies)
+        {
+          const Moduli moduli = moduli_of(body.law, body.material);
+          const double speed =
+            std::sqrt((moduli.bulk + 4. / 3. * moduli.shear) / body.density());
+          (body.is_liquid ? result.sound : result.waves) =
+            std::max(body.is_liquid ? result.sound : result.waves, speed);
+          const auto box = body.shape->bounding_box();
+          if (!body.initial_velocity.empty() &&
+              !body.initial_velocity.is_zero())
+            for_each_place(box, [&](const dealii::Point<dim> &place) {
+              if (body.shape->contains(place))
+                result.motion =
+                  std::max(result.motion,
+                           body.initial_velocity.vector(place, 0).norm());
+            });
+          if (body.is_liquid && g > 0)
+            {
+              double height = 0; // along gravity
+              for (unsigned int d = 0; d < dim; ++d)
+                height += std::abs(problem.loads.gravity[d]) / g *
+                          (box.second[d] - box.first[d]);
+              result.surface = std::max(result.surface, std::sqrt(g * height));
+            }
+        }
+      constexpr unsigned int n_times = 33;
+      Corners<dim>           grid;
+      grid.first  = problem.grid.lower;
+      grid.second = problem.grid.upper;
+      for (const auto &side : problem.sides)
+        for (unsigned int t = 0; t < n_times; ++t)
+          for_each_place(grid, [&](const dealii::Point<dim> &place) {
+            dealii::Tensor<1, dim> velocity;
+            for (unsigned int d = 0; d < dim; ++d)
+              velocity[d] =
+                side.prescribed_velocity(place,
+                                         problem.end_time * t / (n_times - 1.),
+                                         d);
+            result.motion = std::max(result.motion, velocity.norm());
+          });
+      return result;
+    }
+
+
+
+    /** What in the scene does not go with 'semi-implicit'; empty: nothing. */
+    template <int dim>
+    std::string
+    obstacle_to_implicit_pressure(const Section      &root,
+                                  const Problem<dim> &problem)
+    {
+      if (std::none_of(problem.bodies.begin(),
+                       problem.bodies.end(),
+                       [](const auto &body) { return body.is_liquid; }))
+        return "the scene has no liquid";
+      if (problem.grid.kernel != KernelKind::linear)
+        return "the kernel is not 'linear'";
+      if (problem.grid.levels > 0)
+        return "cells have several sizes";
+      if (!root.subsection("Contact").list("Pairs").empty())
+        return "bodies touch by 'Contact/Pairs'";
+      if (!root.list("Obstacles").empty())
+        return "the scene has obstacles";
+      if (problem.method.order != StressUpdateOrder::automatic &&
+          problem.method.order != StressUpdateOrder::usl)
+        return "the stress update is neither 'auto' nor 'usl'";
+      for (const Body<dim> &body : problem.bodies)
+        if (body.is_liquid)
+          {
+            const Section     section = root.subsection("Body " + body.name);
+            const std::string of_body = " of body " + in_quotes(body.name);
+            if (body.treatment != Projection::cell)
+              return "the locking treatment" + of_body + " is not 'cell'";
+            if (body.history != HistoryTreatment::keep)
+              return "the history" + of_body + " is not kept";
+            if (section.subsection("Newtonian fluid").flag("Tension cutoff"))
+              return "the liquid" + of_body + " has a tension cutoff";
+          }
+      return "";
+    }
+
+
+
+    /** Resolves 'auto', and says in the log what it is and why. */
+    template <int dim>
+    void
+    choose_automatically(const Section &root, Problem<dim> &problem)
+    {
+      const auto say = [&](const std::string &choice) {
+        problem.notes.push_back("Time integration 'auto' is " + choice + ".");
+      };
+      const std::string obstacle = obstacle_to_implicit_pressure(root, problem);
+      if (!obstacle.empty())
+        return say("'explicit', as " + obstacle);
+
+      const Speeds speeds = speeds_of(problem);
+      const double other =
+        std::max(speeds.motion + speeds.surface, speeds.waves);
+      // nothing that moves at first, nor weight: nothing to compare with
+      if (!(other > 0))
+        return say("'explicit', as nothing moves at first and nothing weighs");
+      const std::string ratio = "sound in the liquid is " +
+                                brief(speeds.sound / other) +
+                                " times as fast as " +
+                                (speeds.waves > speeds.motion + speeds.surface ?
+                                   "waves in solids" :
+                                   "what moves (|v| + sqrt(g h))");
+      if (!(speeds.sound > fast_sound * other))
+        return say("'explicit', as " + ratio + ", at most " +
+                   brief(fast_sound));
+
+      double edge = 1e300;
+      for (unsigned int d = 0; d < dim; ++d)
+        edge = std::min(edge, problem.grid.edge(d));
+      const double C            = problem.method.courant_number;
+      const double former_steps = (speeds.sound + speeds.motion) / (C * edge);
+      const double steps =
+        std::max(other / (C * edge),
+                 5 * std::sqrt(problem.loads.gravity.norm() / edge));
+      problem.method.integration = TimeIntegration::semi_implicit;
+      say("'semi-implicit', as " + ratio + ": about " +
+          brief(former_steps / steps) + " times fewer steps, which take some " +
+          brief(cost_of_step) + " times as long");
+    }
 
 
 
@@ -84,6 +252,8 @@ namespace limber
   void
   choose_time_integration(const Section &root, Problem<dim> &problem)
   {
+    if (root.subsection("Method").text("Time integration") == "auto")
+      choose_automatically(root, problem);
     for (auto &body : problem.bodies)
       read_density_control(root.subsection("Body " + body.name), problem, body);
     if (is_solved_by_newton(problem.method.integration))

@@ -30,6 +30,25 @@ namespace limber
 
 
 
+  // Exact outside; inside, where parts overlap, too near.
+  template <int dim>
+  std::optional<SignedDistance<dim>>
+  UnionShape<dim>::signed_distance(const Point<dim> &point) const
+  {
+    auto result = parts.front()->signed_distance(point);
+    for (const auto &part : parts)
+      {
+        const auto other = part->signed_distance(point);
+        if (!other)
+          return std::nullopt;
+        if (result && other->value < result->value)
+          result = other;
+      }
+    return result;
+  }
+
+
+
   template <int dim>
   Corners<dim>
   UnionShape<dim>::bounding_box() const

@@ -28,7 +28,19 @@ namespace limber
        "cells with points of the bodies in 'Bodies'"},
       {"surface",
        RefinementCriterion::surface,
-       "cells with points that are near an empty one"}};
+       "cells with points that are near an empty one"},
+      {"stress",
+       RefinementCriterion::stress,
+       "cells whose mean stress differs from that of a neighbour by more than "
+       "'Scale'"},
+      {"rate",
+       RefinementCriterion::rate,
+       "cells that are sheared so fast that h |dev D| over the wave speed is "
+       "more than 'Scale'"},
+      {"plastic strain",
+       RefinementCriterion::plastic_strain,
+       "cells where the mean of the equivalent plastic strain is more than "
+       "'Scale'"}};
     return words;
   }
 
@@ -58,7 +70,11 @@ namespace limber
        "the same with boxes that follow the stretch"},
       {"cpdi",
        KernelKind::cpdi,
-       "convected particle domains of solids; liquids have linear functions"}};
+       "convected particle domains of solids; liquids have linear functions"},
+      {"cpdi2",
+       KernelKind::cpdi2,
+       "the same with corners that move with the grid, so that domains leave "
+       "no gaps"}};
     return words;
   }
 
@@ -73,13 +89,17 @@ namespace limber
        TimeIntegration::semi_implicit,
        "the pressure of liquids is that of the end of the step, so that sound "
        "in them does not limit it"},
+      {"auto",
+       TimeIntegration::explicit_steps,
+       "'semi-implicit' where sound in a liquid is thirty times as fast as all "
+       "else and everything in the scene goes with it, otherwise 'explicit'"},
       {"implicit",
        TimeIntegration::implicit_steps,
-       "Newmark's trapezoidal rule; elastic solids, solved by Newton's method, "
+       "Newmark's trapezoidal rule; solids, solved by Newton's method, "
        "with steps of any length"},
       {"quasi-static",
        TimeIntegration::quasi_static,
-       "elastic solids in equilibrium under growing loads, solved by Newton's "
+       "solids in equilibrium under growing loads, solved by Newton's "
        "method; time counts the load"}};
     return words;
   }

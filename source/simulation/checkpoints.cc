@@ -309,7 +309,8 @@ namespace limber
       }
     const std::size_t wanted =
       std::accumulate(n_at_start.begin(), n_at_start.end(), std::size_t(0)) +
-      state.adaptation.points_added - state.ledger.lost_points;
+      state.adaptation.points_added - state.adaptation.points_joined -
+      state.ledger.lost_points;
     if (n != wanted)
       throw DamagedFile(path,
                         "has " + std::to_string(n) + " points instead of " +

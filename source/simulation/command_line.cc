@@ -239,7 +239,7 @@ The scene is a .prm or .json file; '--' reads prm from standard input.
   --validate                            check everything, run nothing
   --print-parameters prm|json|markdown  print all entries, those of a scene if
                                         one is given
-  --list laws|kernels|schemes|shapes|exact
+  --list laws|kernels|schemes|shapes|sides|contact|exact
                                         show what there is to choose from
   --set "Section/Name=value"            change an entry; may be repeated
   --output-directory path               the run folder, same as Output/Directory
@@ -285,18 +285,23 @@ Exit codes: 0 finished, 1 wrong input, 2 computation failed, 3 file error,
              word_lines(locking_words());
     if (topic == "shapes")
       return word_lines(shape_words());
+    if (topic == "sides")
+      return word_lines(side_condition_words());
+    if (topic == "contact")
+      return word_lines(contact_law_words());
     if (topic == "exact")
       return "None are built in. The formulas of a scene give initial states, "
              "loads and\nmoving sides; checks compare observables with "
              "numbers.\n";
 
-    const auto meant =
-      nearest(topic, {"laws", "kernels", "schemes", "shapes", "exact"});
+    const auto meant = nearest(
+      topic,
+      {"laws", "kernels", "schemes", "shapes", "sides", "contact", "exact"});
     throw InputError("The topic " + in_quotes(topic) +
                      " of '--list' on the command line is not known. Usually "
                      "it is misspelt. " +
                      (meant ? "Did you mean " + in_quotes(*meant) + "?" :
-                              "Write laws, kernels, schemes, shapes or "
-                              "exact."));
+                              "Write laws, kernels, schemes, shapes, sides, "
+                              "contact or exact."));
   }
 } // namespace limber

@@ -229,7 +229,11 @@ namespace limber
                               {"points split", double(adapted.points_split)},
                               {"seconds",
                                sum(adaptation.seconds(), communicator)}};
-        summary.levels     = adaptation.report();
+        if (problem.grid.joins_points)
+          summary.adaptation.insert(summary.adaptation.end() - 1,
+                                    {"points joined",
+                                     double(adapted.points_joined)});
+        summary.levels = adaptation.report();
       }
 
     summary.checks = checks.results();

@@ -210,6 +210,7 @@ namespace limber
         case ObservedPart::side:
           seen.force = -motion.side_force[observable.side];
           return seen;
+        case ObservedPart::obstacle: // which scenes of references lack
         case ObservedPart::column:
           break;
       }

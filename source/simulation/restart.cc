@@ -25,6 +25,7 @@ namespace limber
     state.ledger = {};
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
       state.ledger = resumed->ledger;
+    state.ledger.obstacles.resize(problem.obstacles.size());
     next_pictures = resumed->next_pictures;
 
     // Points were read by the owners of their cells.

@@ -48,10 +48,20 @@ namespace limber
 
   template <class Archive, int dim>
   void
+  serialize(Archive &archive, ObstacleAction<dim> &action, const unsigned int)
+  {
+    archive &action.impulse &action.moment;
+  }
+
+
+
+  template <class Archive, int dim>
+  void
   serialize(Archive &archive, ObservablesState<dim> &state, const unsigned int)
   {
     archive &state.tracked &state.tracked_of &state.crossings &state
-      .has_row &state.time &state.side_impulse &state.side_force;
+      .has_row &state.time &state.side_impulse &state.side_force &state
+      .obstacle_impulse &state.obstacle_force;
   }
 
 
@@ -75,7 +85,7 @@ namespace limber
       .viscous &ledger.history &ledger.plastic &ledger.friction &ledger
       .contact &ledger.load_impulse &ledger.gravity_impulse &ledger
       .side_impulse &ledger.lost_mass &ledger.lost_energy &ledger
-      .lost_momentum                                      &ledger.lost_points;
+      .lost_momentum &ledger.lost_points &ledger.obstacles;
   }
 
 
@@ -105,7 +115,7 @@ namespace limber
   {
     archive &state.mesh &state.wanted &state.next_id &state.points_added &state
       .way &state.steps &state.times_asked &state.mesh_changes &state
-      .points_split;
+      .points_split &state.points_joined;
   }
 
 

@@ -145,6 +145,8 @@ namespace limber
             return DomainForm::stretched_box;
           case KernelKind::cpdi:
             return DomainForm::parallelepiped;
+          case KernelKind::cpdi2:
+            return DomainForm::hexahedron;
           default:
             return DomainForm::none;
         }

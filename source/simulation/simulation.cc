@@ -358,7 +358,9 @@ namespace limber
           if (problem.bodies[b].name == problem.loads.faces[i].body)
             kept[b].insert(piece.carrier);
 
-    if (!adaptation.adapt(state.time, kept))
+    const bool changed = adaptation.adapt(state.time, kept);
+    state.ledger.history += adaptation.energy_removed();
+    if (!changed)
       return;
     integrator->reinit();
     if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1 &&
@@ -379,7 +381,8 @@ namespace limber
   unsigned long
   Simulation<dim>::points_ever() const
   {
-    return n_points_at_start + adaptation.state().points_added;
+    return n_points_at_start + adaptation.state().points_added -
+           adaptation.state().points_joined;
   }
 
 

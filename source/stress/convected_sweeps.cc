@@ -11,20 +11,7 @@ namespace limber
     return std::visit(
       [&](const auto &law) -> std::unique_ptr<const StressUpdate<dim>> {
         using Law = std::decay_t<decltype(law)>;
-        switch (projection.kind)
-          {
-            case Projection::none:
-              return std::make_unique<
-                ConvectedSweep<dim, Law, Projection::none>>(law, projection);
-            case Projection::cell:
-              return std::make_unique<
-                ConvectedSweep<dim, Law, Projection::cell>>(law, projection);
-            case Projection::node:
-              return std::make_unique<
-                ConvectedSweep<dim, Law, Projection::node>>(law, projection);
-            default:
-              throw std::logic_error("no such projection with domains");
-          }
+        return std::make_unique<ConvectedSweep<dim, Law>>(law, projection);
       },
       any);
   }

@@ -56,6 +56,7 @@ namespace limber
       static constexpr int  n_nodes = 1 << dim;
       static constexpr int  n_dofs  = dim * n_nodes;
       static constexpr bool finite  = Law::finite_strain;
+      static constexpr bool flows   = Law::is_plastic;
       using State                   = typename Law::template State<dim, double>;
       using Matrix                  = SquareMatrix<dim>;
       using Gradients = std::array<std::array<double, dim>, n_nodes>;
@@ -89,9 +90,11 @@ namespace limber
           resist(trial, response);
           if (with_tangent)
             {
-              if (finite && former != nullptr &&
-                  strain(points, grid, former, batch, trial_before))
-                extrapolate(trial_before, trial);
+              // what yields is not linear in its strain
+              if constexpr (finite && !flows)
+                if (former != nullptr &&
+                    strain(points, grid, former, batch, trial_before))
+                  extrapolate(trial_before, trial);
               add_tangent(trial, response);
             }
           work(batch.cell, response);
@@ -99,21 +102,26 @@ namespace limber
         return admissible;
       }
 
-      double
+      AcceptedMotion
       accept(const PointView<dim> &points,
              const GridView<dim>  &grid,
              const double *const   displacement) const override
       {
-        double longest = 0;
-        Trial  trial;
+        AcceptedMotion result;
+        Trial          trial;
         for_each_batch(points, [&](const CellBatch &batch) {
           if (!strain(points, grid, displacement, batch, trial))
             throw std::logic_error("no response to this displacement");
           for (std::size_t p = batch.begin; p < batch.end; ++p)
-            keep(trial.motions[p - batch.begin], points, p);
-          longest = std::max(longest, move(points, grid, trial.u, batch));
+            {
+              const Motion &motion = trial.motions[p - batch.begin];
+              keep(motion, points, p);
+              result.plastic_work += motion.volume * motion.plastic_work;
+            }
+          result.longest_way =
+            std::max(result.longest_way, move(points, grid, trial.u, batch));
         });
-        return longest;
+        return result;
       }
 
       double
@@ -121,6 +129,14 @@ namespace limber
       {
         const double K = law.bulk_modulus, G = law.shear_modulus;
         return 9 * K * G / (3 * K + G);
+      }
+
+      // Flow whose strength follows the pressure makes volume as it is given
+      // only where it is associated.
+      bool
+      has_symmetric_tangent() const override
+      {
+        return !flows || std::is_same_v<Law, J2>;
       }
 
     private:
@@ -133,6 +149,9 @@ namespace limber
         double    volume;       // at the start, m^dim
         double    former_ratio; // volume ratio that the growth belongs to
         State     state;
+        State     start;            // where the law flows, before the step
+        double    acting       = 1; // growth that the state has followed
+        double    plastic_work = 0; // per volume at the start, Pa
         // In the tangent: rows of the deviator, and derivative of the energy by
         // the growth that acts, per volume at the start, Pa
         Matrix stress;
@@ -246,19 +265,25 @@ namespace limber
                 Motion               &motion) const
       {
         State &state = motion.state;
-        if (initial)
-          {
-            motion.former_ratio = 1;
-            state = law.template at_deformation<dim>(motion.f, growth);
-            return;
-          }
+        if constexpr (!flows)
+          if (initial)
+            {
+              motion.former_ratio = 1;
+              state = law.template at_deformation<dim>(motion.f, growth);
+              return;
+            }
         state.pressure = points.pressure[p];
         for (unsigned int k = 0; k < state.deviator.size(); ++k)
           state.deviator[k] = points.deviator[k][p];
         for (unsigned int k = 0; k < state.history.size(); ++k)
           state.history[k] = points.history[k][p];
         motion.former_ratio = law.template volume_ratio<dim>(state);
-        law.template deform<dim>(motion.f, growth, state);
+        if constexpr (flows)
+          {
+            motion.start  = state;
+            motion.acting = growth;
+          }
+        motion.plastic_work = law.template deform<dim>(motion.f, growth, state);
       }
 
       // Of the volumetric energy, by the growth that acts; both are per volume
@@ -273,9 +298,14 @@ namespace limber
       double
       curvature(const Motion &motion, const double growth) const
       {
-        const double J = motion.former_ratio;
-        return finite ? J * J * law.volumetric_stiffness(J * growth) :
-                        law.volumetric_stiffness(1.);
+        if constexpr (flows)
+          return 0; // found with the rates of the tangent
+        else
+          {
+            const double J = motion.former_ratio;
+            return finite ? J * J * law.volumetric_stiffness(J * growth) :
+                            law.volumetric_stiffness(1.);
+          }
       }
 
 
@@ -286,6 +316,7 @@ namespace limber
       void
       extrapolate(const Trial &before, Trial &trial) const
       {
+        static_assert(!flows);
         double slope_of_cell = before.slope, mean_growth = 0;
         for (std::size_t k = 0; k < trial.motions.size(); ++k)
           {
@@ -342,7 +373,8 @@ namespace limber
         for (const Motion &motion : trial.motions)
           {
             response.energy +=
-              motion.volume * law.template strain_energy<dim>(motion.state);
+              motion.volume * (law.template strain_energy<dim>(motion.state) +
+                               motion.plastic_work);
             const Matrix &s    = motion.stress;
             const double  mean = mean_stress(motion);
             for (int i = 0; i < n_nodes; ++i)
@@ -363,54 +395,165 @@ namespace limber
         return motion.slope * (finite ? motion.growth : 1.);
       }
 
-      // Simo and Hughes, 7.1 and 9.2: material part, stress on the change of
-      // the gradients, and the curvature of the volumetric energy.
-      void
-      add_tangent(const Trial &trial, CellResponse<dim> &response) const
+      /** What the stress of a point grows by, in the tangent. */
+      struct Rates
       {
-        std::array<double, n_dofs> mean_growth{}; // its derivative
-        for (const Motion &motion : trial.motions)
-          {
-            const double own =
-              mean_volume ? 0 :
-                            curvature(motion, motion.growth) *
-                              (finite ? motion.growth * motion.growth : 1.);
-            add_tangent(motion, mean_stress(motion), own, response);
-            const double weight =
-              motion.volume / trial.volume * (finite ? motion.growth : 1.);
-            for (int i = 0; i < n_nodes; ++i)
-              for (int d = 0; d < dim; ++d)
-                mean_growth[i * dim + d] += weight * motion.gradient[i][d];
-          }
-        if (mean_volume)
-          for (int k = 0; k < n_dofs; ++k)
-            for (int l = 0; l < n_dofs; ++l)
-              response.tangent[k * n_dofs + l] +=
-                trial.curvature * mean_growth[k] * mean_growth[l];
-      }
+        // Lie derivative of the deviator by the strain along (k, l) at a given
+        // volume: entry [d, e][k, l]
+        std::array<std::array<double, dim * dim>, std::size_t(dim *dim)>
+          deviator{};
+        // of the slope of the energy, by growth and by strain at a given volume
+        double curvature = 0;
+        Matrix slope{};
+        Matrix by_growth{}; // of the deviator
+      };
 
-      void
-      add_tangent(const Motion      &motion,
-                  const double       mean,
-                  const double       volumetric,
-                  CellResponse<dim> &response) const
+      Rates
+      rates_of(const Motion &motion) const
       {
-        // a[d, e][k, l]: what the force along d by the gradient along e grows
-        // by with the displacement along k by the gradient along l
-        constexpr int                                     n = dim * dim;
-        std::array<std::array<double, n>, std::size_t(n)> a{};
-        const Matrix                                     &s = motion.stress;
+        Rates result;
         for (int k = 0; k < dim; ++k)
           for (int l = 0; l <= k; ++l)
             {
               Matrix e{};
               e[k][l] += 0.5;
               e[l][k] += 0.5;
-              const Matrix rate =
-                law.template deviatoric_tangent<dim>(motion.state, e);
-              for (int c = 0; c < n; ++c)
-                a[c][k * dim + l] = a[c][l * dim + k] = rate[c / dim][c % dim];
+              Matrix rate{};
+              if constexpr (flows)
+                rate = by_strain(motion, e, result.slope[k][l]);
+              else
+                rate = law.template deviatoric_tangent<dim>(motion.state, e);
+              result.slope[l][k] = result.slope[k][l];
+              for (int c = 0; c < dim * dim; ++c)
+                result.deviator[c][k * dim + l] =
+                  result.deviator[c][l * dim + k] = rate[c / dim][c % dim];
             }
+        if constexpr (flows)
+          {
+            const Motion more  = perturbed(motion, {}, difference),
+                         less  = perturbed(motion, {}, -difference);
+            const double scale = 1 / (2 * difference * motion.acting);
+            result.curvature =
+              (slope(more, more.acting) - slope(less, less.acting)) * scale;
+            for (int d = 0; d < dim; ++d)
+              for (int e = 0; e < dim; ++e)
+                result.by_growth[d][e] =
+                  (more.stress[d][e] - less.stress[d][e]) * scale;
+          }
+        else
+          result.curvature = curvature(motion, motion.growth);
+        return result;
+      }
+
+      // Where a law flows its rates are central differences: the return map
+      // knows many branches, and at the edge of one their mean is taken.
+      static constexpr double difference = 1e-7;
+
+      /** After f has grown by the strain e, the acting volume by a share. */
+      Motion
+      perturbed(const Motion &motion, const Matrix &e, const double share) const
+      {
+        Motion result = motion;
+        for (int c = 0; c < dim; ++c)
+          for (int d = 0; d < dim; ++d)
+            for (int b = 0; b < dim; ++b)
+              result.f[c][d] += e[c][b] * motion.f[b][d];
+        result.acting *= 1 + share;
+        result.state = motion.start;
+        law.template deform<dim>(result.f, result.acting, result.state);
+        result.stress = rows_of<dim>(result.state.deviator);
+        return result;
+      }
+
+      // Lie derivative of the deviator, and derivative of the slope
+      Matrix
+      by_strain(const Motion &motion,
+                const Matrix &direction,
+                double       &of_slope) const
+      {
+        Matrix e = direction, back = direction;
+        for (int c = 0; c < dim; ++c)
+          for (int d = 0; d < dim; ++d)
+            {
+              e[c][d] *= difference;
+              back[c][d] *= -difference;
+            }
+        const Motion more = perturbed(motion, e, 0),
+                     less = perturbed(motion, back, 0);
+        of_slope = (slope(more, more.acting) - slope(less, less.acting)) /
+                   (2 * difference);
+        const Matrix own = rows_of<dim>(motion.state.deviator);
+        Matrix       result;
+        for (int c = 0; c < dim; ++c)
+          for (int d = 0; d < dim; ++d)
+            {
+              result[c][d] =
+                (more.stress[c][d] - less.stress[c][d]) / (2 * difference);
+              for (int b = 0; b < dim; ++b)
+                result[c][d] -=
+                  direction[c][b] * own[b][d] + own[c][b] * direction[d][b];
+            }
+        return result;
+      }
+
+      // Simo and Hughes, 7.1 and 9.2: material part, stress on the change of
+      // the gradients, and the curvature of the volumetric energy. Where flow
+      // couples pressure and shear, the deviator follows the mean volume, and
+      // the pressure of the cell the strains of its points.
+      void
+      add_tangent(const Trial &trial, CellResponse<dim> &response) const
+      {
+        // derivatives of mean growth and, times the volume, of the slope
+        std::array<double, n_dofs> mean_growth{}, slope_of_cell{};
+        std::array<double, n_dofs> by_growth{}; // of the force
+        double                     curvature_of_cell = trial.curvature;
+        for (const Motion &motion : trial.motions)
+          {
+            const Rates rates = rates_of(motion);
+            add_tangent(motion, mean_stress(motion), rates, response);
+            const double weight =
+              motion.volume / trial.volume * (finite ? motion.growth : 1.);
+            for (int i = 0; i < n_nodes; ++i)
+              for (int d = 0; d < dim; ++d)
+                {
+                  const int k = i * dim + d;
+                  mean_growth[k] += weight * motion.gradient[i][d];
+                  if constexpr (flows)
+                    for (int e = 0; e < dim; ++e)
+                      {
+                        slope_of_cell[k] += motion.volume * rates.slope[d][e] *
+                                            motion.gradient[i][e];
+                        by_growth[k] += motion.volume * rates.by_growth[d][e] *
+                                        motion.gradient[i][e];
+                      }
+                }
+            if constexpr (flows)
+              curvature_of_cell += motion.volume * rates.curvature;
+          }
+        if (!mean_volume)
+          return;
+        for (int k = 0; k < n_dofs; ++k)
+          for (int l = 0; l < n_dofs; ++l)
+            response.tangent[k * n_dofs + l] +=
+              mean_growth[k] *
+                (curvature_of_cell * mean_growth[l] + slope_of_cell[l]) +
+              by_growth[k] * mean_growth[l];
+      }
+
+      void
+      add_tangent(const Motion      &motion,
+                  const double       mean,
+                  const Rates       &rates,
+                  CellResponse<dim> &response) const
+      {
+        // a[d, e][k, l]: what the force along d by the gradient along e grows
+        // by with the displacement along k by the gradient along l
+        constexpr int n      = dim * dim;
+        auto          a      = rates.deviator;
+        const Matrix &s      = motion.stress;
+        const double  growth = finite ? motion.growth : 1.;
+        const double  volumetric =
+          mean_volume ? 0 : rates.curvature * growth * growth;
         for (int d = 0; d < dim; ++d)
           for (int e = 0; e < dim; ++e)
             {
@@ -422,6 +565,14 @@ namespace limber
                   for (int k = 0; k < dim; ++k)
                     a[k * dim + d][k * dim + e] += s[d][e];
                 }
+              if constexpr (flows)
+                if (!mean_volume)
+                  for (int k = 0; k < dim; ++k)
+                    {
+                      a[k * dim + k][d * dim + e] += growth * rates.slope[d][e];
+                      a[d * dim + e][k * dim + k] +=
+                        growth * rates.by_growth[d][e];
+                    }
             }
 
         const Gradients &g = motion.gradient;
@@ -504,7 +655,7 @@ namespace limber
     std::unique_ptr<const TrialStress<dim>> result;
     for_each_law([&](auto *const candidate) {
       using Law = std::remove_pointer_t<decltype(candidate)>;
-      if constexpr (Law::is_elastic)
+      if constexpr (Law::is_elastic || Law::is_plastic)
         {
           if (result || name != Law::name)
             return;
@@ -513,12 +664,16 @@ namespace limber
             throw std::logic_error("wrong number of parameters for " + name);
           std::copy(values.begin(), values.end(), own.begin());
           if (Law::accepts(own))
-            result = std::make_unique<LawTrialStress<dim, Law>>(
-              Law(own), kind == Projection::cell, frame);
+            {
+              if (Law::is_plastic && frame == Frame::initial)
+                throw std::logic_error("no flow in the initial frame");
+              result = std::make_unique<LawTrialStress<dim, Law>>(
+                Law(own), kind == Projection::cell, frame);
+            }
         }
     });
     if (!result)
-      throw std::logic_error("no elastic law " + name);
+      throw std::logic_error("no law of a solid " + name);
     return result;
   }
 

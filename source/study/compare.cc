@@ -22,7 +22,7 @@ namespace limber
   namespace
   {
     // Times closer than this share of the last one are the same.
-    constexpr double same_time = 1e-7;
+    constexpr double same_times = 1e-7;
 
 
 
@@ -248,7 +248,7 @@ namespace limber
                          "interval'.");
       const auto   source    = make_source(other, problem);
       const auto   times     = source->times();
-      const double tolerance = same_time * files.back().first;
+      const double tolerance = same_times * files.back().first;
 
       std::vector<Column> columns = {{"time", "s"}};
       for (const std::string &quantity : quantities)

@@ -247,11 +247,13 @@ namespace limber
 
 
 
-    /** The value of a comparison is its error. */
+    /** The value of a comparison is its error, as that of several checks. */
     bool
     has_value_and_error(const Measure &measure)
     {
-      return measure.has_error() && measure.source != MeasureSource::comparison;
+      return measure.has_error() &&
+             measure.source != MeasureSource::comparison &&
+             (measure.source != MeasureSource::check || measure.of.size() <= 1);
     }
 
 

@@ -198,7 +198,9 @@ namespace limber
           if (std::isnan(error))
             break;
         }
-      return worst;
+      // a value now of one check, now of another would say nothing
+      return measure.of.size() == 1 ? worst :
+                                      Measured{worst.error, worst.error};
     }
   } // namespace
 

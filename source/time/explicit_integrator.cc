@@ -34,6 +34,8 @@ namespace limber
         parts.nodes.set_n_fields(n);
         contact.emplace(parts);
       }
+    if (!parts.problem.obstacles.empty())
+      obstacles.emplace(parts);
     if (filters_velocity(parts.problem.method.transfer))
       full_mass.emplace(parts.grid, boundaries);
     find_speeds();
@@ -78,6 +80,8 @@ namespace limber
     parts.nodes.reinit();
     if (full_mass)
       full_mass->reinit();
+    if (obstacles)
+      obstacles->reinit();
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
     loads.reinit();
@@ -185,7 +189,7 @@ namespace limber
       if ((Verb(v) != Verb::solve_pressure ||
            parts.problem.method.integration ==
              TimeIntegration::semi_implicit) &&
-          (Verb(v) != Verb::touch || contact))
+          (Verb(v) != Verb::touch || contact || obstacles))
         result.emplace_back(names[v], seconds[v]);
     return result;
   }

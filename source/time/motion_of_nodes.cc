@@ -71,7 +71,8 @@ namespace limber
             {
               const double lost = lost_share * record[Layout::momentum + d];
               record[Layout::force + d] -= lost / step;
-              if (parts.nodes.owns(node))
+              // A hanging node, without mass, shows what its masters have.
+              if (parts.nodes.owns(node) && record[Layout::mass] > 0)
                 parts.ledger.load_impulse[d] -= lost;
             }
         }
@@ -252,6 +253,8 @@ namespace limber
   {
     if (contact)
       contact->exchange();
+    if (obstacles)
+      obstacles->exchange();
     lap(Verb::touch);
   }
 
@@ -271,6 +274,7 @@ namespace limber
                          parts.ledger.boundary_work +=
                            action.work + action.transfer_work;
                          parts.ledger.friction += action.friction;
+                         parts.ledger.contact += action.loss;
                          // What points lose to the transfer contains it.
                          parts.ledger.transfer += action.transfer_work;
                        });
@@ -311,6 +315,8 @@ namespace limber
     form_velocity(Layout::momentum);
     if (contact)
       contact->hold_before(Layout::strain_velocity, step);
+    if (obstacles)
+      obstacles->hold_before(Layout::strain_velocity, step);
     lap(Verb::touch);
     parts.nodes.for_each_field([&]() {
       boundaries.apply_trial(parts.nodes,
@@ -332,13 +338,15 @@ namespace limber
     form_velocity(Layout::remapped);
     if (contact)
       contact->hold_after(Layout::strain_velocity, flip_share());
+    if (obstacles)
+      obstacles->hold_after(Layout::strain_velocity, flip_share());
     lap(Verb::touch);
     parts.nodes.for_each_field([&]() {
       if (!leapfrogs()) // which keeps other things where increments have been
         {
           const auto action =
             boundaries.action_on_remapped(parts.nodes, Layout::strain_velocity);
-          parts.ledger.boundary_work += flip_share() * action.work;
+          parts.ledger.contact += flip_share() * action.loss;
           parts.ledger.friction += flip_share() * action.friction;
         }
       boundaries.apply_trial(parts.nodes,
@@ -475,6 +483,8 @@ namespace limber
     lap(Verb::advance_nodes);
     if (contact)
       contact->hold(Layout::middle_velocity);
+    if (obstacles)
+      obstacles->hold(Layout::middle_velocity);
     lap(Verb::touch);
     parts.nodes.for_each_field([&]() {
       boundaries.apply_trial(parts.nodes,

@@ -17,10 +17,6 @@ namespace limber
   namespace
   {
     constexpr std::uint32_t not_numbered = 0xffffffffu;
-
-    /** Up to so many unknowns a factorisation is quicker. */
-    template <int dim>
-    constexpr std::size_t largest_direct = dim == 2 ? 60000 : 12000;
   } // namespace
 
 
@@ -41,16 +37,21 @@ namespace limber
 
 
   template <int dim>
-  NewtonEquations<dim>::NewtonEquations(const RunParts<dim> &parts)
+  NewtonEquations<dim>::NewtonEquations(const RunParts<dim> &parts,
+                                        const std::size_t    largest_direct)
     : parts(parts)
+    , largest_direct(largest_direct)
     , constraints(parts.problem.sides)
     , matrix(std::make_unique<Matrix>())
   {
     for (const auto &body : parts.bodies)
-      responses.push_back(make_trial_stress<dim>(body->description.law,
-                                                 body->description.material,
-                                                 body->description.treatment,
-                                                 body->description.frame));
+      {
+        responses.push_back(make_trial_stress<dim>(body->description.law,
+                                                   body->description.material,
+                                                   body->description.treatment,
+                                                   body->description.frame));
+        factorises_all |= !responses.back()->has_symmetric_tangent();
+      }
   }
 
 
@@ -503,25 +504,30 @@ namespace limber
     for (std::size_t e = 0; e < matrix->rows.size(); ++e)
       right_side[matrix->rows[e]] -=
         matrix->of_held[e] * of_held[matrix->columns[e]];
+    const bool direct = size() <= largest_direct || factorises_all;
     try
       {
-        if (!matrix->solver)
+        if (!matrix->solver || matrix->solver->direct != direct)
           {
+            matrix->is_factorised = false;
             std::vector<double> motions(n_rigid_motions<dim> * size());
             for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
               for (std::size_t k = 0; k < size(); ++k)
                 motions[m * size() + k] =
                   rigid_motion<dim>(m, k % dim, places[k / dim], places[0]);
-            matrix->solver.emplace(size() <= largest_direct<dim>, dim, motions);
+            matrix->solver.emplace(direct, dim, motions);
           }
         if (!matrix->is_factorised)
           matrix->solver->set_matrix(matrix->values);
         matrix->is_factorised = true;
-        matrix->solver->solve(solution, right_side);
+        n_linear_iterations += matrix->solver->solve(solution, right_side);
       }
     catch (const ComputationError &)
       {
-        return false;
+        if (direct)
+          return false;
+        factorises_all = true; // from now on
+        return solve(unbalanced, of_held, correction);
       }
     correction.resize(size());
     double all = 0;
@@ -536,17 +542,21 @@ namespace limber
 
 
   template <int dim>
-  double
+  AcceptedMotion
   NewtonEquations<dim>::accept(const std::vector<double> &displacement)
   {
     spread(displacement, by_node);
-    double longest = 0;
+    AcceptedMotion result;
     for (std::size_t b = 0; b < responses.size(); ++b)
-      longest = std::max(longest,
-                         responses[b]->accept(parts.bodies[b]->points.view(),
-                                              parts.nodes.view(),
-                                              by_node.data()));
-    return longest;
+      {
+        const AcceptedMotion of_body =
+          responses[b]->accept(parts.bodies[b]->points.view(),
+                               parts.nodes.view(),
+                               by_node.data());
+        result.longest_way = std::max(result.longest_way, of_body.longest_way);
+        result.plastic_work += of_body.plastic_work;
+      }
+    return result;
   }
 
 

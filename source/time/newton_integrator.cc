@@ -24,6 +24,9 @@ namespace limber
     constexpr double       growth = 1.25;
     // Of a quasi-static run that does not say how long its steps are
     constexpr double share_of_run = 0.1;
+    // Where a body flies freely, inertia is a difference of numbers that are
+    // alike, and below this share of them nothing but round-off.
+    constexpr double known_share = 1e-6;
     // Halved more often than this a step will not be found.
     constexpr unsigned int most_halvings = 10;
 
@@ -134,7 +137,16 @@ namespace limber
     return "Newton's method: " +
            brief(double(iterations) / double(std::max(1ul, steps))) +
            " iterations a step, at most " + std::to_string(most_iterations) +
-           "; steps halved: " + std::to_string(halvings);
+           "; steps halved: " + std::to_string(halvings) +
+           (equations.linear_iterations() > 0 ?
+              "; conjugate gradients: " +
+                brief(double(equations.linear_iterations()) /
+                      double(std::max(1ul, corrections))) +
+                " iterations a correction" +
+                (equations.gave_up_iterating() ?
+                   ", until they failed; factorised since" :
+                   "") :
+              "");
   }
 
 
@@ -364,7 +376,7 @@ namespace limber
     if (!admissible)
       return infinite;
     left.resize(equations.size());
-    double of_inertia = 0;
+    double of_inertia = 0, of_momentum = 0;
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const double inertia =
@@ -374,10 +386,14 @@ namespace limber
                     0 :
                     question.external[k] - equations.forces()[k] - inertia;
         of_inertia += inertia * inertia;
+        const double momentum =
+          question.inertia[k] * question.inertial_displacement[k];
+        of_momentum += momentum * momentum;
       }
     const double scale = std::max({norm(question.external),
                                    norm(equations.forces()),
                                    std::sqrt(of_inertia),
+                                   known_share * std::sqrt(of_momentum),
                                    equations.round_off()});
     return norm(left) / scale;
   }
@@ -431,6 +447,7 @@ namespace limber
             return false;
           }
         ++last_iterations;
+        ++corrections;
 
         const double before = potential(question, displacement);
         equations.evaluate(displacement,
@@ -556,7 +573,9 @@ namespace limber
                        .speed_squared);
         parts.ledger.viscous += expected - kinetic_energy();
       }
-    extremes.displacement = equations.accept(displacement);
+    const AcceptedMotion accepted = equations.accept(displacement);
+    extremes.displacement         = accepted.longest_way;
+    parts.ledger.plastic += accepted.plastic_work;
   }
 
 

@@ -162,13 +162,13 @@ namespace limber
 
 
 
-  // Whether a side that lets go holds a node, or bodies press each other there,
-  // is up to the force as well.
+  // Whether a side that lets go holds a node, or bodies press each other or an
+  // obstacle there, is up to the force as well.
   template <int dim>
   bool
   ExplicitIntegrator<dim>::needs_trial_force() const
   {
-    return boundaries.any_one_sided() || contact;
+    return boundaries.any_one_sided() || contact || obstacles;
   }
 
 

@@ -69,13 +69,16 @@ namespace limber
 
 
 
-  // Where bodies touch, as soon as their masses at the nodes are known.
+  // Where bodies touch each other and obstacles, as soon as their masses at the
+  // nodes are known.
   template <int dim>
   void
   ExplicitIntegrator<dim>::find_contact()
   {
     if (contact)
       contact->find();
+    if (obstacles)
+      obstacles->find(time, step);
     lap(Verb::touch);
   }
 

@@ -7,6 +7,7 @@
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/sum_momentum.h>
 
+/** @file G2P: velocities from the nodes to the points. */
 namespace limber
 {
   namespace

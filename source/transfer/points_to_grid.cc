@@ -7,6 +7,7 @@
 #include <limber/transfer/points_to_splines.h>
 #include <limber/transfer/sum_momentum.h>
 
+/** @file P2G: mass, momentum and force from the points to the nodes. */
 namespace limber
 {
   namespace
@@ -45,7 +46,7 @@ namespace limber
                                                    what.projection,
                                                    means,
                                                    nodal);
-        constexpr std::size_t               width = 1 << dim;
+        constexpr std::size_t               width = pack_width<PointPack<dim>>;
         const auto add = [&](const auto begins, const std::size_t p)
           __attribute__((always_inline))
         {

@@ -327,7 +327,8 @@ class Folders(unittest.TestCase):
 
     def test_files_that_get_too_long(self):
         def small_files():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (60000, 60000))
+            # more than parameters.prm has
+            resource.setrlimit(resource.RLIMIT_FSIZE, (80000, 80000))
         common = ("Output/Time interval=0", "End time=0.6")
         for name, changes in (
                 ("statistics", ("Output/Statistics interval=1",)),

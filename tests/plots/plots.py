@@ -224,6 +224,56 @@ class Scripts(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
 
+    def run_python(self, program):
+        done = subprocess.run([SYSTEM, "-B", "-c", program, str(SCRIPTS)],
+                              text=True, capture_output=True)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+
+    def test_gaps_between_points_that_were_pulled_apart(self):
+        self.run_python(GAPS)
+
+    def test_lines_and_panels_that_coincide(self):
+        self.run_python(COINCIDE)
+
+
+# Spheres that stand 1.7 diameters apart make a surface; a slot of five spacings stays.
+GAPS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import spheres
+x, y = np.meshgrid(np.arange(20.), np.arange(20.))
+places = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1)
+slot = abs(places[:, 0] - 9.5) > 2
+camera = spheres.Camera(np.zeros(3), np.array([19, 19, 1.]), 0, 0, 1, 380)
+red = np.tile([1., 0, 0], (len(places), 1))
+for wanted, kept in ((1, slot | True), (0, slot)):
+    picture = spheres.render(camera, places[kept], red[kept], 0.3)
+    middle = picture[40:-40, 184:196, 3] if not wanted else picture[
+        20:-40, 20:-20, 3]
+    assert (middle == wanted).all(), (wanted, middle.mean())
+"""
+
+# What repeats a measure has no panel; of lines that coincide the first is wider.
+COINCIDE = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import plot_study
+rows = [{"method": m, "outcome": "finished", "beyond": "", "n": str(n),
+         "a value": str(v), "a error": str(v), "b value": str(v),
+         "b error": str(v)}
+        for m, v in (("none", 1), ("cell", 1.001), ("node", 2))
+        for n in (1, 2)]
+meta = {"title": "", "caption": "", "measures": ["a", "b"], "variations": ["n"],
+        "horizontal": "n", "horizontal label": "n", "vertical label": "",
+        "against cost": False, "logarithmic": "none", "error levels": [],
+        "closed forms": {}}
+figure = plot_study.draw(rows, meta)
+assert len(figure.axes) == 1, figure.axes
+widths = [line.get_linewidth() for line in figure.axes[0].lines]
+assert widths[0] > widths[1] == widths[2], widths
+"""
+
 PALETTE = """
 import re, sys
 sys.path.insert(0, sys.argv[1])

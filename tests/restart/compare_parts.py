@@ -5,8 +5,8 @@
         --scene tests/restart/two_dimensions.prm --parts 1:limit 2:kill 3
 
 A part is a number of ranks and what ends it: the wall time limit of the
-scene ('limit'), a signal ('terminate', 'interrupt'), or the loss of the
-machine ('kill'); signals are for one rank. The last part runs to the end. All
+scene ('limit'), a signal ('terminate', 'interrupt'; for one rank), or the loss
+of the machine ('kill', all ranks at once). The last part runs to the end. All
 rows of the statistics have to agree with those of the run at one go, within
 the tolerance of tests/mpi/compare_ranks.py; so have the series of pictures and
 the lines of health.
@@ -64,6 +64,37 @@ def saved_step(folder):
         return 0
 
 
+def descendants(number):
+    """Process numbers of all that a process has started, itself included."""
+    children = Path(f"/proc/{number}/task/{number}/children")
+    try:
+        found = [int(word) for word in children.read_text().split()]
+    except OSError:
+        found = []
+    return [number] + [each for child in found for each in descendants(child)]
+
+
+def is_running(number):
+    """A process that has ended but was not waited for holds no lock."""
+    try:
+        state = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2]
+    except OSError:
+        return False
+    return state.split()[0] not in "ZX"
+
+
+def lose_the_machine(process):
+    """Kills mpirun and its ranks; these would outlive it for a moment."""
+    numbers = descendants(process.pid)
+    for number in numbers:
+        try:
+            os.kill(number, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    while any(is_running(number) for number in numbers):
+        time.sleep(0.002)
+
+
 def run(arguments, folder, ranks, resume=False, end="", limit=0):
     """Returns the exit code; a part that is to be stopped makes ten steps."""
     command = [arguments.limber, arguments.scene,
@@ -85,7 +116,10 @@ def run(arguments, folder, ranks, resume=False, end="", limit=0):
         if end in SIGNALS:
             while process.poll() is None and saved_step(folder) < before + 10:
                 time.sleep(0.002)
-            process.send_signal(SIGNALS[end])
+            if end == "kill":
+                lose_the_machine(process)
+            else:
+                process.send_signal(SIGNALS[end])
         return process.wait()
 
 

@@ -22,6 +22,7 @@ namespace limber
     std::uint64_t              points_added = 0;
     double                     way          = 0; // see Adaptation::is_due()
     std::uint64_t              steps        = 0; // since criteria were asked
+    std::uint64_t points_joined = 0; // those that have gone in this way
     // For the report
     std::uint64_t times_asked = 0, mesh_changes = 0, points_split = 0;
   };
@@ -31,8 +32,9 @@ namespace limber
   /**
    * Lets the mesh follow what the scene's refinements want, and points follow
    * the mesh: one in a cell of a finer level than it was made for becomes 2^dim
-   * of half its size. Every member function is collective but those that only
-   * tell something.
+   * of half its size. Where the scene allows it, points in a cell of a coarser
+   * level than they were made for are joined. Every member function is
+   * collective but those that only tell something.
    */
   template <int dim>
   class Adaptation
@@ -55,9 +57,9 @@ namespace limber
     is_due(double displacement);
 
     /**
-     * Ask the criteria at @p time, change the mesh and split points; returns
-     * whether anything has changed, and then fields of nodes and cells have to
-     * adopt the mesh.
+     * Ask the criteria at @p time, change the mesh, split and join points;
+     * returns whether anything has changed, and then fields of nodes and cells
+     * have to adopt the mesh.
      */
     bool
     adapt(double time, const KeptPoints &kept);
@@ -70,6 +72,13 @@ namespace limber
     state() const
     {
       return memory;
+    }
+
+    /** Kinetic and strain energy less by the last adapt() on this rank, J. */
+    double
+    energy_removed() const
+    {
+      return removed;
     }
 
     /** Time that adapting has taken on this rank, s. */
@@ -87,11 +96,15 @@ namespace limber
     bool
     split_points(const RefinedCells<dim> &mesh, const KeptPoints &kept);
 
+    bool
+    join_points(const KeptPoints &kept);
+
     const Problem<dim>  &problem;
     BackgroundGrid<dim> &grid;
     Bodies              &bodies;
     AdaptationState      memory;
     double               seconds_spent = 0;
+    double               removed       = 0;
   };
 } // namespace limber
 

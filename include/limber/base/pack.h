@@ -39,6 +39,13 @@ namespace limber
   template <int width>
   using Pack = typename internal::PackType<width>::type;
 
+  /** Of eight doubles at most. */
+#ifdef __AVX512F__
+  inline constexpr int widest_pack = 8;
+#else
+  inline constexpr int widest_pack = 4;
+#endif
+
   /** How many doubles a Number holds. */
   template <class Number>
   inline constexpr int pack_width = sizeof(Number) / sizeof(double);
@@ -107,7 +114,12 @@ namespace limber
   inline Pack<8>
   joined(const Pack<4> &lower, const Pack<4> &upper)
   {
-    return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
+    Pack<8> result;
+    std::memcpy(&result, &lower, sizeof(lower));
+    std::memcpy(reinterpret_cast<char *>(&result) + sizeof(lower),
+                &upper,
+                sizeof(upper));
+    return result;
   }
 
 
@@ -440,6 +452,22 @@ namespace limber
   __attribute__((always_inline)) inline void
   transpose(std::array<Pack<width>, width> &a)
   {
+    if constexpr (width > widest_pack)
+      {
+        // four blocks that fit into registers
+        std::array<Pack<4>, 4> blocks[2][2];
+        for (int i = 0; i < 2; ++i)
+          for (int j = 0; j < 2; ++j)
+            {
+              for (int k = 0; k < 4; ++k)
+                blocks[i][j][k] = some_lanes<Pack<4>>(a[4 * i + k], 4 * j);
+              transpose<4>(blocks[i][j]);
+            }
+        for (int i = 0; i < 2; ++i)
+          for (int k = 0; k < 4; ++k)
+            a[4 * i + k] = joined(blocks[0][i][k], blocks[1][i][k]);
+        return;
+      }
     internal::exchange_blocks<width, 1>(a);
     if constexpr (width >= 4)
       internal::exchange_blocks<width, 2>(a);
@@ -486,6 +514,16 @@ namespace limber
       return four(0);
     else
       return internal::fold<w, 4>(four(0), four(4));
+  }
+
+
+
+  /** The same of twice as many packs as they have lanes. */
+  __attribute__((always_inline)) inline Pack<8>
+  sums_over_lanes(const std::array<Pack<4>, 8> &a)
+  {
+    return joined(sums_over_lanes<4>({{a[0], a[1], a[2], a[3]}}),
+                  sums_over_lanes<4>({{a[4], a[5], a[6], a[7]}}));
   }
 
 

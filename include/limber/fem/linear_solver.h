@@ -44,8 +44,11 @@ namespace limber
     void
     set_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix);
 
-    /** Throws ComputationError where the iteration does not converge. */
-    void
+    /**
+     * Returns the iterations it took, none by factorisation. Throws
+     * ComputationError where they do not converge.
+     */
+    unsigned int
     solve(NodalVector &solution, const NodalVector &right_side);
 
     const bool direct;

@@ -31,6 +31,7 @@ namespace limber
       double                 work          = 0; // J, as if they were FLIP's
       double                 transfer_work = 0; // J, what it does beyond that
       double                 friction      = 0; // J, heat, not in work
+      double                 loss          = 0; // J, of what lands on it
     };
 
     using Account = std::function<void(unsigned int side, const Action &)>;
@@ -82,10 +83,10 @@ namespace limber
                 double            step = 0);
 
     /**
-     * Work and heat of friction, J, of sides beyond what apply() has accounted
-     * for, where points have given back the velocity that begins at @p slot,
-     * before sides are applied to it: held nodes of this rank do not strain
-     * with it. To be counted by the share of FLIP.
+     * Losses and heat of friction, J, beyond what apply() has accounted for,
+     * where points have given back the velocity that begins at @p slot, before
+     * sides are applied to it: held nodes of this rank do not strain with it.
+     * To be counted by the share of FLIP.
      */
     Action
     action_on_remapped(const NodalFields<dim> &nodes, unsigned int slot) const;

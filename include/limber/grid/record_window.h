@@ -91,6 +91,16 @@ namespace limber
         result = records;
         transpose<n>(result);
       }
+    else if constexpr (n == 2 * n_points)
+      for (int half = 0; half < 2; ++half)
+        {
+          std::array<Number, n_points> block;
+          for (int p = 0; p < n_points; ++p)
+            block[p] = some_lanes<Number>(records[p], half * n_points);
+          transpose<n_points>(block);
+          for (int i = 0; i < n_points; ++i)
+            result[half * n_points + i] = block[i];
+        }
     else
       {
         static_assert(2 * n == n_points);

@@ -12,9 +12,13 @@
 
 namespace limber
 {
-  /** Packs of points are as wide as a cell has nodes. */
+  /**
+   * Packs of points are as wide as a cell has nodes, but no wider than the
+   * registers of the machine: comparisons of what needs two of them are done
+   * by GCC lane by lane.
+   */
   template <int dim>
-  using PointPack = Pack<(1 << dim)>;
+  using PointPack = Pack<(dim == 2 ? 4 : widest_pack)>;
 
 
 
@@ -77,7 +81,7 @@ namespace limber
       return xi;
     }
 
-    static constexpr int width = 1 << dim;
+    static constexpr int width = pack_width<Number>;
 
     const std::size_t first; // point in the first lane
     const int         n;     // how many lanes hold points of the batch
@@ -109,7 +113,7 @@ namespace limber
   __attribute__((always_inline)) inline void
   for_each_pack(const CellBatch &batch, const Work &work)
   {
-    constexpr std::size_t width = 1 << dim;
+    constexpr std::size_t width = pack_width<PointPack<dim>>;
     std::size_t           p     = batch.begin;
     if (usually(p + width <= batch.end))
       do

@@ -2,241 +2,11 @@
 #ifndef limber_interpolation_convected_h
 #define limber_interpolation_convected_h
 
-#include <limber/base/expected.h>
-#include <limber/base/small_matrix.h>
+#include <limber/interpolation/domain_shape.h>
 #include <limber/interpolation/linear.h>
-#include <limber/points/point_view.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace limber
 {
-  /** Flatter domains than that share of the box around them do not count. */
-  inline constexpr double flattest_domain = 1e-3;
-
-
-
-  /** Boxes count for no more than that many cells on either side. */
-  inline constexpr double largest_half_box = 0.5;
-
-  /** Boxes that have shrunk to less count for that many cells. */
-  inline constexpr double smallest_half_box = 1e-6;
-
-
-
-  /**
-   * Half an edge of the box of a point, or of a pack of points, along d, m;
-   * @p load gives what an array has for them.
-   */
-  template <int dim, class Load>
-  __attribute__((always_inline)) inline auto
-  half_box(const PointView<dim> &points, const int d, const Load &load)
-  {
-    auto half = load(points.domain[d * (dim + 1)]);
-    if (points.domain_form == DomainForm::stretched_box)
-      {
-        half *= half;
-#pragma GCC unroll 3
-        for (int k = 0; k < dim; ++k)
-          if (k != d)
-            {
-              const auto edge = load(points.domain[d * dim + k]);
-              half += edge * edge;
-            }
-        half = square_root(half);
-      }
-    return half;
-  }
-
-
-
-  /**
-   * The domain of a point, over which functions of the grid are averaged.
-   *
-   * Convected (CPDI; Sadeghirad, Brannon and Burghardt, IJNME 86 (2011)
-   * 1435-1456) it is the parallelogram or parallelepiped around the point with
-   * the half edges r_k, the columns of R, which are carried along by the grid.
-   * Its corners are x_c = x + R s_c with signs s_c. The functions of the point
-   * are means over it of those of the grid, interpolated from the corners,
-   *
-   *   N_i = 2^-d sum_c N_i(x_c),   grad N_i = 2^-d sum_c N_i(x_c) R^-T s_c,
-   *
-   * so that a field u of the grid has at the point, with its values u_c at the
-   * corners,
-   *
-   *   u = 2^-d sum_c u_c,   grad u = sum_k u,k R^-1_k,   u,k = 2^-d sum_c s_ck
-   *   u_c.
-   *
-   * They see the linear functions of the cells in which the corners are, looked
-   * up one by one: a stencil of each point's own.
-   *
-   * With generalised interpolation (GIMP; Bardenhagen and Kober, CMES 5 (2004)
-   * 477-495) it is a box along the axes, R = diag(a), and functions are its
-   * exact means, N_i = (1/V) int N_i dV and grad N_i = (1/V) int grad N_i dV,
-   * which in each cell are those of its part there. It keeps its size, or
-   * follows the stretch: a_d is the length of row d of the R that is carried
-   * along, sqrt((R R^T)_dd), which the left stretch V = sqrt(F F^T) gives along
-   * the axis and no rotation changes.
-   *
-   * Rules. Along each axis a domain counts for no more than a cell on either
-   * side of its point; what is longer is shortened to that. One that has turned
-   * inside out, or is flatter than a thousandth, counts as the box around it. A
-   * corner outside the grid counts in its side. A box counts for no more than
-   * half a cell on either side; where it reaches beyond a side of the grid it
-   * sees linear functions as if they went on.
-   */
-  template <int dim>
-  class DomainShape
-  {
-  public:
-    static constexpr int n_corners = 1 << dim;
-
-    /** Of point p, which is in @p cell. */
-    __attribute__((always_inline)) DomainShape(const PointView<dim> &points,
-                                               const GridView<dim>  &grid,
-                                               const std::uint32_t   cell,
-                                               const std::size_t     p)
-      : home(cell)
-    {
-      const CellGeometry<dim> &geometry = grid.cells[cell];
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        place[d] = points.position[d][p];
-      if (points.has_boxes())
-        set_box(points, geometry, p);
-      else
-        set_edges(points, geometry, p);
-      is_at_home = true;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        {
-          const double xi =
-            (place[d] - geometry.origin[d]) * geometry.inverse_edge[d];
-          const double half = extent[d] * geometry.inverse_edge[d];
-          is_at_home &= (xi >= half) & (xi + half <= 1);
-        }
-    }
-
-    /** +1 or -1: at which end of edge k the corner is. */
-    static constexpr double
-    sign(const int corner, const int k)
-    {
-      return corner >> k & 1 ? 1. : -1.;
-    }
-
-    /** A corner, m. */
-    __attribute__((always_inline)) std::array<double, dim>
-    corner(const int c) const
-    {
-      std::array<double, dim> x = place;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-        for (int k = 0; k < dim; ++k)
-          x[d] += sign(c, k) * edges[d][k];
-      return x;
-    }
-
-    /** The cell in which a place counts. */
-    __attribute__((always_inline)) std::uint32_t
-    cell_at(const GridView<dim> &grid, const std::array<double, dim> &x) const
-    {
-      const std::uint32_t cell = grid.bins.nearest_cell(x);
-      // by round-off where the ghost cells end
-      return rarely(cell == invalid_cell) ? home : cell;
-    }
-
-    /** R^-1, 1/m, whose row k is R^-1_k. */
-    __attribute__((always_inline)) SmallMatrix<dim, double>
-    inverse() const
-    {
-      SmallMatrix<dim, double> result;
-      const auto               cof = cofactor<dim>(edges);
-      const double             one = 1 / determinant<dim>(edges);
-#pragma GCC unroll 8
-      for (int k = 0; k < dim; ++k)
-#pragma GCC unroll 8
-        for (int d = 0; d < dim; ++d)
-          result[k][d] = cof[d][k] * one;
-      return result;
-    }
-
-    const std::uint32_t home;       // the cell of the point
-    bool                is_at_home; // all corners are in it
-
-  protected:
-    std::array<double, dim> place, extent; // m; of the box around the domain
-
-  private:
-    __attribute__((always_inline)) void
-    set_box(const PointView<dim>    &points,
-            const CellGeometry<dim> &geometry,
-            const std::size_t        p)
-    {
-      for (int d = 0; d < dim; ++d)
-        {
-          extent[d] = std::clamp(half_box<dim>(points,
-                                               d,
-                                               [&](const double *const array) {
-                                                 return array[p];
-                                               }) *
-                                   geometry.inverse_edge[d],
-                                 smallest_half_box,
-                                 largest_half_box) /
-                      geometry.inverse_edge[d];
-          for (int k = 0; k < dim; ++k)
-            edges[d][k] = d == k ? extent[d] : 0;
-        }
-    }
-
-    __attribute__((always_inline)) void
-    set_edges(const PointView<dim>    &points,
-              const CellGeometry<dim> &geometry,
-              const std::size_t        p)
-    {
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        {
-          extent[d] = 0;
-#pragma GCC unroll 8
-          for (int k = 0; k < dim; ++k)
-            {
-              edges[d][k] = points.domain[d * dim + k][p];
-              extent[d] += std::abs(edges[d][k]);
-            }
-        }
-      restrict_edges(geometry);
-    }
-
-    /** Let R, and with it the box around it, count as the rules say. */
-    __attribute__((always_inline)) void
-    restrict_edges(const CellGeometry<dim> &geometry)
-    {
-      double box = 1;
-#pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        {
-          if (const double cells = extent[d] * geometry.inverse_edge[d];
-              rarely(cells > 1))
-            {
-              extent[d] /= cells;
-              for (int k = 0; k < dim; ++k)
-                edges[d][k] /= cells;
-            }
-          box *= extent[d];
-        }
-      if (rarely(!(determinant<dim>(edges) > flattest_domain * box)))
-        for (int d = 0; d < dim; ++d)
-          for (int k = 0; k < dim; ++k)
-            edges[d][k] = d == k ? extent[d] : 0;
-    }
-
-    SmallMatrix<dim, double> edges; // R as it counts, m
-  };
-
-
-
   /** A domain and the functions of the nodes on it. */
   template <int dim>
   class ConvectedDomain : public DomainShape<dim>
@@ -249,7 +19,8 @@ namespace limber
 
     /**
      * The corners that are in one cell, with sums over them for its nodes:
-     * 2^-d sum_c N_i(x_c) and 2^-d sum_c s_ck N_i(x_c).
+     * 2^-d sum_c N_i(x_c) and 2^-d sum_c s_ck N_i(x_c), or with the shares of
+     * the corners of a hexahedron.
      */
     struct Piece
     {
@@ -276,7 +47,6 @@ namespace limber
     int                          n_pieces = 0;
     std::array<Piece, n_corners> pieces;
 
-  private:
     /**
      * N_i(x), over the number of corners; a place beyond the cell, in a side
      * of the grid or by round-off, counts in its face. No weight is negative:
@@ -298,13 +68,14 @@ namespace limber
       return result;
     }
 
-    __attribute__((always_inline)) static void
-    add(Piece &piece, const int c, const Nodes &weight)
+  private:
+    __attribute__((always_inline)) void
+    add(Piece &piece, const int c, const Nodes &weight) const
     {
-      piece.weight += weight;
+      piece.weight += this->share(c) * weight;
 #pragma GCC unroll 8
       for (int k = 0; k < dim; ++k)
-        piece.along[k] += Shape::sign(c, k) * weight;
+        piece.along[k] += this->share(c, k) * weight;
     }
 
     /** The part of a box in each of the cells that its corners are in. */

@@ -53,6 +53,130 @@ namespace limber
 
 
 
+  /** The velocity of the grid at a place that counts in a cell, m/s. */
+  template <int dim>
+  inline std::array<double, dim>
+  moving_velocity(const GridView<dim>           &grid,
+                  const CellGeometry<dim>       &cell,
+                  const std::array<double, dim> &x)
+  {
+    constexpr double        n_corners = 1 << dim;
+    const auto              weights   = ConvectedDomain<dim>::weights(cell, x);
+    std::array<double, dim> v{};
+    for (int i = 0; i < Linear<dim>::n_nodes; ++i)
+      for (int d = 0; d < dim; ++d)
+        v[d] += (n_corners * weights[i]) *
+                grid.nodes[cell.node[i] + NodeLayout<dim>::velocity + d];
+    return v;
+  }
+
+
+
+  /**
+   * Carry the corners of the domain of a point along over @p step (s), each
+   * with the velocity of the grid there, and return how far its centroid moves,
+   * m. A domain that does not count as it is (convected.h) is carried along as
+   * one with edges, by the mean gradient.
+   */
+  template <int dim>
+  __attribute__((noinline)) std::array<double, dim>
+  carry_corners(const PointView<dim> &points,
+                const GridView<dim>  &grid,
+                const std::uint32_t   cell,
+                const std::size_t     p,
+                const double          step)
+  {
+    using Shape = Hexahedron<dim, double>;
+    const DomainShape<dim>  domain(points, grid, cell, p);
+    std::array<double, dim> shift;
+    Shape                   shape;
+    if (usually(domain.is_whole))
+      {
+        std::array<std::array<double, dim>, Shape::n_corners> corners;
+        std::array<double, dim>                               mean{};
+        for (int c = 0; c < Shape::n_corners; ++c)
+          {
+            const auto x = domain.corner(c);
+            const auto v =
+              moving_velocity<dim>(grid,
+                                   grid.cells[domain.cell_at(grid, x)],
+                                   x);
+            for (int d = 0; d < dim; ++d)
+              {
+                corners[c][d] = x[d] - points.position[d][p] + step * v[d];
+                mean[d] += domain.share(c) / Shape::n_corners * step * v[d];
+              }
+          }
+        const auto middle   = shape.set_corners(corners);
+        auto       next     = shape;
+        const auto centroid = next.integrate();
+        for (int d = 0; d < dim; ++d)
+          shift[d] =
+            next.smallest > 0 ? middle[d] + centroid[d] : mean[d]; // turned out
+      }
+    else
+      {
+        using Window = RecordWindow<dim, NodeLayout<dim>::velocity, dim>;
+        const FieldsOnDomain<dim, Window> fields(
+          ConvectedDomain<dim>(points, grid, cell, p), grid);
+        const auto inverse = domain.inverse();
+        for (int d = 0; d < dim; ++d)
+          {
+            const auto carried = [&](const auto &component) {
+              double result = component(d);
+              for (int e = 0; e < dim; ++e)
+                result +=
+                  step *
+                  fields.slope(inverse, NodeLayout<dim>::velocity + d, e) *
+                  component(e);
+              return result;
+            };
+            shift[d] = step * fields.value(NodeLayout<dim>::velocity + d);
+            for (int k = 0; k < dim; ++k)
+              shape.edges[d][k] = carried(
+                [&](const int e) { return points.domain[e * dim + k][p]; });
+            for (int t = 0; t < Shape::n_twists; ++t)
+              shape.twists[t][d] = carried([&](const int e) {
+                return points.domain[dim * (dim + t) + e][p];
+              });
+          }
+      }
+    for (int d = 0; d < dim; ++d)
+      {
+        for (int k = 0; k < dim; ++k)
+          points.domain[d * dim + k][p] = shape.edges[d][k];
+        for (int t = 0; t < Shape::n_twists; ++t)
+          points.domain[dim * (dim + t) + d][p] = shape.twists[t][d];
+      }
+    return shift;
+  }
+
+
+
+  /** The same for a pack; one by one, as corners are in any cells. */
+  template <int dim>
+  __attribute__((noinline)) std::array<PointPack<dim>, dim>
+  carry_all_corners(const PointView<dim> &points,
+                    const GridView<dim>  &grid,
+                    const std::uint32_t   cell,
+                    const std::size_t     first,
+                    const int             n,
+                    const double          step)
+  {
+    std::array<PointPack<dim>, dim> result;
+    set_zero(result);
+    for (int i = 0; i < n; ++i)
+      {
+        const auto shift =
+          carry_corners<dim>(points, grid, cell, first + i, step);
+        for (int d = 0; d < dim; ++d)
+          result[d][i] = shift[d];
+      }
+    return result;
+  }
+
+
+
   /**
    * Carry the domains of a pack along: R += @p step grad v R, step in s. Boxes
    * of fixed size stay.
@@ -157,6 +281,12 @@ namespace limber
 #pragma GCC unroll 3
           for (int k = 0; k < dim; ++k)
             half += magnitude(load(points.domain[d * dim + k]));
+        if (rarely(points.domain_form == DomainForm::hexahedron))
+          {
+            for (unsigned int t = 0; t < n_twists(dim); ++t)
+              half += magnitude(load(points.domain[dim * (dim + t) + d]));
+            half *= 2.; // from the centroid, and at most so far from the middle
+          }
         half *= geometry.inverse_edge[d];
         const Number xi =
           (lanes.load(points.position[d]) - geometry.origin[d]) *
@@ -183,14 +313,20 @@ namespace limber
                const Fields             &fields,
                const double              step)
   {
+    const PointView<dim>           &points = domains.points;
+    const GridView<dim>            &grid   = domains.grid;
     std::array<PointPack<dim>, dim> shift;
-    for (int d = 0; d < dim; ++d)
-      shift[d] =
-        lanes.only_active(step * fields.value(NodeLayout<dim>::velocity + d));
-    carry_domains(domains, lanes, fields, step);
-    const PointView<dim> &points = domains.points;
-    const GridView<dim>  &grid   = domains.grid;
-    const auto            moved =
+    if (rarely(points.domain_form == DomainForm::hexahedron))
+      shift = carry_all_corners<dim>(
+        points, grid, domains.cell, lanes.first, lanes.n, step);
+    else
+      {
+        for (int d = 0; d < dim; ++d)
+          shift[d] = lanes.only_active(
+            step * fields.value(NodeLayout<dim>::velocity + d));
+        carry_domains(domains, lanes, fields, step);
+      }
+    const auto moved =
       move_points<dim>(points, grid, domains.cell, lanes, shift);
     enter_corners<dim>(points, grid, domains.cell, lanes);
     return moved.displacement;

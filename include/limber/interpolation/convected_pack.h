@@ -44,7 +44,10 @@ namespace limber
         at[d] = (lanes.load(points.position[d]) - grid.bins.lower[d]) *
                 grid.bins.inverse_edge[d];
       fits = grid.bins.one_per_cell &&
-             (points.has_boxes() ? set_boxes(at, lanes) : set_edges(at, lanes));
+             (points.has_boxes() ? set_boxes(at, lanes) :
+              rarely(points.domain_form == DomainForm::hexahedron) ?
+                                   set_hexahedra(at, lanes) :
+                                   set_edges(at, lanes));
       if (rarely(!fits))
         invert_one_by_one();
     }
@@ -192,6 +195,62 @@ namespace limber
       return true;
     }
 
+    /** Hexahedra; out of the way of the others. */
+    template <class Lanes>
+    __attribute__((noinline)) bool
+    set_hexahedra(Vector at, const Lanes &lanes)
+    {
+      Hexahedron<dim, Number> shape; // in cells
+      for (int d = 0; d < dim; ++d)
+        {
+          const double inverse_edge = grid.bins.inverse_edge[d];
+          for (int k = 0; k < dim; ++k)
+            shape.edges[d][k] =
+              lanes.load(points.domain[d * dim + k]) * inverse_edge;
+          for (int t = 0; t < shape.n_twists; ++t)
+            shape.twists[t][d] =
+              lanes.load(points.domain[dim * (dim + t) + d]) * inverse_edge;
+        }
+      shape.integrate();
+      Vector half;
+      Number box    = broadcast<Number>(flattest_domain);
+      auto   fitted = box > 0.;
+      for (int d = 0; d < dim; ++d)
+        {
+          half[d] = Number{};
+          for (const auto &offset : shape.offsets)
+            half[d] = larger(half[d], magnitude(offset[d]));
+          fitted &= half[d] <= 0.5;
+          box *= half[d];
+        }
+      fitted &= shape.smallest > box;
+      fitted &= determinant<dim>(shape.edges) > box;
+      if (rarely(!all(fitted)) || !find_blocks(at, half))
+        return false;
+      auto edges = shape.edges;
+      for (int d = 0; d < dim; ++d)
+        for (int k = 0; k < dim; ++k)
+          edges[d][k] /= grid.bins.inverse_edge[d];
+      invert(edges);
+      for_functions([&](const int c,
+                        const int d) { return at[d] + shape.offsets[c][d]; },
+                    [&](const int i, const Number(&values)[n_corners]) {
+                      Number mean{};
+                      for (int c = 0; c < n_corners; ++c)
+                        mean += (n_corners * shape.shares[c]) * values[c];
+                      store(mean, functions.mean[i]);
+                      for (int k = 0; k < dim; ++k)
+                        {
+                          Number along{};
+                          for (int c = 0; c < n_corners; ++c)
+                            along +=
+                              (n_corners * shape.along[k][c]) * values[c];
+                          store(along, functions.along[k][i]);
+                        }
+                    });
+      return true;
+    }
+
     /** Boxes along the axes. */
     template <class Lanes>
     __attribute__((always_inline)) bool
@@ -276,13 +335,31 @@ namespace limber
           inverse[k][d] = cof[d][k] * one;
     }
 
+    __attribute__((always_inline)) void
+    set_functions(const Vector &at, const Matrix &in_cells)
+    {
+      for_functions(
+        [&](const int c, const int d) __attribute__((always_inline)) {
+          Number x = at[d];
+#pragma GCC unroll 3
+          for (int k = 0; k < dim; ++k)
+            x += DomainShape<dim>::sign(c, k) * in_cells[d][k];
+          return x;
+        },
+        [&](const int i, Number(&values)[n_corners])
+          __attribute__((always_inline)) { set_function(i, values); });
+    }
+
     /**
      * The functions of the nodes of a block at a corner are products of
      * 1 - x, 1 - |x - 1| and x - 1, or zero, for each direction; a corner
-     * beyond a side counts in it.
+     * beyond a side counts in it. Corner c is at @p place(c, d) along d, and
+     * @p work(i, values) takes the functions of node i at all corners, over
+     * their number.
      */
+    template <class Place, class Work>
     __attribute__((always_inline)) void
-    set_functions(const Vector &at, const Matrix &in_cells)
+    for_functions(const Place &place, const Work &work)
     {
       constexpr double share = 1. / n_corners;
       Number           factors[n_corners][dim][3];
@@ -291,10 +368,7 @@ namespace limber
 #pragma GCC unroll 3
         for (int d = 0; d < dim; ++d)
           {
-            Number x = at[d];
-#pragma GCC unroll 3
-            for (int k = 0; k < dim; ++k)
-              x += DomainShape<dim>::sign(c, k) * in_cells[d][k];
+            const Number x     = place(c, d);
             const Number lower = clamped(1. - x), upper = clamped(x - 1.);
             const double whole = d == 0 ? share : 1.;
             factors[c][d][0]   = whole * lower;
@@ -319,7 +393,7 @@ namespace limber
 #pragma GCC unroll 8
               for (int c = 0; c < n_corners; ++c)
                 values[c] = factors[c][0][i] * others[c];
-              set_function(3 * row + i, values);
+              work(3 * row + i, values);
             }
         }
       // Else GCC takes every weight out of a register by shuffles, where a

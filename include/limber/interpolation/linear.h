@@ -66,7 +66,19 @@ namespace limber
     static Nodes
     across(const Nodes &a, const int d)
     {
-      return __builtin_shuffle(a, opposites[d]);
+      if constexpr (n_nodes > widest_pack)
+        {
+          const auto lower = some_lanes<Pack<4>>(a, 0),
+                     upper = some_lanes<Pack<4>>(a, 4);
+          if (d == 2)
+            return joined(upper, lower);
+          using Four       = typename internal::PackType<4>::mask;
+          const Four other = d == 0 ? Four{1, 0, 3, 2} : Four{2, 3, 0, 1};
+          return joined(__builtin_shuffle(lower, other),
+                        __builtin_shuffle(upper, other));
+        }
+      else
+        return __builtin_shuffle(a, opposites[d]);
     }
 
     /**

@@ -22,6 +22,12 @@ namespace limber
    * the volume that has opened is closed (Tampubolon et al., ACM Trans. Graph.
    * 36 (2017) 105), so that no volume is gained by parting.
    *
+   * With a limit friction angle the slope eta grows with the rate g of plastic
+   * shear, as in dense flows of grains of the diameter d and the density rho_s
+   * (mu(I) rheology; Jop, Forterre and Pouliquen, Nature 441 (2006) 727),
+   *
+   *   eta(I) = eta + (eta_2 - eta) / (I_0 / I + 1),  I = g d / sqrt(p / rho_s).
+   *
    * J in the history is the elastic volume ratio; the whole one is J (1 +
    * opening) (1 + dilation).
    */
@@ -39,9 +45,10 @@ namespace limber
 
     static constexpr const char *name = "drucker prager";
     static constexpr const char *text =
-      "elastic and plastic with friction and cohesion, for sand and soil";
-    static constexpr bool                        takes_pressure = false;
-    static constexpr std::array<LawParameter, 8> parameters{
+      "elastic and plastic with friction and cohesion, for sand and soil; with "
+      "a limit friction angle the rheology mu(I)";
+    static constexpr bool                         takes_pressure = false;
+    static constexpr std::array<LawParameter, 12> parameters{
       {law_parameters::density,
        law_parameters::young_modulus,
        law_parameters::poisson_ratio,
@@ -75,7 +82,28 @@ namespace limber
                     true,
                     "under which motion the strength is that of Mohr and "
                     "Coulomb",
-                    "plane strain|triaxial compression|triaxial extension"}}};
+                    "plane strain|triaxial compression|triaxial extension"},
+       LawParameter{"Limit friction angle",
+                    0,
+                    0,
+                    89,
+                    true,
+                    "degrees: that of fast flow, in the rheology mu(I); 0: the "
+                    "rate does not matter"},
+       LawParameter{"Inertial number",
+                    0.279,
+                    0,
+                    1e300,
+                    false,
+                    "I_0, dimensionless, of mu(I): at which strength has grown "
+                    "by half of what it can"},
+       LawParameter{"Grain diameter", 1e-3, 0, 1e300, false, "d, m, of mu(I)"},
+       LawParameter{"Grain density",
+                    2500,
+                    0,
+                    1e300,
+                    false,
+                    "rho_s, kg/m^3, of mu(I)"}}};
     static constexpr std::array<StateVariable, dilatant ? 3 : 2> variables{
       []() {
         std::array<StateVariable, dilatant ? 3 : 2> result{
@@ -89,16 +117,21 @@ namespace limber
     static constexpr bool is_elastic = false;
     static constexpr bool is_plastic = true;
 
-    explicit DruckerPrager(const std::array<double, 8> &values)
+    explicit DruckerPrager(const std::array<double, 12> &values)
       : Elasticity(values[0], values[1], values[2])
       , cone(values)
       , least_pressure(-std::min(values[6], cone.apex_tension))
       , largest_volume(std::sqrt(1 - 2 * least_pressure / bulk_modulus))
-      , friction_modulus(modulus_of_friction(cone.slope))
+      , growth(values[8] > 0 ?
+                 Cone(with_angle(values, values[8])).slope - cone.slope :
+                 0)
+      , flow_time(
+          growth > 0 ? values[9] / (values[10] * std::sqrt(values[11])) : 0)
+      , friction_modulus(modulus_of_friction(cone.slope + growth))
     {}
 
     static const char *
-    objection(const std::array<double, 8> &values)
+    objection(const std::array<double, 12> &values)
     {
       if (values[5] > values[3])
         return "the 'Dilatancy angle' is larger than the 'Friction angle', so "
@@ -108,12 +141,20 @@ namespace limber
         return "both 'Friction angle' and 'Cohesion' are zero, so that nothing "
                "bears shear. Usually the cohesion was forgotten. Give one of "
                "them, or use 'Material = newtonian fluid'";
+      if (values[8] > 0 && values[8] < values[3])
+        return "the 'Limit friction angle' is smaller than the 'Friction "
+               "angle', so that flow would weaken with its rate. Usually the "
+               "two are swapped";
+      if (values[8] > 0 && (values[4] > 0 || values[5] > 0))
+        return "a 'Limit friction angle' (mu(I)) goes with neither 'Cohesion' "
+               "nor 'Dilatancy angle': it is for loose grains in flow. Set "
+               "these to 0, or the limit angle";
       return nullptr;
     }
 
     /** Whether this variant of the law serves these parameters. */
     static bool
-    accepts(const std::array<double, 8> &values)
+    accepts(const std::array<double, 12> &values)
     {
       return (values[5] > 0) == dilatant;
     }
@@ -158,7 +199,14 @@ namespace limber
               flow           = std::sqrt(0.5) * plastic;
             }
           else
-            flow /= trial.stiffness();
+            {
+              if (growth > 0)
+                flow -= gain(flow,
+                             trial.stiffness(),
+                             opening > 0. ? Number{} : state.pressure,
+                             motion.step);
+              flow /= trial.stiffness();
+            }
           variable<dim>(state, 0) += std::sqrt(2. / 3.) * flow;
           const Number work = trial.flow(flow, state) -
                               0.5 * (former_pressure + state.pressure) * volume;
@@ -166,6 +214,13 @@ namespace limber
         }
       trial.set_stress(state);
       return result;
+    }
+
+    /** Whether stress depends on how fast it flows. */
+    bool
+    depends_on_rate() const
+    {
+      return growth > 0;
     }
 
     /** J of the body, with what has opened and dilated. */
@@ -195,7 +250,7 @@ namespace limber
     /** The strength sqrt(J2) <= cohesion + slope p of the flow rule, Pa. */
     struct Cone
     {
-      explicit Cone(const std::array<double, 8> &values)
+      explicit Cone(const std::array<double, 12> &values)
       {
         const double degree = 3.14159265358979323846 / 180;
         const double sine   = std::sin(values[3] * degree),
@@ -248,6 +303,39 @@ namespace limber
     }
 
     /**
+     * By how much the strength |s| is larger for the rate of the flow, with an
+     * implicit Euler step for that: with T = @p excess / sqrt(2), D =
+     * (eta_2 - eta) p and a = G I dt I_0 sqrt(p / rho_s) / d it is sqrt(2) x,
+     *
+     *   x (a + T - x) = D (T - x)
+     *
+     * (Dunatunga and Kamrin, J. Fluid Mech. 779 (2015) 483).
+     */
+    template <class Number>
+    Number
+    gain(const Number &excess,
+         const Number &stiffness,
+         const Number &pressure,
+         const double  step) const
+    {
+      const Number p = larger(pressure, Number{});
+      const Number T = std::sqrt(0.5) * excess, D = growth * p;
+      const Number a   = (0.5 * flow_time * step) * stiffness * square_root(p);
+      const Number sum = larger(a + T + D, broadcast<Number>(1e-100));
+      const Number root =
+        square_root(larger(sum * sum - 4. * (D * T), Number{}));
+      return std::sqrt(2.) * (2. * (D * T)) / (sum + root);
+    }
+
+    /** The values with another friction angle. */
+    static std::array<double, 12>
+    with_angle(std::array<double, 12> values, const double angle)
+    {
+      values[3] = angle;
+      return values;
+    }
+
+    /**
      * Volume beyond that of the tensile strength opens; what has opened is
      * closed before the pressure grows. Returns the work on it.
      */
@@ -280,6 +368,8 @@ namespace limber
 
     const double least_pressure;   // of the tensile strength, Pa
     const double largest_volume;   // J there
+    const double growth;           // eta_2 - eta; 0: any rate
+    const double flow_time;        // I_0 / (d sqrt(rho_s)), (Pa s^2)^(-1/2)
     const double friction_modulus; // Pa
   };
 } // namespace limber

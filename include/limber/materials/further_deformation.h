@@ -7,15 +7,16 @@
 namespace limber
 {
   /**
-   * An elastic law that can deform a state further by f of any size, in one
+   * A law of a solid that can deform a state further by f of any size, in one
    * go: Law::update() takes motions as short as explicit steps make them, and
-   * bounds what a cell that is hardly touched does to its points.
+   * bounds what a cell that is hardly touched does to its points. What flows
+   * returns from the trial strain at the end of f.
    */
   template <class Law>
   class FurtherDeformation : public Law
   {
   public:
-    static_assert(Law::is_elastic);
+    static_assert(Law::is_elastic || (Law::is_plastic && Law::finite_strain));
 
     explicit FurtherDeformation(const Law &law)
       : Law(law)
@@ -23,15 +24,25 @@ namespace limber
 
     /**
      * The state after f, in which the volume ratio grows by the factor
-     * @p growth; where the strain is small, by @p growth less one.
+     * @p growth; where the strain is small, by @p growth less one. Returns the
+     * work on plastic strain, per volume at the start, Pa.
      */
     template <int dim>
-    void
+    double
     deform(const SquareMatrix<dim>                   &f,
            const double                               growth,
            typename Law::template State<dim, double> &state) const
     {
-      if constexpr (Law::finite_strain)
+      if constexpr (Law::is_plastic)
+        {
+          // the stress is still that of before, as update() has it after the
+          // motion, of which nothing is left
+          isochoric::deform<dim>(state.history, f, determinant<dim>(f));
+          state.history[0] *= growth;
+          const MotionIncrement<dim, double> none{};
+          return this->template update<dim>(none, state).plastic;
+        }
+      else if constexpr (Law::finite_strain)
         {
           isochoric::deform<dim>(state.history, f, determinant<dim>(f));
           state.history[0] *= growth;
@@ -44,6 +55,7 @@ namespace limber
           for (unsigned int k = 0; k < state.deviator.size(); ++k)
             state.deviator[k] += added.deviator[k];
         }
+      return 0;
     }
   };
 } // namespace limber

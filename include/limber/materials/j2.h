@@ -15,9 +15,17 @@ namespace limber
    *   |s| <= sqrt(2/3) k(alpha),
    *   k = sy + H alpha + Q (1 - exp(-delta alpha))
    *
+   * With a viscosity it bears more, the faster it flows: in shear at the rate
+   * g of plastic strain
+   *
+   *   tau = sy / sqrt(3) + eta g^n
+   *
+   * (Bingham with n = 1, Herschel and Bulkley; Perzyna's overstress), an exact
+   * yield stress without regularisation.
+   *
    * The trial strain takes whatever averages act on the motion; the point
    * returns from it on its own, radially and without a change of volume. What
-   * is taken for hardening counts as plastic work as well.
+   * is taken for hardening and by the viscosity counts as plastic work as well.
    */
   class J2 : public FiniteElasticity<1>
   {
@@ -25,9 +33,9 @@ namespace limber
     static constexpr const char *name = "j2";
     static constexpr const char *text =
       "elastic and plastic with isotropic hardening (von Mises), at any "
-      "deformation";
+      "deformation; with a viscosity a Bingham or Herschel-Bulkley fluid";
     static constexpr bool                        takes_pressure = false;
-    static constexpr std::array<LawParameter, 7> parameters{
+    static constexpr std::array<LawParameter, 9> parameters{
       {law_parameters::density,
        law_parameters::young_modulus,
        law_parameters::poisson_ratio,
@@ -58,7 +66,21 @@ namespace limber
                     0,
                     1e300,
                     false,
-                    "delta, dimensionless, of the saturation hardening"}}};
+                    "delta, dimensionless, of the saturation hardening"},
+       LawParameter{"Viscosity",
+                    0,
+                    0,
+                    1e300,
+                    true,
+                    "eta, Pa s^n: shear stress beyond that of yielding per "
+                    "rate of plastic shear to the power n"},
+       LawParameter{"Flow exponent",
+                    1,
+                    0.1,
+                    1,
+                    true,
+                    "n, of the viscosity: 1 is Bingham's fluid, less thins "
+                    "with the rate (Herschel and Bulkley)"}}};
     static constexpr std::array<StateVariable, 1> variables{
       {{"equivalent plastic strain", "", 0}}};
 
@@ -66,17 +88,19 @@ namespace limber
     static constexpr bool is_elastic = false;
     static constexpr bool is_plastic = true;
 
-    explicit J2(const std::array<double, 7> &values)
+    explicit J2(const std::array<double, 9> &values)
       : FiniteElasticity(values[0], values[1], values[2])
       , yield_stress(values[3])
       , hardening(values[4])
       , saturation(values[5])
       , saturation_rate(values[6])
+      , viscosity(values[7])
+      , inverse_exponent(viscosity > 0 ? 1 / values[8] : 1)
     {}
 
     /** Whether this variant of the law serves these parameters. */
     static bool
-    accepts(const std::array<double, 7> &)
+    accepts(const std::array<double, 9> &)
     {
       return true;
     }
@@ -95,12 +119,21 @@ namespace limber
       Dissipation<Number> result;
       if (rarely(!all(trial.norm() <= radius)))
         {
-          const Number flow = flow_beyond(trial, radius, alpha);
+          const Number flow =
+            viscosity > 0 ? viscous_flow(trial, radius, alpha, motion.step) :
+                            flow_beyond(trial, radius, alpha);
           alpha += root * flow;
           result.plastic = trial.flow(flow, state);
         }
       trial.set_stress(state);
       return result;
+    }
+
+    /** Whether stress depends on how fast it flows. */
+    bool
+    depends_on_rate() const
+    {
+      return viscosity > 0;
     }
 
     /** k, Pa, in uniaxial tension. */
@@ -114,10 +147,12 @@ namespace limber
       return result;
     }
 
-    const double yield_stress;    // sy, Pa
-    const double hardening;       // H, Pa
-    const double saturation;      // Q, Pa
-    const double saturation_rate; // delta
+    const double yield_stress;     // sy, Pa
+    const double hardening;        // H, Pa
+    const double saturation;       // Q, Pa
+    const double saturation_rate;  // delta
+    const double viscosity;        // eta, Pa s^n
+    const double inverse_exponent; // 1/n
 
   private:
     static constexpr double root = 0.816496580927726; // sqrt(2/3)
@@ -161,6 +196,53 @@ namespace limber
               larger(left, Number{}) / (stiffness + 2. / 3. * slope(now));
           }
       return excess > 0. ? result : Number{};
+    }
+
+    /**
+     * The same where what is beyond the radius, y = sqrt(2) eta g^n, drives the
+     * flow dt g / sqrt(2), with an implicit Euler step for it:
+     *
+     *   y + (2 G I + 2/3 k') flow(y) = excess.
+     *
+     * The left hand side is convex, and y begins where one of its terms alone
+     * would be the excess, at most twice the solution: Newton's method comes
+     * down from there. Exact after one sweep for Bingham's fluid.
+     */
+    template <int dim, class Number>
+    Number
+    viscous_flow(const RadialReturn<dim, Number> &trial,
+                 const Number                    &radius,
+                 const Number                    &alpha,
+                 const double                     step) const
+    {
+      constexpr double root_2    = 1.4142135623730951;
+      const double     scale     = 1 / (root_2 * viscosity); // g^n = scale y
+      const double     rate      = step / root_2;            // flow = rate g
+      const Number     stiffness = trial.stiffness();
+      const Number     excess    = trial.norm() - radius;
+      const auto       power     = [](const Number &x, const double exponent) {
+        return exponent == 1 ? x : exponential(exponent * logarithm(x));
+      };
+
+      // in lanes that stay elastic any positive number does
+      const Number target = excess > 0. ? excess : radius;
+      const Number hard   = stiffness + 2. / 3. * slope(alpha);
+      const Number alone =
+        power(target / (rate * hard), 1 / inverse_exponent) * (1 / scale);
+      Number    y      = alone < target ? alone : target, flow{};
+      const int sweeps = inverse_exponent == 1 && saturation == 0 ? 1 : 5;
+      for (int sweep = 0; sweep < sweeps; ++sweep)
+        {
+          flow             = rate * power(scale * y, inverse_exponent);
+          const Number now = alpha + root * flow;
+          const Number left =
+            trial.norm() - y - stiffness * flow - root * yield_strength(now);
+          const Number steepness = 1. + (stiffness + 2. / 3. * slope(now)) *
+                                          (inverse_exponent * flow / y);
+          y = larger(y + left / steepness, 1e-3 * y);
+        }
+      flow = rate * power(scale * y, inverse_exponent);
+      return excess > 0. ? flow : Number{};
     }
   };
 } // namespace limber

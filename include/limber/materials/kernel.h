@@ -13,7 +13,8 @@ namespace limber
     cubic,     // cubic B-splines
     gimp,      // linear, averaged over boxes of fixed size around points
     cpgimp,    // the same, with boxes that follow the stretch
-    cpdi       // linear, averaged over convected domains of points
+    cpdi,      // linear, averaged over convected domains of points
+    cpdi2      // the same, with domains whose corners are carried along
   };
 
   inline constexpr bool
@@ -27,7 +28,7 @@ namespace limber
   has_domains(const KernelKind kernel)
   {
     return kernel == KernelKind::gimp || kernel == KernelKind::cpgimp ||
-           kernel == KernelKind::cpdi;
+           kernel == KernelKind::cpdi || kernel == KernelKind::cpdi2;
   }
 } // namespace limber
 

@@ -74,6 +74,10 @@ namespace limber
   std::string
   objection_to(const std::string &law, const std::vector<double> &values);
 
+  /** Whether it flows by a stress that depends on the rate of the flow. */
+  bool
+  flows_by_rate(const std::string &law, const std::vector<double> &values);
+
   /** The names of the variables of all laws, each once. */
   std::vector<std::string>
   names_of_variables();

@@ -22,6 +22,8 @@ namespace limber
     // on the material until then, kg m/s, and the force since the row before
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_force; // N
+    // The same of obstacles: N, N m
+    std::vector<ObstacleAction<dim>> obstacle_impulse, obstacle_force;
   };
 
 
@@ -53,7 +55,7 @@ namespace limber
     void
     decide_what_to_sample();
     void
-    update_side_forces(const double time, const Totals<dim> &totals);
+    update_forces(const double time, const Totals<dim> &totals);
     Seen<dim>
     look(unsigned int                         number,
          const Totals<dim>                   &totals,

@@ -45,7 +45,7 @@ namespace limber
     double removed_with_history = 0; // with volumetric history or tension, J
     double plastic_work         = 0; // on plastic strain, J
     double friction_heat        = 0; // J
-    double contact_loss         = 0; // in impacts of bodies, J
+    double contact_loss         = 0; // in impacts on bodies and sides, J
     double removed_by_transfer  = 0; // between points and grid, J
     double boundary_work        = 0; // done on the material, J
     double load_work            = 0; // J
@@ -53,6 +53,7 @@ namespace limber
     double momentum_error       = 0; // over the scale of momentum
     // Impulse of each side of the box on the material so far, kg m/s
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
+    std::vector<ObstacleAction<dim>>            obstacles; // the same of each
 
     double        largest_speed   = 0; // m/s
     double        smallest_volume = 1; // of all J
@@ -83,9 +84,9 @@ namespace limber
 
   /**
    * Holds the present state against that at the start. The ledger knows what
-   * the sides, the loads, damping transfers, viscosity, plastic flow, friction
-   * and lost points have done to energy and momentum; what it cannot account
-   * for is
+   * the sides, obstacles, loads, damping transfers, viscosity, plastic flow,
+   * friction and lost points have done to energy and momentum; what it cannot
+   * account for is
    *
    *   drift = (E - E_0) / scale,
    *   E = T + U + V + transfer + viscous + plastic + history + friction

@@ -199,6 +199,15 @@ namespace limber
           const std::array<double, dim>  &spacing,
           std::uint64_t                   next_id);
 
+    /**
+     * Let the points of each of these sets, which are in one cell and of one
+     * size class, become one of the next coarser class. It has their mass and
+     * the mean by mass of all else, so that mass, momentum and the centre of
+     * mass stay; and the number of the first. No point has parts of a domain.
+     */
+    void
+    join(const std::vector<std::vector<std::size_t>> &sets);
+
     /** What a point carries, as "mass" or "velocity x", in a fixed order. */
     std::vector<std::string>
     field_names() const;

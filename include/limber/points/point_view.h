@@ -23,24 +23,36 @@ namespace limber
   /** Over what the functions of a point are averaged (convected.h). */
   enum class DomainForm
   {
-    none,          // the point alone
-    box,           // of fixed size
-    stretched_box, // that follows the stretch
-    parallelepiped // that is carried along
+    none,           // the point alone
+    box,            // of fixed size
+    stretched_box,  // that follows the stretch
+    parallelepiped, // that is carried along
+    hexahedron      // or quadrilateral, whose corners are carried along
   };
+
+
+
+  /** Products of different natural coordinates: xy; yz, zx, xy and xyz. */
+  inline constexpr unsigned int
+  n_twists(const unsigned int dim)
+  {
+    return (1u << dim) - dim - 1;
+  }
 
 
 
   /**
    * Numbers that a domain takes at each point: half edges along the axes of a
-   * fixed box, else components of half edges that are carried along.
+   * fixed box, else components of half edges that are carried along, and of the
+   * twists of a hexahedron.
    */
   inline constexpr unsigned int
   n_domain_components(const DomainForm form, const unsigned int dim)
   {
-    return form == DomainForm::none ? 0 :
-           form == DomainForm::box  ? dim :
-                                      dim * dim;
+    return form == DomainForm::none       ? 0 :
+           form == DomainForm::box        ? dim :
+           form == DomainForm::hexahedron ? dim * (dim + n_twists(dim)) :
+                                            dim * dim;
   }
 
 
@@ -66,9 +78,11 @@ namespace limber
     std::array<double *, max_history>     history{}; // meaning: the law's
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
     // Half edges of the domain (convected.h), m: component d of edge k at
-    // d * dim + k, of fixed boxes those with d = k alone
-    DomainForm                      domain_form = DomainForm::none;
-    std::array<double *, dim * dim> domain{};
+    // d * dim + k, of fixed boxes those with d = k alone; behind them the
+    // twists of a hexahedron, component d of twist t at dim * (dim + t) + d
+    DomainForm domain_form = DomainForm::none;
+    std::array<double *, n_domain_components(DomainForm::hexahedron, dim)>
+      domain{};
     // F, row-major, in the frame of the initial configuration; else null
     std::array<double *, dim * dim> deformation{};
     // The variable that carries the volumetric history (of the law's choice):

@@ -50,6 +50,10 @@ namespace limber
     bool
     contains(const dealii::Point<2> &place) const;
 
+    /** From the edges; looks at each. */
+    SignedDistance<2>
+    signed_distance(const dealii::Point<2> &place) const;
+
     /** Area between the edges of odd and even numbers of crossings, m^2. */
     double
     area() const

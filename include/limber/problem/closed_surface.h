@@ -2,6 +2,7 @@
 #ifndef limber_problem_closed_surface_h
 #define limber_problem_closed_surface_h
 
+#include <limber/problem/nearest_facet.h>
 #include <limber/problem/shape.h>
 
 #include <array>
@@ -72,6 +73,10 @@ namespace limber
     bool
     contains(const dealii::Point<3> &place) const;
 
+    /** From the facets; the first question of all sorts them. */
+    SignedDistance<3>
+    signed_distance(const dealii::Point<3> &place) const;
+
     const Corners<3> &
     bounding_box() const
     {
@@ -134,6 +139,8 @@ namespace limber
     Lattice               lattice;
     Corners<3>            box;
     std::optional<double> enclosed;
+    // Made when somebody asks for a distance, which few do
+    mutable std::shared_ptr<const NearestFacet> nearest;
   };
 } // namespace limber
 

@@ -37,6 +37,8 @@ namespace limber
     std::optional<std::pair<dealii::Point<dim>, dealii::Point<dim>>> within;
     std::string  observable; // frequency: of which other observable
     unsigned int side = 0;   // reaction force
+    // obstacle force and moment: by its number
+    unsigned int obstacle = 0;
     // state variable: by its number among those of the law of the body
     unsigned int variable = 0;
   };
@@ -52,6 +54,7 @@ namespace limber
     extent,   // how far a body, or all, reach in the direction
     largest,  // the largest value of a variable in the points of a body
     side,     // the force on a side of the box
+    obstacle, // force and moment on an obstacle
     column    // another observable, over time
   };
 
@@ -88,9 +91,11 @@ namespace limber
     double                 potential_energy = 0; // of gravity, J
     // The largest coordinate in the direction with its sign, m
     double extent = not_known;
-    // Of the material on the side, N
+    // Of the material on the side or obstacle, N
     dealii::Tensor<1, dim> force;
-    double                 frequency = not_known; // of the column, Hz
+    // On the obstacle about its centre, N m; in the plane the last of three
+    dealii::Tensor<1, 3> moment;
+    double               frequency = not_known; // of the column, Hz
   };
 
 

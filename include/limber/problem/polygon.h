@@ -47,6 +47,9 @@ namespace limber
     bool
     contains(const dealii::Point<dim> &point) const override;
 
+    std::optional<SignedDistance<dim>>
+    signed_distance(const dealii::Point<dim> &point) const override;
+
     Corners<dim>
     bounding_box() const override;
 

@@ -10,6 +10,7 @@
 #include <limber/materials/kernel.h>
 #include <limber/materials/projection.h>
 #include <limber/problem/observable.h>
+#include <limber/problem/obstacle.h>
 #include <limber/problem/shapes.h>
 #include <limber/problem/side_conditions.h>
 
@@ -169,23 +170,37 @@ namespace limber
   /** What cells are asked for that may have to become finer. */
   enum class RefinementCriterion
   {
-    region, // where they are
-    body,   // whether they hold points of some bodies
-    surface // how far it is from them to an empty cell
+    region,        // where they are
+    body,          // whether they hold points of some bodies
+    surface,       // how far it is from them to an empty cell
+    stress,        // how far mean stress jumps from them to the next ones
+    rate,          // how fast they are sheared
+    plastic_strain // how far they have flowed
   };
+
+  /** Whether it compares a number per cell with a scale. */
+  inline bool
+  has_scale(const RefinementCriterion criterion)
+  {
+    return criterion == RefinementCriterion::stress ||
+           criterion == RefinementCriterion::rate ||
+           criterion == RefinementCriterion::plastic_strain;
+  }
 
   /** Where cells of a level are wanted: a criterion, within a region. */
   template <int dim>
   struct Refinement
   {
-    std::string              name;
-    RefinementCriterion      criterion = RefinementCriterion::region;
-    unsigned int             level     = 1; // wanted there
-    Corners<dim>             box;           // m
-    Formula<dim>             where; // 1 component, positive inside; empty: all
-    bool                     depends_on_time = false; // the formula
-    std::vector<std::string> bodies;                  // of the criterion 'body'
-    int                      distance = 1;            // of 'surface', in cells
+    std::string         name;
+    RefinementCriterion criterion = RefinementCriterion::region;
+    unsigned int        level     = 1; // wanted there
+    Corners<dim>        box;           // m
+    Formula<dim>        where; // 1 component, positive inside; empty: all
+    bool                depends_on_time = false; // the formula
+    int                 distance        = 1;     // of 'surface', in cells
+    // Of the criterion 'body', and those with a scale; empty: all
+    std::vector<std::string> bodies;
+    double scale = 0; // beyond it cells are divided; of 'stress' in Pa
 
     /** Whether a place in the box is inside at this time, s. */
     bool
@@ -212,13 +227,15 @@ namespace limber
     unsigned int                 levels = 0;
     std::vector<Refinement<dim>> refinements;
     unsigned int adapt_every = 0; // steps; 0: as far as points have gone
+    // Whether points that are finer than their cells may become one
+    bool joins_points = false;
 
-    /** Whether a region moves with time, whatever the points do. */
+    /** Whether criteria may want something else though no point has moved. */
     bool
-    has_moving_formula() const
+    may_change_at_rest() const
     {
       for (const Refinement<dim> &refinement : refinements)
-        if (refinement.depends_on_time)
+        if (refinement.depends_on_time || has_scale(refinement.criterion))
           return true;
       return false;
     }
@@ -373,6 +390,7 @@ namespace limber
     Sides<dim>                   sides;
     Loads<dim>                   loads;
     std::vector<ContactPair>     contacts;
+    std::vector<Obstacle<dim>>   obstacles;
     Method                       method;
     OutputRequest                output;
     CheckpointRequest            checkpoint;

@@ -21,9 +21,10 @@ namespace limber
   struct SceneNames
   {
     std::vector<std::string> bodies, refinements, face_loads, contacts,
-      observables, checks;
-    // Parts of a body's shape, where it is a union, by name of the body.
-    std::map<std::string, std::vector<std::string>> shapes;
+      obstacles, observables, checks;
+    // Parts of a body's shape, where it is a union, by name of the body; and
+    // of an obstacle's.
+    std::map<std::string, std::vector<std::string>> shapes, obstacle_shapes;
   };
 
   // Small tools of the readers (source/problem/read_tools.cc)
@@ -201,6 +202,18 @@ namespace limber
   template <int dim>
   void
   read_contact(const Section &root, Problem<dim> &problem);
+
+  // Rigid obstacles (source/problem/read_obstacles.cc)
+
+  void
+  declare_obstacles(Parameters        &parameters,
+                    const unsigned int dim,
+                    const SceneNames  &names);
+
+  /** Needs the bodies and the method; refuses what does not go with them. */
+  template <int dim>
+  void
+  read_obstacles(const Section &root, Problem<dim> &problem);
 
   // Method and output (source/problem/read_method.cc)
 

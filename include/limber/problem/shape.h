@@ -3,6 +3,7 @@
 #define limber_problem_shape_h
 
 #include <deal.II/base/point.h>
+#include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
 
@@ -23,7 +24,21 @@ namespace limber
 
 
 
-  /** The region that a body fills at the start; boundaries belong to it. */
+  /** How far a place is from the surface of a shape. */
+  template <int dim>
+  struct SignedDistance
+  {
+    double value = 0; // m, negative inside
+    // Outward, of length 1: the gradient of the distance where it has one
+    dealii::Tensor<1, dim> normal;
+  };
+
+
+
+  /**
+   * The region that a body fills at the start, or an obstacle; boundaries
+   * belong to it.
+   */
   template <int dim>
   class Shape
   {
@@ -40,6 +55,13 @@ namespace limber
     /** m^dim, where a formula gives it. */
     virtual std::optional<double>
     exact_volume() const
+    {
+      return std::nullopt;
+    }
+
+    /** From the surface; nothing of a shape that cannot tell. */
+    virtual std::optional<SignedDistance<dim>>
+    signed_distance(const dealii::Point<dim> &) const
     {
       return std::nullopt;
     }

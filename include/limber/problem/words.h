@@ -76,6 +76,14 @@ namespace limber
   const Words<HistoryTreatment> &
   history_words();
 
+  /** The word of a condition at a side of the grid, in place of a value. */
+  const Words<std::string> &
+  side_condition_words();
+
+  /** The same for what a pair of bodies does where they touch. */
+  const Words<std::string> &
+  contact_law_words();
+
 
 
   /** The admissible words. */
@@ -86,6 +94,19 @@ namespace limber
     std::vector<std::string> result;
     for (const Word<Enum> &word : words)
       result.push_back(word.word);
+    return result;
+  }
+
+
+
+  /** The same words with themselves as values, for whoever only lists them. */
+  template <typename Enum>
+  Words<std::string>
+  without_values(const Words<Enum> &words)
+  {
+    Words<std::string> result;
+    for (const Word<Enum> &word : words)
+      result.push_back({word.word, word.word, word.text});
     return result;
   }
 

@@ -47,7 +47,8 @@ namespace limber
 
   /**
    * What --list prints: name and one line for each choice of a topic, laws,
-   * kernels, schemes, shapes or exact. Throws InputError for another topic.
+   * kernels, schemes, shapes, sides, contact or exact. Throws InputError for
+   * another topic.
    */
   std::string
   list_text(const std::string &topic);

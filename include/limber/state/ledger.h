@@ -6,9 +6,21 @@
 #include <deal.II/base/tensor.h>
 
 #include <array>
+#include <vector>
 
 namespace limber
 {
+  /** What an obstacle has done to the material, or the material to it. */
+  template <int dim>
+  struct ObstacleAction
+  {
+    dealii::Tensor<1, dim> impulse; // kg m/s, or a force, N
+    // About the centre of the obstacle, in the plane the last of three
+    dealii::Tensor<1, 3> moment; // kg m^2/s, or N m
+  };
+
+
+
   /**
    * What has happened to energy and momentum since the start, summed step by
    * step on this rank; sum_over_ranks() completes it. Energies in J,
@@ -19,13 +31,13 @@ namespace limber
   {
     // Kinetic energy that FLIP would have kept and the transfer did not
     double transfer      = 0;
-    double boundary_work = 0; // done on the material by the sides of the box
+    double boundary_work = 0; // done on the material by sides and obstacles
     double load_work     = 0; // by body force formulas and face loads
     double viscous       = 0; // turned into heat by viscosity and damping
     double history       = 0; // removed with volumetric history or tension
     double plastic       = 0; // work on plastic strain
     double friction      = 0; // turned into heat where bodies slide
-    double contact       = 0; // lost in impacts where bodies touch
+    double contact       = 0; // lost where they touch, or land on a side
 
     // Body force formulas, face loads and damping
     dealii::Tensor<1, dim> load_impulse;
@@ -38,16 +50,28 @@ namespace limber
     dealii::Tensor<1, dim> lost_momentum;
     unsigned long          lost_points = 0;
 
+    // Of each obstacle of the scene on the material
+    std::vector<ObstacleAction<dim>> obstacles;
+
     Ledger
     sum_over_ranks(MPI_Comm communicator) const
     {
-      static_assert(sizeof(Ledger) % sizeof(double) == 0);
-      constexpr int n = (sizeof(Ledger) - sizeof(lost_points)) / sizeof(double);
-      Ledger        result;
+      static_assert(sizeof(lost_points) == sizeof(double));
+      static_assert(sizeof(ObstacleAction<dim>) == (dim + 3) * sizeof(double));
+      const int n = reinterpret_cast<const double *>(&lost_points) - &transfer;
+      Ledger    result;
       MPI_Allreduce(
         &transfer, &result.transfer, n, MPI_DOUBLE, MPI_SUM, communicator);
       result.lost_points =
         dealii::Utilities::MPI::sum(lost_points, communicator);
+      result.obstacles.resize(obstacles.size());
+      if (!obstacles.empty())
+        MPI_Allreduce(obstacles.data(),
+                      result.obstacles.data(),
+                      obstacles.size() * (dim + 3),
+                      MPI_DOUBLE,
+                      MPI_SUM,
+                      communicator);
       return result;
     }
   };

@@ -11,6 +11,26 @@
 
 namespace limber
 {
+  /** What becomes of the volumetric variable of points before they strain. */
+  struct HistoryChange
+  {
+    bool   any   = false;
+    double share = 0; // of the way to the mean
+    double mean  = 0; // of the cell
+    double shift = 0; // added besides
+  };
+
+
+
+  /** What a sweep finds while it strains points, by lanes; J, m^2/s^2. */
+  template <int dim>
+  struct PackFindings
+  {
+    PointPack<dim> waves{}, viscous{}, removed{}, plastic{};
+  };
+
+
+
   /**
    * What a law knows of the points of a body, whatever strains them: the part
    * of a StressUpdate that does not look at the grid.
@@ -145,22 +165,28 @@ namespace limber
       return load_state<double>(points, [&](const double *a) { return a[p]; });
     }
 
-    /** What a sweep finds while it strains points, by lanes. */
-    struct Findings
+    using Findings = PackFindings<dim>;
+
+    template <class Number>
+    static Number &
+    volumetric_variable(State<Number> &state)
     {
-      PointPack<dim> waves{}, viscous{}, removed{}, plastic{};
-    };
+      if constexpr (Law::volumetric < 0)
+        return state.pressure;
+      else
+        return state.history[Law::volumetric];
+    }
 
     /**
-     * Strain the points of a pack, and return their new state. Before that
-     * change(state, mass) acts on the old one.
+     * Strain the points of a pack, whose history is changed before; returns
+     * their volumetric variable.
      */
-    template <class Lanes, class Change>
-    __attribute__((always_inline)) State<PointPack<dim>>
+    template <class Lanes>
+    __attribute__((always_inline)) PointPack<dim>
     strain(const PointView<dim>                       &points,
            const Lanes                                &lanes,
            const MotionIncrement<dim, PointPack<dim>> &motion,
-           const Change                               &change,
+           const HistoryChange                        &change,
            const bool                                  measure_waves,
            Findings                                   &found) const
     {
@@ -171,7 +197,14 @@ namespace limber
       // zero in lanes beyond the batch
       [[maybe_unused]] const Number mass =
         lanes.only_active(lanes.load(points.mass));
-      change(state, mass);
+      if (change.any)
+        {
+          Number      &variable = volumetric_variable(state);
+          const Number before   = law.volumetric_energy(variable);
+          variable += change.share * (change.mean - variable) + change.shift;
+          found.removed +=
+            mass * inverse_density * (before - law.volumetric_energy(variable));
+        }
 
       const auto dissipation = law.template update<dim>(motion, state);
       if constexpr (Law::is_plastic)
@@ -188,7 +221,7 @@ namespace limber
         found.waves = larger(found.waves,
                              lanes.only_active(
                                law.template wave_speed_squared<dim>(state)));
-      return state;
+      return volumetric_variable(state);
     }
 
     /** The part of a summary that follows from them. */

@@ -5,11 +5,12 @@
 #include <limber/materials/law_list.h>
 #include <limber/stress/initial_frame_sweep.h>
 #include <limber/stress/law_sweep.h>
+#include <limber/stress/spline_sweep.h>
 
 #include <memory>
 #include <stdexcept>
 
-/** @file The sweeps of a law, one for each projection that its basis has. */
+/** @file The sweeps of a law, for each basis. */
 namespace limber
 {
   template <class Basis, class Law>
@@ -45,13 +46,21 @@ namespace limber
           case P::hybrid:
             return with(std::integral_constant<P, P::hybrid>());
           case P::assumed_strain:
-            if constexpr (Basis::n_nodes == 1 << Basis::dim)
-              return with(std::integral_constant<P, P::assumed_strain>());
-            break;
+            return with(std::integral_constant<P, P::assumed_strain>());
           default:
             break;
         }
     throw std::logic_error("no such projection");
+  }
+
+
+
+  /** Those of splines, of any law. */
+  template <class Basis, class Law>
+  std::unique_ptr<const StressUpdate<Basis::dim>>
+  make_spline_sweep(const Law &law, const StrainProjection &projection)
+  {
+    return std::make_unique<SplineSweep<Basis, Law>>(law, projection);
   }
 
 

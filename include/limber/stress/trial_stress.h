@@ -30,10 +30,21 @@ namespace limber
 
 
 
+  /** What points tell of a displacement that they have taken. */
+  struct AcceptedMotion
+  {
+    double longest_way  = 0; // over the edge of its cell
+    double plastic_work = 0; // J
+  };
+
+
+
   /**
    * The stress at the end of a step as a function of the displacements of the
-   * nodes in it, for elastic laws and linear functions. Trials leave the points
-   * as they are; one of them is then accepted.
+   * nodes in it, for solids and linear functions. Trials leave the points as
+   * they are; one of them is then accepted. Laws that flow (current frame
+   * alone) return to their yield surface in each trial, and count plastic work
+   * as energy.
    *
    * In the frame of the initial configuration the functions are those of the
    * initial places and F grows by the gradient of the displacement; in the
@@ -75,9 +86,9 @@ namespace limber
 
     /**
      * Strain the points by a displacement at which they have responded, and
-     * move them; returns the longest way over the edge of its cell.
+     * move them.
      */
-    virtual double
+    virtual AcceptedMotion
     accept(const PointView<dim> &points,
            const GridView<dim>  &grid,
            const double         *displacement) const = 0;
@@ -85,13 +96,16 @@ namespace limber
     /** At rest, Pa. */
     virtual double
     young_modulus() const = 0;
+
+    virtual bool
+    has_symmetric_tangent() const = 0;
   };
 
 
 
   /**
-   * For the elastic law of that name; @p values in the order of its entries,
-   * the projection 'none' or 'cell'.
+   * For the law of that name, of a solid; @p values in the order of its
+   * entries, the projection 'none' or 'cell'.
    */
   template <int dim>
   std::unique_ptr<const TrialStress<dim>>

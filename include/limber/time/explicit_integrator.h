@@ -7,6 +7,7 @@
 #include <limber/time/body_sweeps.h>
 #include <limber/time/contact.h>
 #include <limber/time/full_mass_filter.h>
+#include <limber/time/obstacle_contact.h>
 #include <limber/time/relocation.h>
 #include <limber/time/stabilization.h>
 
@@ -210,15 +211,16 @@ namespace limber
     const bool          in_initial_frame; // all bodies
     // Points by the velocity that strains them, with MUSL and USAVG; APIC
     // would lose angular momentum.
-    const bool                         moves_as_strained;
-    BoundaryConditions<dim>            boundaries;
-    ExternalLoads<dim>                 loads;
-    BodySweeps<dim>                    sweeps;
-    std::optional<Contact<dim>>        contact; // of bodies that may part
-    Stabilization<dim>                 stabilization;
-    Relocation<dim>                    relocation;
-    std::optional<FullMassFilter<dim>> full_mass; // for FMPM and XPIC alone
-    unsigned long                      steps_since_filter = 0;
+    const bool                          moves_as_strained;
+    BoundaryConditions<dim>             boundaries;
+    ExternalLoads<dim>                  loads;
+    BodySweeps<dim>                     sweeps;
+    std::optional<Contact<dim>>         contact;   // of bodies that may part
+    std::optional<ObstacleContact<dim>> obstacles; // where the scene has any
+    Stabilization<dim>                  stabilization;
+    Relocation<dim>                     relocation;
+    std::optional<FullMassFilter<dim>>  full_mass; // for FMPM and XPIC alone
+    unsigned long                       steps_since_filter = 0;
 
     Stopwatch                                      stopwatch;
     std::array<double, std::size_t(Verb::n_verbs)> seconds{};

@@ -32,7 +32,12 @@ namespace limber
   class NewtonEquations
   {
   public:
-    explicit NewtonEquations(const RunParts<dim> &parts);
+    /**
+     * Up to @p largest_direct unknowns are factorised, more are solved for with
+     * conjugate gradients, unless the tangent is not symmetric.
+     */
+    explicit NewtonEquations(const RunParts<dim> &parts,
+                             std::size_t largest_direct = default_direct);
     ~NewtonEquations();
 
     /**
@@ -123,12 +128,29 @@ namespace limber
           const std::vector<double> &of_held,
           std::vector<double>       &correction);
 
-    /** Let the points take these displacements; their longest way in cells. */
-    double
+    /** Of conjugate gradients, in all. */
+    unsigned long
+    linear_iterations() const
+    {
+      return n_linear_iterations;
+    }
+
+    /** Conjugate gradients have failed; all is factorised since. */
+    bool
+    gave_up_iterating() const
+    {
+      return factorises_all;
+    }
+
+    /** Let the points take these displacements. */
+    AcceptedMotion
     accept(const std::vector<double> &displacement);
 
   private:
     struct Matrix;
+
+    // faster than iterations up to here
+    static constexpr std::size_t default_direct = dim == 2 ? 60000 : 12000;
 
     // A face between two cells with points, near the surface
     struct GhostFace
@@ -163,6 +185,7 @@ namespace limber
     numbers_in(std::uint32_t cell) const;
 
     const RunParts<dim>                                  parts;
+    const std::size_t                                    largest_direct;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
     std::vector<std::uint32_t>      cells, nodes;   // with points, sorted
@@ -174,6 +197,8 @@ namespace limber
     std::vector<double>             total_forces;
     double                  total_energy = 0, energy_of_jumps = 0, noise = 0;
     std::unique_ptr<Matrix> matrix;
+    unsigned long           n_linear_iterations = 0;
+    bool                    factorises_all      = false;
   };
 } // namespace limber
 

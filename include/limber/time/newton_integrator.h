@@ -164,6 +164,7 @@ namespace limber
     double                      rest = 0; // unbalanced share of the forces
     std::string                 obstacle; // why the last step failed
     unsigned long               steps = 0, iterations = 0, halvings = 0;
+    unsigned long               corrections     = 0; // of all tries
     unsigned long               most_iterations = 0, last_iterations = 0;
     Stopwatch                   stopwatch;
     std::array<double, n_verbs> seconds{};

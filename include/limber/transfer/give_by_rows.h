@@ -74,12 +74,13 @@ namespace limber
   template <class Basis, bool has_alike, bool has_along, class Record>
   __attribute__((always_inline)) inline void
   add_by_rows(
-    const RowFactors<Basis, has_along>                                &factors,
-    const std::array<Record, 1 << Basis::dim>                         &alike,
-    const std::array<std::array<Record, 1 << Basis::dim>, Basis::dim> &along,
-    const int                                                          n_points,
-    const bool                                                         begins,
-    std::array<Record, Basis::n_nodes>                                &sums)
+    const RowFactors<Basis, has_along>                            &factors,
+    const std::array<Record, RowFactors<Basis, has_along>::width> &alike,
+    const std::array<std::array<Record, RowFactors<Basis, has_along>::width>,
+                     Basis::dim>                                  &along,
+    const int                                                      n_points,
+    const bool                                                     begins,
+    std::array<Record, Basis::n_nodes>                            &sums)
   {
     constexpr int dim = Basis::dim, n = Basis::n;
     for (int row = 0; row < Basis::n_nodes / n; ++row)

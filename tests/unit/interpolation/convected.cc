@@ -29,13 +29,15 @@ namespace
   class ConvectedDomains : public testing::Test
   {
   public:
-    static constexpr int        dim   = Case::dim;
-    static constexpr DomainForm form  = Case::form;
-    static constexpr bool       boxes = form != DomainForm::parallelepiped;
-    using Layout                      = NodeLayout<dim>;
-    using Domain                      = ConvectedDomain<dim>;
-    using Window = RecordWindow<dim, Layout::velocity, dim>;
-    using Fields = FieldsOnDomain<dim, Window>;
+    static constexpr int        dim  = Case::dim;
+    static constexpr DomainForm form = Case::form;
+    static constexpr bool       boxes =
+      form == DomainForm::box || form == DomainForm::stretched_box;
+    static constexpr bool has_twists = form == DomainForm::hexahedron;
+    using Layout                     = NodeLayout<dim>;
+    using Domain                     = ConvectedDomain<dim>;
+    using Window                     = RecordWindow<dim, Layout::velocity, dim>;
+    using Fields                     = FieldsOnDomain<dim, Window>;
 
     /** Half edges up to @p size of those of a cell, not flat. */
     SmallPoints<dim>
@@ -50,6 +52,10 @@ namespace
           for (int k = 0; k < dim; ++k)
             domains[d * dim + k][p] =
               size * grid.edge[d] * (d == k ? 0.5 : 0.2 * random());
+      if (has_twists)
+        for (std::size_t k = dim * dim; k < domains.size(); ++k)
+          for (std::size_t p = 0; p < points.size; ++p)
+            domains[k][p] = 0.1 * size * grid.edge[k % dim] * random();
       return own;
     }
 
@@ -62,6 +68,9 @@ namespace
         for (int k = 0; k < dim; ++k)
           if (d == k || form != DomainForm::box)
             points.domain[d * dim + k] = domains[d * dim + k].data();
+      for (std::size_t k = dim * dim; k < domains.size(); ++k)
+        if (has_twists)
+          points.domain[k] = domains[k].data();
       return points;
     }
 
@@ -84,6 +93,13 @@ namespace
       return grid.nodes[node * Layout::stride + Layout::velocity + d];
     }
 
+    void
+    set_twists_to_zero()
+    {
+      for (std::size_t k = dim * dim; k < domains.size(); ++k)
+        std::fill(domains[k].begin(), domains[k].end(), 0.);
+    }
+
     /** Away from the sides by more than a cell. */
     bool
     is_inside(const SmallPoints<dim> &own, const std::size_t p) const
@@ -97,9 +113,11 @@ namespace
       return true;
     }
 
-    Random                                     random;
-    SmallGrid<dim>                             grid;
-    std::array<std::vector<double>, dim * dim> domains;
+    Random         random;
+    SmallGrid<dim> grid;
+    std::array<std::vector<double>,
+               n_domain_components(DomainForm::hexahedron, dim)>
+      domains;
   };
 
   using Cases = testing::Types<DomainCase<2, DomainForm::parallelepiped>,
@@ -107,7 +125,9 @@ namespace
                                DomainCase<2, DomainForm::box>,
                                DomainCase<3, DomainForm::box>,
                                DomainCase<2, DomainForm::stretched_box>,
-                               DomainCase<3, DomainForm::stretched_box>>;
+                               DomainCase<3, DomainForm::stretched_box>,
+                               DomainCase<2, DomainForm::hexahedron>,
+                               DomainCase<3, DomainForm::hexahedron>>;
   TYPED_TEST_SUITE(ConvectedDomains, Cases);
 } // namespace
 
@@ -161,7 +181,7 @@ TYPED_TEST(ConvectedDomains, AreMeansOfTheFieldAtTheirCorners)
 {
   constexpr int dim = TestFixture::dim;
   using Layout      = typename TestFixture::Layout;
-  if (TestFixture::boxes)
+  if (TestFixture::boxes || TestFixture::has_twists)
     return;
   for (double &value : this->grid.nodes)
     value = this->random();
@@ -322,6 +342,8 @@ TYPED_TEST(ConvectedDomains, CountAsTheBoxAroundThemIfFlat)
           for (int k = 0; k < dim; ++k)
             points.domain[d * dim + k][p] = d == k ? extent : 0;
         }
+      for (std::size_t k = dim * dim; k < this->domains.size(); ++k)
+        this->domains[k][p] = 0;
       const auto                         box = at();
       const typename TestFixture::Fields of_box(box, this->grid.view());
       for (int e = 0; e < dim; ++e)
@@ -485,6 +507,16 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
               wanted += 1e-3 * A[d][e] * former[e * dim + k][p];
             ASSERT_NEAR(points.domain[d * dim + k][p], wanted, 1e-14);
           }
+  if (TestFixture::has_twists)
+    for (std::size_t p = 0; p < points.size; ++p)
+      if (this->is_inside(was_inside, p))
+        for (std::size_t k = dim * dim; k < this->domains.size(); ++k)
+          {
+            double wanted = former[k][p];
+            for (int e = 0; e < dim; ++e)
+              wanted += 1e-3 * A[k % dim][e] * former[k - k % dim + e][p];
+            ASSERT_NEAR(this->domains[k][p], wanted, 1e-14);
+          }
 }
 
 
@@ -559,6 +591,7 @@ TYPED_TEST(ConvectedDomains, GiveNoNegativeMass)
   const auto points = this->view(own);
   GiveToGrid what;
   what.inverse_density = 1;
+  this->set_twists_to_zero();
   std::vector<double> smallest(points.size, 1);
   for (std::size_t p = 0; p < points.size; ++p)
     {
@@ -576,7 +609,8 @@ TYPED_TEST(ConvectedDomains, GiveNoNegativeMass)
           }
     }
   for (const bool in_blocks : {true, false})
-    for (std::size_t alone = 0; alone < points.size; ++alone)
+    for (std::size_t alone = 0; alone < points.size;
+         alone += TestFixture::has_twists ? 7 : 1) // which are slow one by one
       {
         this->grid.bins.one_per_cell = in_blocks;
         std::fill(this->grid.nodes.begin(), this->grid.nodes.end(), 0.);

@@ -35,20 +35,47 @@ namespace
 
   constexpr double E = 1e9, nu = 0.3, sy = 1e5;
 
-  /** Parameters of a law, in the order of its entries. */
-  template <class... Value>
-  std::array<double, sizeof...(Value)>
-  values(const Value... value)
+  /** Parameters of a law, in the order of its entries; the rest by default. */
+  template <class Law, class... Value>
+  std::array<double, Law::parameters.size()>
+  values_of(const Value... value)
   {
-    return {{double(value)...}};
+    std::array<double, Law::parameters.size()> result{{double(value)...}};
+    for (std::size_t k = sizeof...(Value); k < result.size(); ++k)
+      result[k] = Law::parameters[k].standard;
+    return result;
+  }
+
+
+
+  template <class Law, class... Value>
+  Law
+  law_of(const Value... value)
+  {
+    return Law(values_of<Law>(value...));
   }
 
 
 
   J2
-  metal(const double H = 0, const double Q = 0, const double delta = 10)
+  metal(const double H         = 0,
+        const double Q         = 0,
+        const double delta     = 10,
+        const double viscosity = 0,
+        const double exponent  = 1)
   {
-    return J2(values(1000, E, nu, sy, H, Q, delta));
+    return law_of<J2>(1000, E, nu, sy, H, Q, delta, viscosity, exponent);
+  }
+
+
+
+  /** Grains whose friction grows with the rate: mu(I). */
+  DruckerPrager<false>
+  grains(const double limit = 35)
+  {
+    constexpr double I_0 = 0.3, diameter = 0.01, density = 2500;
+    return law_of<DruckerPrager<false>>(
+      2000, E, nu, 20, 0, 0, 0, 0, limit, I_0, diameter, density);
   }
 
 
@@ -67,11 +94,35 @@ namespace
 
 
 
+  /** Plastic work; the step is long by default, so that no rate counts. */
   template <int dim, class Law, class State>
   double
-  move(const Law &law, State &state, const Matrix<dim> &gradient)
+  move(const Law         &law,
+       State             &state,
+       const Matrix<dim> &gradient,
+       const double       step = 1e30)
   {
-    return law.template update<dim>(motion_of<dim>(gradient), state).plastic;
+    return law.template update<dim>(motion_of<dim>(gradient, step), state)
+      .plastic;
+  }
+
+
+
+  /** Simple shear, by so much in each of so many steps. */
+  template <int dim, class Law, class State>
+  double
+  shear(const Law   &law,
+        State       &state,
+        const double by,
+        const int    n_steps,
+        const double step)
+  {
+    Matrix<dim> gradient{};
+    gradient[0][1] = by;
+    double work    = 0;
+    for (int k = 0; k < n_steps; ++k)
+      work += move<dim>(law, state, gradient, step);
+    return work;
   }
 
 
@@ -165,15 +216,114 @@ TEST(Metal, YieldStrengthSaturates)
 
 
 
+// tau = sy / sqrt(3) + eta g^n, at rates that span six decades of what the
+// viscosity adds.
+TYPED_TEST(MetalPaths, ViscosityAddsToTheStressOfSteadyFlow)
+{
+  constexpr int    dim = TypeParam::dim;
+  constexpr double eta = 1e4, by = 1e-5;
+  for (const double n : {1., 0.6, 0.2})
+    for (const double added : {1e-4, 1e-2, 1., 100.}) // over sy
+      {
+        const J2     law   = metal(0, 0, 10, eta, n);
+        const double rate  = std::pow(added * sy / eta, 1 / n);
+        auto         state = law.template initialise<dim>(0);
+        const int    n_steps =
+          int(20 * (1 + added) * sy / (law.shear_modulus * by));
+        shear<dim>(law, state, by, n_steps, by / rate);
+        const double expected = sy / std::sqrt(3.) + eta * std::pow(rate, n);
+        // the elastic strain lets axes turn
+        const double elastic = expected / law.shear_modulus;
+        EXPECT_NEAR(state.deviator[2],
+                    expected,
+                    (1e-5 + elastic * elastic) * expected)
+          << n << ' ' << added;
+      }
+}
+
+
+
+// One step, from hardly any flow to a hundred times the yield stress: what is
+// beyond the radius is what the rate of the flow brings.
+TEST(Metal, ViscousReturnMeetsItsEquation)
+{
+  for (const double n : {1., 0.7, 0.3, 0.1})
+    for (const double Q : {0., 5e4})
+      for (double step = 1e-12; step < 1e12; step *= 100)
+        for (const double by : {2e-4, 1e-3, 1e-2})
+          {
+            const J2 law   = metal(1e5, Q, 50, 1e4, n);
+            auto     state = law.initialise<2>(0);
+            shear<2>(law, state, by, 1, step);
+            const double alpha = alpha_of(law, state);
+            const double rate  = std::sqrt(3.) * alpha / step;
+            const double q =
+              std::sqrt(1.5 * squared_norm<2, double>(state.deviator));
+            EXPECT_NEAR(q,
+                        law.yield_strength(alpha) +
+                          std::sqrt(3.) * 1e4 * std::pow(rate, n),
+                        1e-8 * q)
+              << n << ' ' << Q << ' ' << step << ' ' << by;
+          }
+}
+
+
+
+// Stress beyond that of yielding decays as exp(-G t / eta), implicit Euler
+// being of first order, and what decays becomes work.
+TEST(Metal, BinghamsOverstressRelaxes)
+{
+  constexpr double eta = 1e4;
+  double           error[2];
+  for (int k = 0; k < 2; ++k)
+    {
+      const J2 law   = metal(0, 0, 10, eta);
+      auto     state = law.initialise<2>(0);
+      // as fast as if there were no flow
+      shear<2>(law, state, 2 * sy / law.shear_modulus, 1, 1e-30);
+      const double start = state.deviator[2] - sy / std::sqrt(3.);
+      EXPECT_NEAR(state.deviator[2], 2 * sy, 1e-3 * sy);
+      const double before = law.strain_energy<2>(state);
+      const int    n      = 50 << k;
+      const double work =
+        shear<2>(law, state, 0, n, 2 * eta / law.shear_modulus / n);
+      error[k] =
+        (state.deviator[2] - sy / std::sqrt(3.)) / start / std::exp(-2.) - 1;
+      EXPECT_NEAR(work, before - law.strain_energy<2>(state), 1e-6 * work);
+    }
+  EXPECT_LT(std::abs(error[1]), 0.03);
+  EXPECT_NEAR(error[0] / error[1], 2, 0.1);
+}
+
+
+
+// With hardening of both kinds, and as slow as one likes.
+TYPED_TEST(MetalPaths, SlowFlowIsThatWithoutViscosity)
+{
+  constexpr int dim = TypeParam::dim;
+  const J2 law = metal(1e6, 5e4, 100), viscous = metal(1e6, 5e4, 100, 1e4, 0.7);
+  auto     state         = law.template initialise<dim>(0);
+  auto     other         = state;
+  const double work      = shear<dim>(law, state, 1e-4, 50, 1);
+  const double same_work = shear<dim>(viscous, other, 1e-4, 50, 1e12);
+  EXPECT_NEAR(same_work, work, 1e-6 * work);
+  EXPECT_NEAR(alpha_of(viscous, other),
+              alpha_of(law, state),
+              1e-6 * alpha_of(law, state));
+  EXPECT_NEAR(other.deviator[2], state.deviator[2], 1e-6 * sy);
+}
+
+
+
 // In and out again within the yield surface: nothing flows, energy comes back.
 TYPED_TEST(MetalPaths, BelowTheYieldStressIsElastic)
 {
-  constexpr int    dim = TypeParam::dim;
-  const J2         law = metal();
-  const NeoHookean elastic(values(1000, E, nu));
-  auto             state = law.template initialise<dim>(0);
-  auto             other = elastic.template initialise<dim>(0);
-  Matrix<dim>      shear{};
+  constexpr int dim     = TypeParam::dim;
+  const J2      law     = metal();
+  const auto    elastic = law_of<NeoHookean>(1000, E, nu);
+  auto          state   = law.template initialise<dim>(0);
+  auto          other   = elastic.template initialise<dim>(0);
+  Matrix<dim>   shear{};
   shear[0][1] = shear[1][0] = 1e-5;
   shear[0][0]               = -2e-6;
   for (const double sign : {1., 1., -1., -1., -1.})
@@ -302,9 +452,9 @@ TYPED_TEST(MetalPaths, WorkIsStoredOrDissipated)
 TYPED_TEST(SoilPaths, WorkIsStoredOrDissipated)
 {
   test_balance<TypeParam::dim>(
-    DruckerPrager<false>(values(2000, E, nu, 30, 0, 0, 0, 0)));
+    law_of<DruckerPrager<false>>(2000, E, nu, 30, 0, 0, 0, 0));
   test_balance<TypeParam::dim>(
-    DruckerPrager<true>(values(2000, E, nu, 30, 0, 10, 0, 0)));
+    law_of<DruckerPrager<true>>(2000, E, nu, 30, 0, 10, 0, 0));
 }
 
 
@@ -360,8 +510,9 @@ TEST(Soil, OedometerSlidesOnTheCone)
   const double degree = 3.14159265358979323846 / 180;
   for (const double phi : {20., 30., 35.})
     {
-      const DruckerPrager<false> law(values(2000, E, 0.1, phi, 0, 0, 0, 1));
-      const double               M =
+      const auto law =
+        law_of<DruckerPrager<false>>(2000, E, 0.1, phi, 0, 0, 0, 1);
+      const double M =
         6 * std::sin(phi * degree) / (3 - std::sin(phi * degree));
       auto state = law.initialise<3>(0);
       for (int k = 0; k < 200; ++k)
@@ -377,10 +528,10 @@ TEST(Soil, OedometerSlidesOnTheCone)
 // At constant lateral stress p0: q = 3 M p0 / (3 - M).
 TEST(Soil, TriaxialCompressionFailsAtItsStrength)
 {
-  const double               p0 = 1e5;
-  const DruckerPrager<false> law(values(2000, E, nu, 30, 0, 0, 0, 1));
-  auto                       state = law.initialise<3>(p0);
-  double                     wide  = 0; // lateral strain of a step
+  const double p0  = 1e5;
+  const auto   law = law_of<DruckerPrager<false>>(2000, E, nu, 30, 0, 0, 0, 1);
+  auto         state = law.initialise<3>(p0);
+  double       wide  = 0; // lateral strain of a step
   for (int k = 0; k < 200; ++k)
     {
       const auto lateral_at = [&](const double e) {
@@ -419,8 +570,8 @@ test_plane_strain_fit(const double psi, const double c)
 {
   const double degree = 3.14159265358979323846 / 180;
   const double phi    = 30 * degree;
-  const Law    law(values(2000, E, nu, 30, c, psi, 0, 0));
-  auto         state = law.template initialise<dim>(1e4);
+  const auto   law    = law_of<Law>(2000, E, nu, 30, c, psi, 0, 0);
+  auto         state  = law.template initialise<dim>(1e4);
   const double spread =
     (1 + std::sin(psi * degree)) / (1 - std::sin(psi * degree));
   for (int k = 0; k < 2000; ++k)
@@ -453,7 +604,7 @@ TEST(Soil, ConesAreThoseOfTheBooks)
                    cosine  = std::cos(phi * degree);
       const auto cone      = [&](const double psi, const double fit) {
         return DruckerPrager<true>::Cone(
-          values(1, 1, 0, phi, 100, psi, 0, fit));
+          values_of<DruckerPrager<true>>(1, 1, 0, phi, 100, psi, 0, fit));
       };
       const double root = std::sqrt(9 + 12 * tangent * tangent);
       EXPECT_NEAR(cone(phi, 0).slope, 3 * tangent / root, 1e-14);
@@ -477,15 +628,53 @@ TEST(Soil, ConesAreThoseOfTheBooks)
 
 
 
+// sqrt(J2) / p = mu(I), with I over four decades, and the friction of rest as
+// the limit of slow flow.
+TYPED_TEST(SoilPaths, FrictionGrowsWithTheInertialNumber)
+{
+  constexpr int    dim    = TypeParam::dim;
+  constexpr double degree = 3.14159265358979323846 / 180;
+  constexpr double p = 1e3, by = 1e-6;
+  const double     slow = std::sin(20 * degree), fast = std::sin(35 * degree);
+  const auto       law = grains();
+  for (const double I : {1e-8, 1e-2, 0.1, 0.3, 1., 100.})
+    {
+      const double rate  = I / 0.01 * std::sqrt(p / 2500);
+      auto         state = law.template initialise<dim>(p);
+      shear<dim>(law, state, by, 100, by / rate);
+      EXPECT_NEAR(std::abs(state.deviator[2]) / state.pressure,
+                  slow + (fast - slow) / (0.3 / I + 1),
+                  1e-5)
+        << I;
+    }
+}
+
+
+
+// With the angle of rest as the limit nothing depends on the rate.
+TYPED_TEST(SoilPaths, EqualAnglesKnowNoRate)
+{
+  constexpr int dim   = TypeParam::dim;
+  const auto    law   = law_of<DruckerPrager<false>>(2000, E, nu, 20);
+  auto          state = law.template initialise<dim>(1e3);
+  auto          other = state;
+  shear<dim>(law, state, 1e-6, 100, 1e-6);
+  shear<dim>(grains(20), other, 1e-6, 100, 1e-6);
+  EXPECT_EQ(state.deviator, other.deviator);
+  EXPECT_EQ(state.history, other.history);
+}
+
+
+
 // Pulled apart by 10 % and pushed together again: no stress until the volume is
 // what it was, and then that of the elastic law.
 TYPED_TEST(SoilPaths, WhatPartedBearsPressureOnlyWhenClosed)
 {
-  constexpr int              dim = TypeParam::dim;
-  const DruckerPrager<false> law(values(2000, E, nu, 30, 0, 0, 0, 0));
-  const NeoHookean           elastic(values(2000, E, nu));
-  auto                       state = law.template initialise<dim>(1e5);
-  auto                       other = elastic.template initialise<dim>(1e5);
+  constexpr int dim = TypeParam::dim;
+  const auto    law = law_of<DruckerPrager<false>>(2000, E, nu, 30, 0, 0, 0, 0);
+  const auto    elastic = law_of<NeoHookean>(2000, E, nu);
+  auto          state   = law.template initialise<dim>(1e5);
+  auto          other   = elastic.template initialise<dim>(1e5);
   for (int k = 0; k < 400; ++k)
     {
       const double e = k < 200 ? 5e-4 : -5.005e-4;
@@ -512,11 +701,11 @@ TYPED_TEST(SoilPaths, WhatPartedBearsPressureOnlyWhenClosed)
 // per volume that opens.
 TYPED_TEST(SoilPaths, PartingTakesTheTensileStrength)
 {
-  constexpr int              dim = TypeParam::dim;
-  const double               T   = 2e4;
-  const DruckerPrager<false> law(values(2000, E, nu, 30, 5e4, 0, T, 0));
-  auto                       state = law.template initialise<dim>(0);
-  double                     work  = 0;
+  constexpr int dim = TypeParam::dim;
+  const double  T   = 2e4;
+  const auto law = law_of<DruckerPrager<false>>(2000, E, nu, 30, 5e4, 0, T, 0);
+  auto       state = law.template initialise<dim>(0);
+  double     work  = 0;
   for (int k = 0; k < 100; ++k)
     {
       auto motion       = motion_of<dim>({});
@@ -536,9 +725,9 @@ TYPED_TEST(SoilPaths, PartingTakesTheTensileStrength)
 // eta_bar d alpha.
 TYPED_TEST(SoilPaths, FlowDilates)
 {
-  constexpr int             dim = TypeParam::dim;
-  const DruckerPrager<true> law(values(2000, E, nu, 30, 0, 10, 0, 0));
-  auto                      state = law.template initialise<dim>(1e4);
+  constexpr int dim = TypeParam::dim;
+  const auto    law = law_of<DruckerPrager<true>>(2000, E, nu, 30, 0, 10, 0, 0);
+  auto          state = law.template initialise<dim>(1e4);
   for (int k = 0; k < 100; ++k)
     move<dim>(law, state, diagonal<dim>(-1e-5, 1e-5));
   const double dilation = state.history.back();

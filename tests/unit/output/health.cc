@@ -165,6 +165,8 @@ namespace limber::test
     EXPECT_EQ(of(KernelKind::cubic, true, 3), Verdict::good);
     EXPECT_EQ(of(KernelKind::cpdi, false, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpdi, true, 2), Verdict::good);
+    EXPECT_EQ(of(KernelKind::cpdi2, false, 2), Verdict::look);
+    EXPECT_EQ(of(KernelKind::cpdi2, true, 2), Verdict::good);
   }
 
 

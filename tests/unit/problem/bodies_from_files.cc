@@ -500,6 +500,10 @@ TEST(BodiesFromFiles, PathsStartFromTheFolderOfTheScene)
               .subsection("Polygon")
               .text("File"),
             path);
+  EXPECT_EQ(read_problem<2>(
+              file.scene("polygon", "", 2, {"Reference/Mesh file = a.msh"}))
+              .reference.mesh_file,
+            (file.folder / "a.msh").string());
   // as the run folder has it, and changed from the command line
   std::ostringstream printed;
   scene.parameters().print(printed, PrintStyle::prm);

@@ -100,6 +100,7 @@ TEST(Choices, ObservablesAreTheSameInTwoAndThreeDimensions)
                                          "Within",
                                          "Observable",
                                          "Side",
+                                         "Obstacle",
                                          "Variable"};
   const auto                 &in_2d   = observable_kinds<2>();
   const auto                 &in_3d   = observable_kinds<3>();
@@ -141,6 +142,7 @@ TEST(Choices, ObservablesPickTheirPartOfWhatIsSeen)
   seen.force[1]                                = 13;
   seen.frequency                               = 14;
   seen.variable                                = 15;
+  seen.moment[2]                               = 16;
   const std::map<std::string, double> expected = {{"position", 2},
                                                   {"displacement", 3},
                                                   {"velocity", 4},
@@ -154,6 +156,8 @@ TEST(Choices, ObservablesPickTheirPartOfWhatIsSeen)
                                                   {"total energy", 20},
                                                   {"extreme coordinate", 12},
                                                   {"reaction force", 13},
+                                                  {"obstacle force", 13},
+                                                  {"obstacle moment", 16},
                                                   {"frequency", 14},
                                                   {"state variable", 15},
                                                   {"largest state variable",

@@ -168,6 +168,73 @@ TEST(Scenes, AutomaticBulkModulusKeepsTheMachNumber)
 
 
 
+// c = 1416 m/s and |v| + sqrt(g H) = 4.4 m/s in the scene as it is.
+TEST(Scenes, AutomaticTimeIntegration)
+{
+  struct Case
+  {
+    std::vector<std::string> changes;
+    bool                     semi_implicit;
+    std::string              reason;
+  };
+  for (const Case &example :
+       {Case{{}, true, "319.7"},
+        Case{{"Body water/Initial velocity=40; 0"}, true, "31.87"},
+        Case{{"Body water/Initial velocity=50; 0"}, false, "at most 30"},
+        Case{{"Body water/Newtonian fluid/Bulk modulus=1e7"},
+             false,
+             "at most 30"},
+        Case{{"Body water/Newtonian fluid/Tension cutoff=true"},
+             false,
+             "tension cutoff"},
+        Case{{"Method/Stress update=musl"}, false, "stress update"},
+        Case{{"Method/Kernel=quadratic"}, false, "kernel"},
+        Case{{"Body water/Locking treatment=none"}, false, "treatment"},
+        Case{{"Boundaries/left=velocity",
+              "Boundaries/Side left/Velocity=100*t; 0"},
+             false,
+             "at most 30"},
+        Case{{"Body water/Material=neo hookean"}, false, "no liquid"}})
+    {
+      std::vector<std::string> changes = {"Method/Time integration=auto",
+                                          "Method/Stress update=auto"};
+      changes.insert(changes.end(),
+                     example.changes.begin(),
+                     example.changes.end());
+      if (example.reason == "no liquid")
+        changes.push_back("Body water/Initial pressure=");
+      SCOPED_TRACE(changes.back());
+      const Problem<2> problem =
+        read_problem<2>(SceneFile(prm_folder() + "dam_break.prm", changes));
+      EXPECT_EQ(problem.method.integration,
+                example.semi_implicit ? TimeIntegration::semi_implicit :
+                                        TimeIntegration::explicit_steps);
+      EXPECT_EQ(problem.bodies[0].implicit_pressure, example.semi_implicit);
+      std::string notes;
+      for (const std::string &note : problem.notes)
+        notes += note + "\n";
+      EXPECT_NE(notes.find("Time integration 'auto' is '" +
+                           std::string(example.semi_implicit ? "semi-implicit" :
+                                                               "explicit")),
+                std::string::npos)
+        << notes;
+      EXPECT_NE(notes.find(example.reason), std::string::npos) << notes;
+    }
+  const Problem<2> with_obstacle = read_problem<2>(
+    SceneFile(prm_folder() + "benchmarks/dam_break_obstacle.prm",
+              {"Method/Time integration=auto"}));
+  EXPECT_EQ(with_obstacle.method.integration, TimeIntegration::explicit_steps);
+  EXPECT_TRUE(
+    std::any_of(with_obstacle.notes.begin(),
+                with_obstacle.notes.end(),
+                [](const std::string &note) {
+                  return note.find("'explicit', as the scene has obstacles") !=
+                         std::string::npos;
+                }));
+}
+
+
+
 TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 {
   const Problem<3> problem = read_problem<3>(scene_of(R"(

@@ -143,6 +143,8 @@ TEST(CommandLine, ListsNameEveryChoice)
   EXPECT_NE(list_text("kernels").find("linear"), std::string::npos);
   EXPECT_NE(list_text("schemes").find("apic"), std::string::npos);
   EXPECT_NE(list_text("shapes").find("cylinder"), std::string::npos);
+  EXPECT_NE(list_text("sides").find("separating"), std::string::npos);
+  EXPECT_NE(list_text("contact").find("friction"), std::string::npos);
   EXPECT_NE(list_text("exact").find("None"), std::string::npos);
   EXPECT_THROW(list_text("lows"), InputError);
 }

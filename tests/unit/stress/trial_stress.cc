@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/materials/drucker_prager.h>
+#include <limber/materials/j2.h>
 #include <limber/materials/linear_elastic.h>
 #include <limber/materials/neo_hookean.h>
 #include <limber/stress/trial_stress.h>
@@ -27,6 +29,23 @@ namespace
 
 
 
+  /** Soft enough to flow at the strains of these tests. */
+  template <class Law>
+  std::vector<double>
+  values_of()
+  {
+    if constexpr (std::is_same_v<Law, J2>)
+      return {1000, 1e6, 0.4, 2e4, 5e4, 1e4, 10, 0, 1};
+    else if constexpr (std::is_same_v<Law, DruckerPrager<false>>)
+      return {1000, 1e6, 0.4, 30, 2e4, 0, 1e300, 0, 0, 1, 1, 1};
+    else if constexpr (std::is_same_v<Law, DruckerPrager<true>>)
+      return {1000, 1e6, 0.4, 30, 2e4, 10, 1e300, 0, 0, 1, 1, 1};
+    else
+      return {1000, 1e6, 0.4};
+  }
+
+
+
   /** Points in two cells, strained before, and what they respond. */
   template <class Case>
   class TrialStresses : public testing::Test
@@ -46,12 +65,15 @@ namespace
       , places(dim, std::vector<double>(n_points + SmallPoints<dim>::room))
       , displacement(grid.n_nodes * dim)
       , trial(make_trial_stress<dim>(Law::name,
-                                     {1000, 1e6, 0.4},
+                                     values_of<Law>(),
                                      Case::kind,
                                      Case::frame))
     {
-      const auto points = view();
-      const Law  law(std::array<double, 3>{{1000, 1e6, 0.4}});
+      const auto                                 points = view();
+      std::array<double, Law::parameters.size()> values;
+      const auto                                 of_law = values_of<Law>();
+      std::copy(of_law.begin(), of_law.end(), values.begin());
+      const Law law(values);
       for (std::size_t p = 0; p < n_points; ++p)
         {
           own.cell[p]      = p < 5 ? 1 : 6; // share a corner or an edge
@@ -311,6 +333,84 @@ namespace
                               TrialsLeaveThePointsAsTheyAre,
                               AcceptedStateIsThatOfTheTrial,
                               PointsTurnedInsideOutAreRefused);
+
+  /** Of laws that flow, in the current frame. */
+  template <class Case>
+  class PlasticTrialStresses : public TrialStresses<Case>
+  {};
+
+  TYPED_TEST_SUITE_P(PlasticTrialStresses);
+
+  // Return map and all; central differences of the force know it to 1e-6 where
+  // no point is at the edge of its yield surface.
+  TYPED_TEST_P(PlasticTrialStresses, TangentIsTheDerivativeOfTheForce)
+  {
+    const auto        here    = this->respond(true);
+    const std::size_t n       = this->displacement.size();
+    const double      step    = 1e-6;
+    double            largest = 0, error = 0, skew = 0;
+    for (std::size_t l = 0; l < n; ++l)
+      {
+        const double u        = this->displacement[l];
+        this->displacement[l] = u + step;
+        const auto above      = this->respond().force;
+        this->displacement[l] = u - step;
+        const auto below      = this->respond().force;
+        this->displacement[l] = u;
+        for (std::size_t k = 0; k < n; ++k)
+          {
+            const double entry = here.tangent[k * n + l];
+            largest            = std::max(largest, std::abs(entry));
+            skew = std::max(skew, std::abs(entry - here.tangent[l * n + k]));
+            error =
+              std::max(error,
+                       std::abs(entry - (above[k] - below[k]) / (2 * step)));
+          }
+      }
+    EXPECT_GT(largest, 1e3); // N/m
+    EXPECT_LT(error, 1e-5 * largest);
+    if (this->trial->has_symmetric_tangent())
+      {
+        EXPECT_LT(skew, 0.02 * largest);
+      }
+    else if (this->dim == 3) // in the plane all points part
+      {
+        EXPECT_GT(skew, 1e-3 * largest);
+      }
+  }
+
+
+
+  // The motion of the trial does flow, and softens against an elastic one.
+  TYPED_TEST_P(PlasticTrialStresses, FlowTakesWork)
+  {
+    const auto accepted = this->trial->accept(this->view(),
+                                              this->grid.view(),
+                                              this->displacement.data());
+    EXPECT_GT(accepted.plastic_work, 1.); // J
+    EXPECT_GT(accepted.longest_way, 0.);
+  }
+
+  REGISTER_TYPED_TEST_SUITE_P(PlasticTrialStresses,
+                              TangentIsTheDerivativeOfTheForce,
+                              FlowTakesWork);
+
+  template <class Law, int dim>
+  using PlasticCasesOf =
+    testing::Types<TrialCase<Law, dim, Projection::none, Frame::current>,
+                   TrialCase<Law, dim, Projection::cell, Frame::current>>;
+  using J2Plane    = PlasticCasesOf<J2, 2>;
+  using J2Space    = PlasticCasesOf<J2, 3>;
+  using SandPlane  = PlasticCasesOf<DruckerPrager<false>, 2>;
+  using SandSpace  = PlasticCasesOf<DruckerPrager<false>, 3>;
+  using DensePlane = PlasticCasesOf<DruckerPrager<true>, 2>;
+  using DenseSpace = PlasticCasesOf<DruckerPrager<true>, 3>;
+  INSTANTIATE_TYPED_TEST_SUITE_P(J2In2d, PlasticTrialStresses, J2Plane);
+  INSTANTIATE_TYPED_TEST_SUITE_P(J2In3d, PlasticTrialStresses, J2Space);
+  INSTANTIATE_TYPED_TEST_SUITE_P(SandIn2d, PlasticTrialStresses, SandPlane);
+  INSTANTIATE_TYPED_TEST_SUITE_P(SandIn3d, PlasticTrialStresses, SandSpace);
+  INSTANTIATE_TYPED_TEST_SUITE_P(DenseIn2d, PlasticTrialStresses, DensePlane);
+  INSTANTIATE_TYPED_TEST_SUITE_P(DenseIn3d, PlasticTrialStresses, DenseSpace);
 
   template <int dim>
   using NeoHookeanTrials = TrialCasesOf<NeoHookean, dim>;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/study/report.h>
+#include <limber/study/run_result.h>
 
 #include <gtest/gtest.h>
 
@@ -90,4 +91,23 @@ TEST(StudyReport, CheapestForAnError)
                       "is 0.09"),
             std::string::npos)
     << text;
+}
+
+
+
+// Front of one run, height of another: only the error is the same question.
+TEST(StudyMeasure, OfSeveralChecksIsTheWorstErrorAlone)
+{
+  RecordedSummary summary;
+  summary.checks = {{"front", 4.1, 4.}, {"height", 0.5, 1.}};
+  Measure measure;
+  measure.source    = MeasureSource::check;
+  measure.of        = {"front", "height"};
+  const auto of_two = take_measure(measure, summary, ".");
+  EXPECT_DOUBLE_EQ(of_two.error, 0.5);
+  EXPECT_DOUBLE_EQ(of_two.value, 0.5);
+  measure.of        = {"front"};
+  const auto of_one = take_measure(measure, summary, ".");
+  EXPECT_NEAR(of_one.error, 0.025, 1e-12);
+  EXPECT_DOUBLE_EQ(of_one.value, 4.1);
 }

@@ -147,8 +147,9 @@ TEST(Creep, OfDomainsIsThatOfWhatStrainsAndMovesThem)
 {
   for (const std::string order : {"usl", "musl", "usavg"})
     for (const unsigned int points : {2, 3})
-      EXPECT_LT(std::abs(creep_per_cell("cpdi", points, order)), 0.001)
-        << order << ", " << points;
+      for (const std::string kernel : {"cpdi", "cpdi2"})
+        EXPECT_LT(std::abs(creep_per_cell(kernel, points, order)), 0.001)
+          << kernel << ", " << order << ", " << points;
   EXPECT_GT(creep_per_cell("cpdi", 2, "usf"), 0.001);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/time/free_motions.h>
+#include <limber/time/newton_equations.h>
 
 #include <gtest/gtest.h>
 #include <support/scene_run.h>
@@ -259,4 +260,129 @@ TEST(NewtonSteps, SwingingStripKeepsItsEnergy)
       EXPECT_NEAR(totals.all.total_energy() / start, 1, 0.03);
       EXPECT_GT(totals.all.strain_energy, 0.3 * start); // it has bent
     }
+}
+
+
+
+namespace
+{
+  // Mean height of a strip that swings, after four seconds of a period of 12.
+  double
+  height_of_swing(const std::vector<std::string> &changes, const double step)
+  {
+    std::vector<std::string> all = {"Body strip/Frame=initial",
+                                    "Body strip/Locking treatment=cell",
+                                    "Body strip/Initial velocity=0; x*x/400"};
+    all.insert(all.end(), changes.begin(), changes.end());
+    SceneRun<2>  run(held_strip, all);
+    const double before = mean_height(run);
+    run.advance(step, std::lround(4 / step));
+    return mean_height(run) - before;
+  }
+
+  double
+  height_with_newmark(const double step)
+  {
+    return height_of_swing({"Method/Time integration=implicit",
+                            "Method/Newton tolerance=1e-10",
+                            "Method/Time step=" + digits(step)},
+                           step);
+  }
+} // namespace
+
+
+
+// Nothing acts: what is left of the forces is round-off, which no step can
+// mend.
+TEST(NewtonSteps, FreeBodiesFlyOn)
+{
+  SceneRun<2> run(held_strip,
+                  {"Method/Time integration=implicit",
+                   "Method/Time step=0.4",
+                   "Body strip/Frame=current",
+                   "Body strip/Box/Lower corner=1, 2",
+                   "Body strip/Box/Upper corner=9, 3",
+                   "Body strip/Initial velocity=0.05; 0.02",
+                   "Boundaries/left=free"});
+  const auto  before = run.positions();
+  run.advance(0.4, 40); // through a cell and more
+  const std::string effort = run.integrator.effort();
+  EXPECT_NE(effort.find("steps halved: 0"), std::string::npos) << effort;
+  const auto after = run.positions();
+  for (std::size_t p = 0; p < after.size(); ++p)
+    {
+      EXPECT_NEAR(after[p][0] - before[p][0], 0.8, 1e-9);
+      EXPECT_NEAR(after[p][1] - before[p][1], 0.32, 1e-9);
+    }
+}
+
+
+
+// In space both are the same, and both have lumped masses. Not of second order:
+// points give back less of short waves than nodes gave them, in each step,
+// which is an error of first order in its length
+// (doc/theory/implicit_steps.md).
+TEST(NewtonSteps, ShortStepsTendToExplicitOnes)
+{
+  const double by_explicit =
+    height_of_swing({"Method/Stress update=usavg"}, 0.002);
+  double former = 1e-3 * by_explicit;
+  for (const double step : {0.1, 0.05, 0.025})
+    {
+      const double error = std::abs(height_with_newmark(step) - by_explicit);
+      std::printf("step %g s: %.2g of it\n", step, error / by_explicit);
+      EXPECT_LT(error, former / 1.3) << step;
+      former = error;
+    }
+}
+
+
+
+// Conjugate gradients with multigrid find what a factorisation finds. Prints
+// the table of doc/theory/implicit_steps.md.
+TEST(NewtonSteps, ConjugateGradientsFindTheSameCorrection)
+{
+  for (const double nu : {0.3, 0.45, 0.49, 0.499})
+    for (const int refined : {1, 2, 4, 8})
+      {
+        SceneRun<2>       run(held_strip,
+                        {"Method/Time integration=quasi-static",
+                               "Body strip/Frame=current",
+                               "Body strip/Neo hookean/Poisson's ratio=" + digits(nu),
+                               "Grid/Cells=" + std::to_string(20 * refined) + ", " +
+                                 std::to_string(10 * refined)});
+        const RunParts<2> parts{
+          run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+        NewtonEquations<2>  factorised(parts), iterated(parts, 0);
+        std::vector<double> found[2];
+        unsigned int        k = 0;
+        for (NewtonEquations<2> *const equations : {&factorised, &iterated})
+          {
+            equations->begin_step();
+            const std::vector<double> none(equations->size());
+            std::vector<double>       load(equations->size());
+            for (std::size_t i = 1; i < load.size(); i += 2)
+              load[i] = 1;
+            ASSERT_TRUE(equations->evaluate(none, &none));
+            ASSERT_TRUE(equations->solve(load, none, found[k++]));
+          }
+        double size = 0, error = 0;
+        for (std::size_t i = 0; i < found[0].size(); ++i)
+          {
+            size  = std::max(size, std::abs(found[0][i]));
+            error = std::max(error, std::abs(found[0][i] - found[1][i]));
+          }
+        std::printf("nu %g, %zu unknowns: %lu iterations%s\n",
+                    nu,
+                    found[0].size(),
+                    iterated.linear_iterations(),
+                    iterated.gave_up_iterating() ? ", then factorised" : "");
+        EXPECT_LT(error, 1e-6 * size);
+        EXPECT_EQ(factorised.linear_iterations(), 0u);
+        if (nu <= 0.45)
+          {
+            EXPECT_FALSE(iterated.gave_up_iterating());
+            EXPECT_GT(iterated.linear_iterations(), 0u);
+          }
+      }
 }

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_nearest_facet_h
+#define limber_problem_nearest_facet_h
+
+#include <limber/problem/shape.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * Which of many triangles is nearest to a place. They are kept in the bins of
+   * a lattice; bins are asked from that next to the place outwards, until no
+   * other can be nearer.
+   */
+  class NearestFacet
+  {
+  public:
+    using Facet = std::array<dealii::Point<3>, 3>;
+
+    NearestFacet(const std::vector<Facet> &facets, const Corners<3> &box);
+
+    struct Found
+    {
+      dealii::Point<3>     place;  // on the triangle
+      dealii::Tensor<1, 3> normal; // of the triangle, of length 1
+    };
+
+    Found
+    operator()(const dealii::Point<3> &place) const;
+
+  private:
+    int
+    bin_of(unsigned int direction, double x) const;
+
+    template <class Work>
+    void
+    for_each_bin(const Facet &facet, const Work &work) const;
+
+    template <class Work>
+    void
+    for_each_in_shell(const std::array<int, 3> &centre,
+                      int                       distance,
+                      const Work               &work) const;
+
+    std::vector<Facet>         facets;
+    Corners<3>                 box;
+    std::array<int, 3>         n;
+    std::array<double, 3>      edge;
+    std::vector<std::size_t>   begins; // of the facets of a bin
+    std::vector<std::uint32_t> in_bins;
+  };
+} // namespace limber
+
+#endif

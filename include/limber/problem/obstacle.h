@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_obstacle_h
+#define limber_problem_obstacle_h
+
+#include <limber/problem/shape.h>
+
+#include <string>
+
+namespace limber
+{
+  /**
+   * A rigid obstacle: a shape that nothing moves but its formulas. What it was
+   * made of at X is at time t at
+   *
+   *   x = c + Q(t) (X - c) + u(t),
+   *
+   * with the displacement u, and the rotation Q by an angle about an axis
+   * through the centre c.
+   */
+  template <int dim>
+  struct Obstacle
+  {
+    std::string                       name;
+    std::shared_ptr<const Shape<dim>> shape; // where u = 0 and Q = 1
+    // Coulomb's coefficient; infinite where material sticks that presses on it
+    double               friction = 0;
+    dealii::Point<dim>   centre;       // c, m; moments are taken about c + u
+    dealii::Tensor<1, 3> axis;         // of unit length
+    Formula<dim>         displacement; // dim components, m; empty: none
+    Formula<dim>         rotation;     // 1 component, rad; empty: none
+
+    bool
+    moves() const
+    {
+      return !displacement.empty() || !rotation.empty();
+    }
+  };
+
+
+
+  /** Where an obstacle is at a time. */
+  template <int dim>
+  class ObstaclePlace
+  {
+  public:
+    ObstaclePlace(const Obstacle<dim> &obstacle, double time);
+
+    /** From the surface as it is now; the shape knows its distance. */
+    SignedDistance<dim>
+    distance(const dealii::Point<dim> &place) const;
+
+    /** Where what is here belongs in the shape, and the other way round. */
+    dealii::Point<dim>
+    start_of(const dealii::Point<dim> &place) const;
+    dealii::Point<dim>
+    place_of(const dealii::Point<dim> &start) const;
+
+    /** c + u */
+    dealii::Point<dim>
+    centre() const;
+
+    /** Whether all formulas have finite values at this time. */
+    bool
+    is_finite() const;
+
+  private:
+    const Obstacle<dim>   *obstacle;
+    bool                   moves;
+    dealii::Tensor<1, dim> displacement;
+    dealii::Tensor<2, dim> rotation; // Q
+    bool                   finite = true;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_strain_by_splines_h
+#define limber_stress_strain_by_splines_h
+
+#include <limber/stress/pack_strain.h>
+#include <limber/stress/strain_sweep.h>
+
+#include <stdexcept>
+
+/** @file What strain_by_splines() does, for the unit of each basis. */
+namespace limber
+{
+  namespace internal
+  {
+    template <int dim>
+    struct CallOnPacks
+    {
+      template <class Lanes>
+      __attribute__((always_inline)) PointPack<dim>
+      operator()(const PointView<dim>                       &points,
+                 const Lanes                                &lanes,
+                 const MotionIncrement<dim, PointPack<dim>> &motion,
+                 const HistoryChange                        &change,
+                 PackFindings<dim>                          &found) const
+      {
+        return law.strain_pack(points, lanes, motion, change, found);
+      }
+
+      const PackStrain<dim> &law;
+    };
+  } // namespace internal
+
+
+
+  template <class Basis>
+  StressSummary
+  strain_by_splines(const PointView<Basis::dim>  &points,
+                    const GridView<Basis::dim>   &grid,
+                    const CellSums<Basis::dim>   *sums,
+                    const StressSweep            &what,
+                    const StrainProjection       &projection,
+                    const PackStrain<Basis::dim> &law,
+                    PackFindings<Basis::dim>     &found)
+  {
+    using Call      = internal::CallOnPacks<Basis::dim>;
+    using P         = Projection;
+    const auto with = [&](const auto kind) {
+      return StrainSweep<Basis, decltype(kind)::value, true, Call>::run(
+        points, grid, sums, what, projection, Call{law}, found);
+    };
+    switch (projection.kind)
+      {
+        case P::none:
+          return with(std::integral_constant<P, P::none>());
+        case P::cell:
+          return with(std::integral_constant<P, P::cell>());
+        case P::node:
+          return with(std::integral_constant<P, P::node>());
+        case P::cell_shear:
+          return with(std::integral_constant<P, P::cell_shear>());
+        case P::cell_full:
+          return with(std::integral_constant<P, P::cell_full>());
+        case P::hybrid:
+          return with(std::integral_constant<P, P::hybrid>());
+        default:
+          throw std::logic_error("no such projection with splines");
+      }
+  }
+} // namespace limber
+
+#endif

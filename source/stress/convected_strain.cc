@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/convected_motion.h>
+#include <limber/interpolation/domain_means.h>
+#include <limber/stress/convected_sweep.h>
+
+#include <stdexcept>
+
+namespace limber
+{
+  namespace
+  {
+    /**
+     * With the two fields of velocities from slot @p first on, that from
+     * @p strained on strains the points.
+     */
+    template <int          dim,
+              Projection   kind,
+              unsigned int first,
+              unsigned int strained>
+    StressSummary
+    strain_by(const PointView<dim>  &points,
+              const GridView<dim>   &grid,
+              const StressSweep     &what,
+              const PackStrain<dim> &law,
+              PackFindings<dim>     &found)
+    {
+      using Number = PointPack<dim>;
+      using Layout = NodeLayout<dim>;
+      using Fields = FieldsOnPack<dim, RecordWindow<dim, first, 2 * dim>>;
+      VelocityFindings<dim> taken;
+      Number                displacement{};
+      for_each_batch(points, [&](const CellBatch &batch) {
+        const CellGeometry<dim>    &cell = grid.cells[batch.cell];
+        const DomainMean<dim, kind> divergence(what.projected_divergence,
+                                               cell,
+                                               batch.cell);
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
+          const Fields             fields(domains);
+          if constexpr (first == Layout::increment)
+            if (what.flip_share)
+              take_velocity<dim>(
+                points, lanes, fields, *what.flip_share, taken);
+
+          MotionIncrement<dim, Number> motion;
+          motion.step   = what.step;
+          motion.square = what.square;
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              motion.gradient[d][e] =
+                what.step * fields.slope(domains.inverse, strained + d, e);
+          if constexpr (kind != Projection::none)
+            motion.volumetric = what.step * divergence.template value<Number>(
+                                              lanes.natural(points, cell));
+          else
+            motion.volumetric = motion.trace();
+          law.strain_pack(points, lanes, motion, HistoryChange(), found);
+          if (what.move > 0)
+            displacement =
+              larger(displacement,
+                     move_domains(domains, lanes, fields, what.move));
+        });
+      });
+      StressSummary result;
+      result.displacement  = maximum(displacement);
+      result.speed_squared = maximum(taken.speed_squared);
+      result.removed       = sum(taken.removed);
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  StressSummary
+  strain_domains(const PointView<dim>  &points,
+                 const GridView<dim>   &grid,
+                 const StressSweep     &what,
+                 const Projection       kind,
+                 const PackStrain<dim> &law,
+                 PackFindings<dim>     &found)
+  {
+    using Layout    = NodeLayout<dim>;
+    const auto with = [&](const auto projection) {
+      constexpr Projection P = decltype(projection)::value;
+      return what.remapped ?
+               strain_by<dim, P, Layout::velocity, Layout::remapped>(
+                 points, grid, what, law, found) :
+               strain_by<dim, P, Layout::increment, Layout::velocity>(
+                 points, grid, what, law, found);
+    };
+    switch (kind)
+      {
+        case Projection::none:
+          return with(std::integral_constant<Projection, Projection::none>());
+        case Projection::cell:
+          return with(std::integral_constant<Projection, Projection::cell>());
+        case Projection::node:
+          return with(std::integral_constant<Projection, Projection::node>());
+        default:
+          throw std::logic_error("no such projection with domains");
+      }
+  }
+
+
+
+  template StressSummary
+  strain_domains(const PointView<2> &,
+                 const GridView<2> &,
+                 const StressSweep &,
+                 Projection,
+                 const PackStrain<2> &,
+                 PackFindings<2> &);
+  template StressSummary
+  strain_domains(const PointView<3> &,
+                 const GridView<3> &,
+                 const StressSweep &,
+                 Projection,
+                 const PackStrain<3> &,
+                 PackFindings<3> &);
+} // namespace limber

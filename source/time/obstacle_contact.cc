@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/time/contact.h>
+#include <limber/time/obstacle_contact.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    template <int dim>
+    dealii::Tensor<1, dim>
+    velocity_in(const double *const values)
+    {
+      dealii::Tensor<1, dim> result;
+      for (int d = 0; d < dim; ++d)
+        result[d] = values[d];
+      return result;
+    }
+
+
+
+    template <int dim>
+    void
+    store(const dealii::Tensor<1, dim> &vector, double *const values)
+    {
+      for (int d = 0; d < dim; ++d)
+        values[d] = vector[d];
+    }
+
+
+
+    template <int dim>
+    dealii::Tensor<1, dim>
+    along_surface(const dealii::Tensor<1, dim> &vector,
+                  const dealii::Tensor<1, dim> &normal)
+    {
+      return vector - (vector * normal) * normal;
+    }
+
+
+
+    /** Half the edge of a cube of this volume, m. */
+    template <int dim>
+    double
+    half_edge_of(const double volume)
+    {
+      return 0.5 * (dim == 2 ? std::sqrt(volume) : std::cbrt(volume));
+    }
+
+
+
+    // Of the mass of a node, what has to touch. Held by whatever sees it, a
+    // node a cell above the surface would be as rigid as the obstacle: the
+    // impact of a ball of 10 cells would take 0.82 of its time.
+    constexpr double least_share = 0.5;
+
+
+
+    template <int dim>
+    dealii::Tensor<1, 3>
+    moment_of(const dealii::Tensor<1, dim> &arm,
+              const dealii::Tensor<1, dim> &impulse)
+    {
+      dealii::Tensor<1, 3> result;
+      result[2] = arm[0] * impulse[1] - arm[1] * impulse[0];
+      if constexpr (dim == 3)
+        {
+          result[0] = arm[1] * impulse[2] - arm[2] * impulse[1];
+          result[1] = arm[2] * impulse[0] - arm[0] * impulse[2];
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ObstacleContact<dim>::ObstacleContact(const RunParts<dim> &parts)
+    : parts(parts)
+    , sums(parts.problem.obstacles.size() * n_nodal_fields(parts.problem))
+    , cell_distance(parts.problem.obstacles.size())
+  {
+    parts.ledger.obstacles.resize(parts.problem.obstacles.size());
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points  = body->points.view();
+        double               largest = 0;
+        for (std::size_t p = 0; p < points.size; ++p)
+          largest = std::max(largest, points.mass[p]);
+        half_edge.push_back(half_edge_of<dim>(
+          dealii::Utilities::MPI::max(largest, parts.grid.communicator) /
+          body->stress->density()));
+      }
+    check_start();
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::reinit()
+  {
+    touches.clear();
+    for (Sums &some : sums)
+      some.records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
+    for (auto &distances : cell_distance)
+      distances.reinit(parts.grid.n_cells());
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::check_start() const
+  {
+    for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
+      {
+        const ObstaclePlace<dim> place(obstacle, 0.);
+        for (const auto &body : parts.bodies)
+          {
+            const PointView<dim> points  = body->points.view();
+            double               deepest = 0;
+            for (std::size_t p = 0; p < points.size; ++p)
+              {
+                dealii::Point<dim> x;
+                for (int d = 0; d < dim; ++d)
+                  x[d] = points.position[d][p];
+                deepest = std::max(deepest, -place.distance(x).value);
+              }
+            deepest =
+              dealii::Utilities::MPI::max(deepest, parts.grid.communicator);
+            if (deepest > 1e-9 * parts.grid.smallest_edge)
+              throw InputError(
+                "Body " + in_quotes(body->description.name) +
+                " reaches into obstacle " + in_quotes(obstacle.name) +
+                " at the start, its points by up to " + brief(deepest) +
+                " m. Usually one of them is misplaced. Move the body or the "
+                "obstacle.");
+          }
+      }
+  }
+
+
+
+  // The way of what is furthest out; where the obstacle has no end, of what is
+  // in the corners of the grid.
+  template <int dim>
+  void
+  ObstacleContact<dim>::check_way(const unsigned int obstacle,
+                                  const double       time,
+                                  const double       step) const
+  {
+    const Obstacle<dim> &one = parts.problem.obstacles[obstacle];
+    if (!one.moves())
+      return;
+    const ObstaclePlace<dim> before(one, time), after(one, time + step);
+    if (!before.is_finite() || !after.is_finite())
+      throw ComputationError("Obstacle " + in_quotes(one.name) +
+                               " has no finite place at time " +
+                               brief(time + step) +
+                               " s. Usually its formulas divide by zero. "
+                               "Correct its 'Displacement' or 'Rotation'.",
+                             FailureKind::not_finite);
+    Corners<dim> box = one.shape->bounding_box();
+    double       way = 0;
+    for (unsigned int corner = 0; corner < 1u << dim; ++corner)
+      {
+        dealii::Point<dim> start, in_grid;
+        bool               ends = true;
+        for (int d = 0; d < dim; ++d)
+          {
+            const bool upper = corner >> d & 1;
+            start[d]         = upper ? box.second[d] : box.first[d];
+            in_grid[d] =
+              upper ? parts.problem.grid.upper[d] : parts.problem.grid.lower[d];
+            ends = ends && std::isfinite(start[d]);
+          }
+        if (!ends)
+          start = before.start_of(in_grid);
+        way =
+          std::max(way, before.place_of(start).distance(after.place_of(start)));
+      }
+    if (way > 0.5 * parts.grid.smallest_edge)
+      throw ComputationError(
+        "Obstacle " + in_quotes(one.name) + " moves by " +
+        brief(way / parts.grid.smallest_edge) + " cells in one step of " +
+        brief(step) + " s, at time " + brief(time) +
+        " s; more than half a cell may pass through a body. Usually its "
+        "formula jumps. Let it move more slowly, or lower "
+        "'Method/Time step'.");
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::find(const double time, const double step)
+  {
+    const unsigned int n_fields = parts.nodes.n_fields();
+    touches.clear();
+    for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
+      {
+        check_way(o, time, step);
+        const ObstaclePlace<dim> place(parts.problem.obstacles[o], time);
+        for (unsigned int field = 0; field < n_fields; ++field)
+          {
+            Sums &some = sums[o * n_fields + field];
+            for (const std::uint32_t node : parts.nodes.active_nodes())
+              std::fill_n(some.records.data() +
+                            std::size_t(node) * Sums::stride,
+                          Sums::stride,
+                          0.);
+            for (unsigned int b = 0; b < parts.bodies.size(); ++b)
+              if (parts.bodies[b]->description.nodal_field == field)
+                add_points(b, o, place, some);
+            some.exchange.start(parts.nodes.node_plan(),
+                                some.records.data(),
+                                0,
+                                Sums::stride);
+            some.exchange.finish(some.records.data());
+            add_touches(field, o, time, step, some);
+          }
+      }
+  }
+
+
+
+  // Of an obstacle at rest, once and for all.
+  template <int dim>
+  double
+  ObstacleContact<dim>::distance_of_cell(const unsigned int        obstacle,
+                                         const ObstaclePlace<dim> &place,
+                                         const std::uint32_t       cell)
+  {
+    const bool rests = !parts.problem.obstacles[obstacle].moves();
+    if (rests && cell_distance[obstacle][cell] != 0)
+      return cell_distance[obstacle][cell];
+    const CellGeometry<dim> &geometry = parts.nodes.view().cells[cell];
+    dealii::Point<dim>       middle;
+    for (int d = 0; d < dim; ++d)
+      middle[d] = geometry.origin[d] + 0.5 / geometry.inverse_edge[d];
+    double result = place.distance(middle).value;
+    if (result == 0)
+      result = 1e-300; // zero is what nobody has asked for
+    if (rests)
+      cell_distance[obstacle][cell] = result;
+    return result;
+  }
+
+
+
+  // Only points in cells that are as near as a half of their diagonal and a
+  // point are asked; twice as far, as the distance from what a formula tells
+  // is of first order.
+  template <int dim>
+  void
+  ObstacleContact<dim>::add_points(const unsigned int        body,
+                                   const unsigned int        obstacle,
+                                   const ObstaclePlace<dim> &place,
+                                   Sums                     &some)
+  {
+    const GridView<dim>  grid    = parts.nodes.view();
+    const PointView<dim> points  = parts.bodies[body]->points.view();
+    const double inverse_density = 1 / parts.bodies[body]->stress->density();
+    for_each_batch(points, [&](const CellBatch &batch) {
+      const CellGeometry<dim> &cell   = grid.cells[batch.cell];
+      double                   square = 0;
+      for (int d = 0; d < dim; ++d)
+        square += 0.25 / (cell.inverse_edge[d] * cell.inverse_edge[d]);
+      if (distance_of_cell(obstacle, place, batch.cell) >
+          2 * (std::sqrt(square) + half_edge[body]))
+        return;
+      for (std::size_t p = batch.begin; p < batch.end; ++p)
+        {
+          dealii::Point<dim> x;
+          for (int d = 0; d < dim; ++d)
+            x[d] = points.position[d][p];
+          const SignedDistance<dim> distance = place.distance(x);
+          if (distance.value >
+              half_edge_of<dim>(points.mass[p] * inverse_density))
+            continue;
+          const auto xi = natural_place(points, cell, p);
+          for (unsigned int k = 0; k < cell.node.size(); ++k)
+            {
+              double weight = points.mass[p];
+              for (int d = 0; d < dim; ++d)
+                weight *= k >> d & 1 ? xi[d] : 1 - xi[d];
+              double *const record =
+                some.records.data() +
+                std::size_t(cell.node[k] / Layout::stride) * Sums::stride;
+              for (int d = 0; d < dim; ++d)
+                {
+                  record[Sums::normal + d] += weight * distance.normal[d];
+                  record[Sums::place + d] +=
+                    weight *
+                    (cell.origin[d] + (k >> d & 1) / cell.inverse_edge[d]);
+                }
+              record[Sums::weight] += weight;
+            }
+        }
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::add_touches(const unsigned int field,
+                                    const unsigned int obstacle,
+                                    const double       time,
+                                    const double       step,
+                                    const Sums        &some)
+  {
+    const Obstacle<dim>     &one = parts.problem.obstacles[obstacle];
+    const ObstaclePlace<dim> before(one, time), after(one, time + step);
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        const double *const record =
+          some.records.data() + std::size_t(node) * Sums::stride;
+        if (!(record[Sums::weight] > 0) ||
+            record[Sums::weight] <
+              least_share * parts.nodes.record(field, node)[Layout::mass])
+          continue;
+        Touch touch;
+        touch.normal        = velocity_in<dim>(record + Sums::normal);
+        const double length = touch.normal.norm();
+        if (!(length > 1e-6 * record[Sums::weight]))
+          continue; // it is met from all sides alike
+        touch.normal /= length;
+        touch.node     = node;
+        touch.field    = field;
+        touch.obstacle = obstacle;
+        const dealii::Point<dim> place(velocity_in<dim>(record + Sums::place) /
+                                       record[Sums::weight]);
+        touch.arm = place - before.centre();
+        if (one.moves())
+          touch.velocity =
+            (after.place_of(before.start_of(place)) - place) / step;
+        touches.push_back(touch);
+      }
+  }
+
+
+
+  template <int dim>
+  typename ObstacleContact<dim>::State
+  ObstacleContact<dim>::decide(const Touch &touch, const Vector &velocity) const
+  {
+    const Vector relative = velocity - touch.velocity;
+    const double approach = -(relative * touch.normal);
+    if (!(approach > 0))
+      return State::free;
+    return along_surface(relative, touch.normal).norm() <=
+               obstacle(touch).friction * approach ?
+             State::sticking :
+             State::sliding;
+  }
+
+
+
+  // work(touch, relative velocity, mass) before it is changed.
+  template <int dim>
+  template <class Work>
+  void
+  ObstacleContact<dim>::for_each_held(const unsigned int slot, const Work &work)
+  {
+    for (const Touch &touch : touches)
+      if (touch.state != State::free)
+        {
+          double *const record   = parts.nodes.record(touch.field, touch.node);
+          const Vector  velocity = velocity_in<dim>(record + slot),
+                       relative  = velocity - touch.velocity;
+          work(touch, relative, record[Layout::mass]);
+          store<dim>(touch.state == State::sticking ?
+                       touch.velocity :
+                       velocity - (relative * touch.normal) * touch.normal,
+                     record + slot);
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::hold(const unsigned int slot)
+  {
+    for_each_held(slot, [](const Touch &, const Vector &, double) {});
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::hold_before(const unsigned int slot, const double step)
+  {
+    for (Touch &touch : touches)
+      {
+        const double *const record =
+          parts.nodes.record(touch.field, touch.node);
+        touch.state = decide(touch,
+                             (velocity_in<dim>(record + Layout::momentum) +
+                              step * velocity_in<dim>(record + Layout::force)) /
+                               record[Layout::mass]);
+      }
+    hold(slot);
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::exchange()
+  {
+    for (Touch &touch : touches)
+      exchange(touch);
+  }
+
+
+
+  // Losses are those of Contact<dim>::exchange(), seen from the obstacle; seen
+  // from the box, its impulse has worked with its velocity besides.
+  template <int dim>
+  void
+  ObstacleContact<dim>::exchange(Touch &touch)
+  {
+    double *const record   = parts.nodes.record(touch.field, touch.node);
+    const double  mass     = record[Layout::mass];
+    const Vector  velocity = velocity_in<dim>(record + Layout::velocity),
+                 increment = velocity_in<dim>(record + Layout::increment);
+    touch.state            = decide(touch, velocity);
+    if (touch.state == State::free)
+      return;
+
+    const Vector relative = velocity - touch.velocity;
+    const Vector sliding  = along_surface(relative, touch.normal);
+    const double pressing = -mass * (relative * touch.normal); // kg m/s
+    touch.brought         = relative - increment;
+    touch.rubbing =
+      touch.state == State::sticking ?
+        mass * sliding :
+        obstacle(touch).friction * pressing * sliding / sliding.norm();
+    touch.slides = sliding - touch.rubbing / mass;
+
+    const Vector impulse = pressing * touch.normal - touch.rubbing;
+    store<dim>(velocity + impulse / mass, record + Layout::velocity);
+    store<dim>(increment + impulse / mass, record + Layout::increment);
+
+    if (!parts.nodes.owns(touch.node))
+      return;
+    ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
+    action.impulse += impulse;
+    action.moment += moment_of<dim>(touch.arm, impulse);
+    parts.ledger.boundary_work += impulse * touch.velocity;
+    const double normal = touch.brought * touch.normal;
+    const Vector along  = along_surface(touch.brought, touch.normal);
+    parts.ledger.contact += 0.5 * mass * normal * normal;
+    parts.ledger.friction += touch.state == State::sticking ?
+                               0.5 * mass * along.norm_square() :
+                               0.5 * touch.rubbing * (along + touch.slides);
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::hold_after(const unsigned int slot,
+                                   const double       flip_share)
+  {
+    for_each_held(
+      slot, [&](const Touch &touch, const Vector &relative, const double mass) {
+        if (!parts.nodes.owns(touch.node))
+          return;
+        const double share = 0.5 * flip_share;
+        const Vector along = along_surface(relative, touch.normal);
+        parts.ledger.contact += share * mass * (touch.brought * touch.normal) *
+                                (relative * touch.normal);
+        parts.ledger.friction +=
+          share * (touch.state == State::sticking ?
+                     mass * (touch.brought * along) :
+                     touch.rubbing * (along - touch.slides));
+      });
+  }
+
+
+
+  template class ObstacleContact<2>;
+  template class ObstacleContact<3>;
+} // namespace limber

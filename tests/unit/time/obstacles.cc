@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+
+#include <gtest/gtest.h>
+#include <support/scene_run.h>
+
+/**
+ * @file Bodies on rigid obstacles: against closed formulas of sliding, rolling,
+ * weight and work, and where the grid lies between them.
+ */
+
+using namespace limber;
+
+namespace
+{
+  const double obstacle_slope = std::acos(-1.) / 6; // 30 degrees
+
+  // 1 m x 0.5 m upon a slope of 30 degrees across the grid
+  const std::string block_on_slope = R"(
+    set Bodies = block
+    set Obstacles = slope
+    subsection Body block
+      set Shape = block
+      set Placement = fitted
+      subsection Block
+        set Corners = 0.6, 2.4; 1.466025403784439, 1.9; 1.716025403784439, 2.333012701892219; 0.85, 2.833012701892219
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Obstacle slope
+      set Shape = half-space
+      set Law = friction
+      set Friction coefficient = 0.3
+      set Centre = 0.6, 2.4
+      subsection Half-space
+        set Point = 0.6, 2.4
+        set Normal = 0.5, 0.866025403784439
+      end
+    end
+    subsection Grid
+      set Upper corner = 3, 3
+      set Cells = 48, 48
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+    end
+    subsection Loads
+      set Gravity = 0, -9.81
+    end
+    subsection Method
+      set Damping time = 0.01
+    end)";
+
+  // 1 m x 0.5 m above a floor
+  const std::string block_alone = R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 0.5, 0.5
+        set Upper corner = 1.5, 1
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 1.5
+      set Cells = 16, 12
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+    end)";
+
+  const std::string block_over_floor = block_alone + R"(
+    set Obstacles = floor
+    subsection Obstacle floor
+      set Shape = half-space
+      subsection Half-space
+        set Point = 0, 0.5
+      end
+    end)";
+
+  // 10 cells of radius on the same slope
+  const std::string disc_on_slope = R"(
+    set Bodies = disc
+    set Obstacles = slope
+    subsection Body disc
+      set Shape = ball
+      subsection Ball
+        set Centre = 0.75, 2.25
+        set Radius = 0.5
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e7
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Obstacle slope
+      set Shape = half-space
+      set Law = friction
+      set Friction coefficient = 0.3
+      subsection Half-space
+        set Point = 0.5, 1.816987298107781
+        set Normal = 0.5, 0.866025403784439
+      end
+    end
+    subsection Grid
+      set Upper corner = 3, 3
+      set Cells = 60, 60
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+    end
+    subsection Loads
+      set Gravity = 0, -9.81
+    end
+    subsection Method
+      set Damping time = 0.01
+    end)";
+
+
+
+  dealii::Tensor<1, 2>
+  down_the_slope()
+  {
+    return dealii::Point<2>(std::cos(obstacle_slope),
+                            -std::sin(obstacle_slope));
+  }
+
+
+
+  dealii::Tensor<1, 2>
+  off_the_slope()
+  {
+    return dealii::Point<2>(std::sin(obstacle_slope), std::cos(obstacle_slope));
+  }
+
+
+
+  /** About the centre of mass, kg m^2/s. */
+  double
+  spin_of(SceneRun<2> &run)
+  {
+    const auto totals = run.totals();
+    const auto points = run.points();
+    const auto centre = totals.centre_of_mass;
+    double     result = 0;
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const auto arm = run.position(p) - centre;
+        const auto v   = run.velocity(p);
+        result += points.mass[p] * (arm[0] * v[1] - arm[1] * v[0]);
+      }
+    return result;
+  }
+
+
+
+  double
+  lowest_point(SceneRun<2> &run)
+  {
+    double result = 1e300;
+    for (const auto &place : run.positions())
+      result = std::min(result, place[1]);
+    return result;
+  }
+} // namespace
+
+
+
+// a = g (sin - mu cos), whatever the directions of the cells; while the block
+// swings up and down, mu m g cos is mu (m g cos + dp_n / dt).
+TEST(ObstacleContact, ABlockSlidesAcrossTheGrid)
+{
+  for (const std::string order : {"musl", "usavg"})
+    for (const double friction : {0.1, 0.3})
+      {
+        SCOPED_TRACE(order + " " + digits(friction));
+        SceneRun<2> run(block_on_slope,
+                        {"Method/Stress update=" + order,
+                         "Obstacle slope/Friction coefficient=" +
+                           digits(friction)});
+        run.advance_to(0.1); // what follows on the sudden start
+        const auto start = run.totals();
+        run.advance_to(0.4);
+        const auto   end  = run.totals();
+        const auto   gain = (end.all.momentum - start.all.momentum) / 500;
+        const double a    = 9.81 * (std::sin(obstacle_slope) -
+                                 friction * std::cos(obstacle_slope));
+        EXPECT_NEAR(
+          (gain * down_the_slope() + friction * (gain * off_the_slope())) / 0.3,
+          a,
+          0.02 * a);
+        EXPECT_NEAR(end.energy_drift, 0, 0.002);
+        EXPECT_LT(end.momentum_error, 1e-12);
+      }
+}
+
+
+
+// With more friction than tan 30 degrees it stays where it is, once it does not
+// bounce any more; with 4 % more, here.
+TEST(ObstacleContact, ABlockRestsOnASlope)
+{
+  SceneRun<2> run(block_on_slope,
+                  {"Obstacle slope/Friction coefficient=0.6",
+                   "Method/Damping rate=20"});
+  run.advance_to(0.6);
+  const auto start = run.totals();
+  run.advance_to(0.8);
+  const auto   end = run.totals();
+  const double way =
+                 (end.centre_of_mass - start.centre_of_mass) * down_the_slope(),
+               free = 0.5 * 9.81 * std::sin(obstacle_slope) * 0.04;
+  EXPECT_LT(std::abs(way), 1e-3 * free);
+}
+
+
+
+// What the floor bears is the weight, and it bears it below the middle.
+TEST(ObstacleContact, TheFloorBearsTheWeight)
+{
+  SceneRun<2> run(block_over_floor,
+                  {"Loads/Gravity=0, -1",
+                   "Obstacle floor/Law=stick",
+                   "Method/Damping rate=20"});
+  run.advance_to(1.5);
+  const auto before = run.totals();
+  run.advance_to(2);
+  const auto now = run.totals();
+  EXPECT_NEAR((now.obstacles[0].impulse - before.obstacles[0].impulse)[1] / 0.5,
+              500,
+              0.5);
+  EXPECT_NEAR((now.obstacles[0].impulse - before.obstacles[0].impulse)[0] / 0.5,
+              0,
+              1);
+  // about the corner of the grid
+  EXPECT_NEAR((now.obstacles[0].moment - before.obstacles[0].moment)[2] / 0.5,
+              500,
+              2);
+}
+
+
+
+// Wherever its surface lies within a cell, the block comes to rest on it.
+TEST(ObstacleContact, NoGapIsLeft)
+{
+  for (const double shift : {0., 0.25, 0.5, 0.75})
+    {
+      SCOPED_TRACE(shift);
+      const double h = 0.125, face = 0.5 + shift * h;
+      SceneRun<2>  run(
+        block_over_floor,
+        {"Body block/Box/Lower corner=0.5, " + digits(face + 0.3 * h),
+          "Body block/Box/Upper corner=1.5, " + digits(face + 0.3 * h + 0.5),
+          "Obstacle floor/Half-space/Point=0, " + digits(face),
+          "Method/Damping rate=10",
+          "Loads/Gravity=0, -1"});
+      run.advance_to(2);
+      EXPECT_NEAR((lowest_point(run) - face) / h - 0.25, 0, 0.05);
+    }
+}
+
+
+
+// It rolls where friction suffices: as fast as it turns, but with a resistance
+// that a ball on cells of a tenth of its radius has, 11 % less than 2/3 g sin.
+TEST(ObstacleContact, ADiscRolls)
+{
+  SceneRun<2>  run(disc_on_slope);
+  const double radius = 0.5;
+  run.advance_to(0.1);
+  const auto   start = run.totals();
+  const double spun  = spin_of(run);
+  run.advance_to(0.4);
+  const auto   end    = run.totals();
+  const double mass   = end.all.mass;
+  const double rolled = (end.all.momentum - start.all.momentum) / mass *
+                        down_the_slope() / 0.3,
+               turned = (spun - spin_of(run)) / (0.5 * mass * radius) / 0.3;
+  EXPECT_NEAR(rolled, 2. / 3 * 9.81 * std::sin(obstacle_slope), 0.15 * rolled);
+  EXPECT_NEAR(rolled, turned, 0.1 * rolled);
+}
+
+
+
+// A block that has been taken along by a wall has the wall's velocity and
+// energy, which is the work of the wall; some is lost in the impact.
+TEST(ObstacleContact, AWallTakesABlockAlong)
+{
+  SceneRun<2> run(block_over_floor,
+                  {"Obstacle floor/Half-space/Point=0.49, 0",
+                   "Obstacle floor/Half-space/Normal=1, 0",
+                   "Obstacle floor/Displacement=0.5*t; 0",
+                   "Method/Damping time=0.01"});
+  run.advance_to(0.9);
+  const auto totals = run.totals();
+  EXPECT_GT(totals.all.momentum[0], 0.499 * 500);
+  EXPECT_NEAR(totals.boundary_work,
+              totals.obstacles[0].impulse[0] * 0.5,
+              1e-9 * totals.boundary_work);
+  EXPECT_NEAR(totals.energy_drift, 0, 0.002);
+  EXPECT_LT(totals.momentum_error, 1e-12);
+}
+
+
+
+// A bar that flies at it, or an obstacle that flies at the bar: the same,
+// seen from another place, where both meet the grid alike.
+TEST(ObstacleContact, OnlyRelativeMotionCounts)
+{
+  const auto run_with = [](const std::vector<std::string> &more) {
+    std::vector<std::string> all = {"Obstacle floor/Half-space/Point=0.49, 0",
+                                    "Obstacle floor/Half-space/Normal=1, 0",
+                                    "Method/Time step=1e-4"};
+    all.insert(all.end(), more.begin(), more.end());
+    return std::make_unique<SceneRun<2>>(block_over_floor, all);
+  };
+  const auto flies  = run_with({"Body block/Initial velocity=-0.5; 0"});
+  const auto pushed = run_with({"Obstacle floor/Displacement=0.5*t; 0"});
+  flies->advance(1e-4, 600);
+  pushed->advance(1e-4, 600);
+  const double rebound = flies->totals().all.momentum[0] + 250,
+               push    = pushed->totals().all.momentum[0];
+  EXPECT_GT(rebound, 100);
+  EXPECT_NEAR(push, rebound, 0.03 * rebound);
+}
+
+
+
+// Nothing of the run is different with an obstacle that nobody touches.
+TEST(ObstacleContact, OneThatIsFarDoesNothing)
+{
+  for (const std::string order : {"musl", "usavg"})
+    {
+      const std::vector<std::string> alone = {
+        "Method/Stress update=" + order,
+        "Body block/Initial velocity=0.1*y; 0.2*x"};
+      auto with = alone;
+      with.push_back("Obstacle floor/Half-space/Point=0, 0.1");
+      SceneRun<2> one(block_over_floor, with), other(block_alone, alone);
+      one.advance(1e-3, 50);
+      other.advance(1e-3, 50);
+      const auto p = one.positions(), q = other.positions();
+      for (std::size_t k = 0; k < p.size(); ++k)
+        EXPECT_EQ(p[k], q[k]);
+    }
+}
+
+
+
+TEST(ObstacleContact, BadStartsAndJumpsAreRefused)
+{
+  EXPECT_THROW(SceneRun<2>(block_over_floor,
+                           {"Obstacle floor/Half-space/Point=0, 0.6"}),
+               InputError);
+  SceneRun<2> run(block_over_floor,
+                  {"Obstacle floor/Displacement=0; if(t > 0.01, 0.2, 0)"});
+  EXPECT_THROW(run.advance(1e-3, 20), ComputationError);
+}
