@@ -114,12 +114,17 @@ namespace limber
   inline Pack<8>
   joined(const Pack<4> &lower, const Pack<4> &upper)
   {
+#ifdef __AVX512F__
+    // A copy would wait until both halves have left for the cache.
+    return __builtin_shufflevector(lower, upper, 0, 1, 2, 3, 4, 5, 6, 7);
+#else
     Pack<8> result;
     std::memcpy(&result, &lower, sizeof(lower));
     std::memcpy(reinterpret_cast<char *>(&result) + sizeof(lower),
                 &upper,
                 sizeof(upper));
     return result;
+#endif
   }
 
 

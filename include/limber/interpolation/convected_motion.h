@@ -108,11 +108,10 @@ namespace limber
               }
           }
         const auto middle   = shape.set_corners(corners);
-        auto       next     = shape;
-        const auto centroid = next.integrate();
+        const auto centroid = shape.find_centroid();
         for (int d = 0; d < dim; ++d)
-          shift[d] =
-            next.smallest > 0 ? middle[d] + centroid[d] : mean[d]; // turned out
+          shift[d] = shape.smallest > 0 ? middle[d] + centroid[d] :
+                                          mean[d]; // turned out
       }
     else
       {
@@ -153,26 +152,57 @@ namespace limber
 
 
 
-  /** The same for a pack; one by one, as corners are in any cells. */
+  /** The same for a pack, one by one: corners are in any cells. */
   template <int dim>
-  __attribute__((noinline)) std::array<PointPack<dim>, dim>
-  carry_all_corners(const PointView<dim> &points,
-                    const GridView<dim>  &grid,
-                    const std::uint32_t   cell,
-                    const std::size_t     first,
-                    const int             n,
-                    const double          step)
+  __attribute__((noinline, cold)) std::array<PointPack<dim>, dim>
+  carry_corners_one_by_one(const ConvectedPack<dim> &domains,
+                           const std::size_t         first,
+                           const int                 n,
+                           const double              step)
   {
     std::array<PointPack<dim>, dim> result;
     set_zero(result);
     for (int i = 0; i < n; ++i)
       {
-        const auto shift =
-          carry_corners<dim>(points, grid, cell, first + i, step);
+        const auto shift = carry_corners<dim>(
+          domains.points, domains.grid, domains.cell, first + i, step);
         for (int d = 0; d < dim; ++d)
           result[d][i] = shift[d];
       }
     return result;
+  }
+
+
+
+  /**
+   * The same for a pack, whose @p velocity (m/s) is the mean over domains: what
+   * moves those that turn inside out.
+   */
+  template <int dim, class Lanes>
+  __attribute__((noinline)) std::array<PointPack<dim>, dim>
+  carry_hexahedra(const ConvectedPack<dim>              &domains,
+                  const Lanes                           &lanes,
+                  const std::array<PointPack<dim>, dim> &velocity,
+                  const double                           step)
+  {
+    if (rarely(!domains.has_corners()))
+      return carry_corners_one_by_one<dim>(domains, lanes.first, lanes.n, step);
+    using Shape = Hexahedron<dim, PointPack<dim>>;
+    Shape      shape;
+    const auto middle   = shape.set_corners(domains.moved_corners(step));
+    const auto centroid = shape.find_centroid();
+    std::array<PointPack<dim>, dim> shift;
+    for (int d = 0; d < dim; ++d)
+      {
+        shift[d] = lanes.only_active(
+          shape.smallest > 0. ? middle[d] + centroid[d] : step * velocity[d]);
+        for (int k = 0; k < dim; ++k)
+          lanes.store(shape.edges[d][k], domains.points.domain[d * dim + k]);
+        for (int t = 0; t < Shape::n_twists; ++t)
+          lanes.store(shape.twists[t][d],
+                      domains.points.domain[dim * (dim + t) + d]);
+      }
+    return shift;
   }
 
 
@@ -316,14 +346,14 @@ namespace limber
     const PointView<dim>           &points = domains.points;
     const GridView<dim>            &grid   = domains.grid;
     std::array<PointPack<dim>, dim> shift;
+    for (int d = 0; d < dim; ++d)
+      shift[d] = fields.value(NodeLayout<dim>::velocity + d);
     if (rarely(points.domain_form == DomainForm::hexahedron))
-      shift = carry_all_corners<dim>(
-        points, grid, domains.cell, lanes.first, lanes.n, step);
+      shift = carry_hexahedra<dim>(domains, lanes, shift, step);
     else
       {
         for (int d = 0; d < dim; ++d)
-          shift[d] = lanes.only_active(
-            step * fields.value(NodeLayout<dim>::velocity + d));
+          shift[d] = lanes.only_active(step * shift[d]);
         carry_domains(domains, lanes, fields, step);
       }
     const auto moved =

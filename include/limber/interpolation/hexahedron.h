@@ -5,8 +5,6 @@
 #include <limber/base/small_matrix.h>
 #include <limber/points/point_view.h>
 
-#include <limits>
-
 namespace limber
 {
   /**
@@ -45,13 +43,6 @@ namespace limber
     Number smallest; // determinant of the map at the Gauss points, m^d
     Number volume;   // m^d
 
-    /** Whether twist t has the coordinate k. */
-    static constexpr bool
-    has_factor(const int t, const int k)
-    {
-      return dim == 2 || t == 3 || t != k;
-    }
-
     /** +1 or -1: at which end of edge k the corner is. */
     static constexpr double
     sign(const int corner, const int k)
@@ -59,36 +50,30 @@ namespace limber
       return corner >> k & 1 ? 1. : -1.;
     }
 
-    /** The product of twist t at a corner. */
-    static constexpr double
-    twist_sign(const int corner, const int t)
-    {
-      double result = 1;
-      for (int k = 0; k < dim; ++k)
-        if (has_factor(t, k))
-          result *= sign(corner, k);
-      return result;
-    }
-
     /** From corners, counted from anywhere, m. Returns x_0. */
     std::array<Number, dim>
     set_corners(const std::array<std::array<Number, dim>, n_corners> &corners)
     {
-      constexpr double        one = 1. / n_corners;
       std::array<Number, dim> middle;
+#pragma GCC unroll 3
       for (int d = 0; d < dim; ++d)
         {
-          const auto sum = [&](const auto &weight) {
-            Number result{};
-            for (int c = 0; c < n_corners; ++c)
-              result += (one * weight(c)) * corners[c][d];
-            return result;
-          };
-          middle[d] = sum([](int) { return 1.; });
+          AtCorners x;
+#pragma GCC unroll 8
+          for (int c = 0; c < n_corners; ++c)
+            x[c] = (1. / n_corners) * corners[c][d];
+          for_pairs(
+            [](Number & lower, Number & upper) __attribute__((always_inline)) {
+              const Number sum = lower + upper;
+              upper            = upper - lower;
+              lower            = sum;
+            },
+            x);
+          middle[d] = x[0];
           for (int k = 0; k < dim; ++k)
-            edges[d][k] = sum([k](const int c) { return sign(c, k); });
+            edges[d][k] = x[1 << k];
           for (int t = 0; t < n_twists; ++t)
-            twists[t][d] = sum([t](const int c) { return twist_sign(c, t); });
+            twists[t][d] = x[factors_of_twist(t)];
         }
       return middle;
     }
@@ -97,96 +82,256 @@ namespace limber
      * From edges and twists all the rest; offsets are from the centroid.
      * Returns where this is from x_0, m.
      */
-    std::array<Number, dim>
+    __attribute__((always_inline)) std::array<Number, dim>
     integrate()
     {
-      std::array<std::array<Number, dim>, n_corners> slopes;
-      volume   = Number{};
-      smallest = Number{} + std::numeric_limits<double>::max();
-      for (int c = 0; c < n_corners; ++c)
-        {
-          shares[c] = Number{};
-          for (int d = 0; d < dim; ++d)
-            slopes[c][d] = Number{};
-        }
-      for (int q = 0; q < n_corners; ++q)
-        {
-          const auto   map = gradient_at(q);
-          const auto   cof = cofactor<dim>(map);
-          const Number J   = determinant<dim>(map);
-          volume += J;
-          smallest = J < smallest ? J : smallest;
-          for (int c = 0; c < n_corners; ++c)
-            {
-              shares[c] += interpolation(c, q, -1) * J;
-              for (int k = 0; k < dim; ++k)
-                {
-                  const double change = interpolation(c, q, k);
-                  for (int d = 0; d < dim; ++d)
-                    slopes[c][d] += change * cof[d][k];
-                }
-            }
-        }
+      const GaussPoints at(*this);
+      AtCorners         slopes[dim]; // along each edge and d, summed over edges
+#pragma GCC unroll 3
+      for (int d = 0; d < dim; ++d)
+        slopes[d].fill(Number{});
+#pragma GCC unroll 3
+      for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 3
+        for (int d = 0; d < dim; ++d)
+          {
+            AtCorners flux;
+#pragma GCC unroll 8
+            for (int q = 0; q < n_corners; ++q)
+              flux[q] = at.normal(q, k, d);
+            to_corners(flux, k);
+#pragma GCC unroll 8
+            for (int c = 0; c < n_corners; ++c)
+              slopes[d][c] += (0.5 * sign(c, k)) * flux[c];
+          }
+      shares = at.determinant;
+      to_corners(shares, -1);
+      volume   = at.volume();
+      smallest = at.smallest();
+
       const Number            one = 1. / volume;
       std::array<Number, dim> centroid;
-      for (int d = 0; d < dim; ++d)
-        centroid[d] = Number{};
+#pragma GCC unroll 8
       for (int c = 0; c < n_corners; ++c)
         {
           shares[c] *= one;
+#pragma GCC unroll 3
           for (int k = 0; k < dim; ++k)
             {
-              along[k][c] = Number{};
-              for (int d = 0; d < dim; ++d)
-                along[k][c] += one * slopes[c][d] * edges[d][k];
-            }
-          for (int d = 0; d < dim; ++d)
-            {
-              Number x{};
-              for (int k = 0; k < dim; ++k)
-                x += sign(c, k) * edges[d][k];
-              for (int t = 0; t < n_twists; ++t)
-                x += twist_sign(c, t) * twists[t][d];
-              offsets[c][d] = x;
-              centroid[d] += shares[c] * x;
+              Number sum = slopes[0][c] * edges[0][k];
+#pragma GCC unroll 3
+              for (int d = 1; d < dim; ++d)
+                sum += slopes[d][c] * edges[d][k];
+              along[k][c] = one * sum;
             }
         }
-      for (int c = 0; c < n_corners; ++c)
-        for (int d = 0; d < dim; ++d)
-          offsets[c][d] -= centroid[d];
+#pragma GCC unroll 3
+      for (int d = 0; d < dim; ++d)
+        {
+          const AtCorners x = places(d, 1.);
+          centroid[d]       = Number{};
+#pragma GCC unroll 8
+          for (int c = 0; c < n_corners; ++c)
+            centroid[d] += shares[c] * x[c];
+#pragma GCC unroll 8
+          for (int c = 0; c < n_corners; ++c)
+            offsets[c][d] = x[c] - centroid[d];
+        }
       return centroid;
     }
 
-  private:
-    static constexpr double gauss = 0.57735026918962576451; // 1 / sqrt(3)
-
-    /** M_c at Gauss point q, or its derivative along xi_k. */
-    static constexpr double
-    interpolation(const int c, const int q, const int k)
+    /**
+     * The centroid from x_0, m, with the volume and the smallest determinant,
+     * of edges and twists.
+     */
+    std::array<Number, dim>
+    find_centroid()
     {
-      double result = 1;
+      const GaussPoints at(*this);
+      volume           = at.volume();
+      smallest         = at.smallest();
+      const Number one = 1. / volume;
+
+      std::array<Number, dim> result;
+#pragma GCC unroll 3
       for (int d = 0; d < dim; ++d)
-        result *= d == k ? 0.5 * sign(c, d) :
-                           0.5 * (1 + sign(c, d) * sign(q, d) * gauss);
+        {
+          const AtCorners x = places(d, gauss);
+          result[d]         = Number{};
+#pragma GCC unroll 8
+          for (int q = 0; q < n_corners; ++q)
+            result[d] += at.determinant[q] * x[q];
+          result[d] *= one;
+        }
       return result;
     }
 
-    /** Derivatives of the map at Gauss point q, columns. */
-    SmallMatrix<dim, Number>
-    gradient_at(const int q) const
+  private:
+    // Of corners, or of Gauss points, each next to a corner; or for each
+    // product of natural coordinates, with a bit for each factor
+    using AtCorners = std::array<Number, n_corners>;
+
+    static constexpr double gauss = 0.57735026918962576451; // 1 / sqrt(3)
+
+    /** The natural coordinates whose product twist t has, as bits. */
+    static constexpr int
+    factors_of_twist(const int t)
     {
-      SmallMatrix<dim, Number> result = edges;
+      constexpr int all = n_corners - 1;
+      return dim == 2 || t == 3 ? all : all ^ 1 << t;
+    }
+
+    /** work(lower, upper) for the ends of all edges, one direction after the
+     * other. */
+    template <class Work>
+    __attribute__((always_inline)) static void
+    for_pairs(const Work &work, AtCorners &values)
+    {
+#pragma GCC unroll 3
+      for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 8
+        for (int c = 0; c < n_corners; ++c)
+          if (!(c >> k & 1))
+            work(values[c], values[c | 1 << k]);
+    }
+
+    /**
+     * Component d of x - x_0 where all natural coordinates are + or - @p reach.
+     */
+    __attribute__((always_inline)) AtCorners
+    places(const int d, const double reach) const
+    {
+      AtCorners x;
+      x[0] = Number{};
+      for (int k = 0; k < dim; ++k)
+        x[1 << k] = reach * edges[d][k];
       for (int t = 0; t < n_twists; ++t)
-        for (int k = 0; k < dim; ++k)
-          if (has_factor(t, k))
+        x[factors_of_twist(t)] =
+          (t == 3 ? reach * reach * reach : reach * reach) * twists[t][d];
+      for_pairs(
+        [](Number & lower, Number & upper) __attribute__((always_inline)) {
+          const Number mean = lower, change = upper;
+          lower = mean - change;
+          upper = mean + change;
+        },
+        x);
+      return x;
+    }
+
+    /**
+     * sum_q M_c(q) f_q from f at the Gauss points, in place; the factor of M_c
+     * along @p k, if that is a direction, left out.
+     */
+    __attribute__((always_inline)) static void
+    to_corners(AtCorners &f, const int k)
+    {
+      constexpr double near = 0.5 * (1 + gauss), far = 0.5 * (1 - gauss);
+#pragma GCC unroll 3
+      for (int d = 0; d < dim; ++d)
+#pragma GCC unroll 8
+        for (int c = 0; c < n_corners; ++c)
+          if (!(c >> d & 1))
             {
-              double others = 1;
-              for (int l = 0; l < dim; ++l)
-                if (l != k && has_factor(t, l))
-                  others *= sign(q, l) * gauss;
-              for (int d = 0; d < dim; ++d)
-                result[d][k] += others * twists[t][d];
+              Number &lower = f[c], &upper = f[c | 1 << d];
+              if (d == k)
+                upper = lower = lower + upper;
+              else
+                {
+                  const Number first = lower;
+                  lower              = near * first + far * upper;
+                  upper              = far * first + near * upper;
+                }
             }
+    }
+
+    /** The map at the Gauss points. */
+    struct GaussPoints
+    {
+      __attribute__((always_inline)) GaussPoints(const Hexahedron &shape)
+      {
+#pragma GCC unroll 3
+        for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 8
+          for (int q = 0; q < n_corners; ++q)
+            if (!(q >> k & 1))
+#pragma GCC unroll 3
+              for (int d = 0; d < dim; ++d)
+                column[k][q][d] = shape.slope(q, k, d);
+#pragma GCC unroll 8
+        for (int q = 0; q < n_corners; ++q)
+          {
+            determinant[q] = derivative(q, 0, 0) * normal(q, 0, 0);
+#pragma GCC unroll 3
+            for (int d = 1; d < dim; ++d)
+              determinant[q] += derivative(q, 0, d) * normal(q, 0, d);
+          }
+      }
+
+      /** dx_d / dxi_k, which xi_k has no part in. */
+      const Number &
+      derivative(const int q, const int k, const int d) const
+      {
+        return column[k][q & ~(1 << k)][d];
+      }
+
+      /** Entry (d, k) of the cofactors of the map. */
+      __attribute__((always_inline)) Number
+      normal(const int q, const int k, const int d) const
+      {
+        if constexpr (dim == 2)
+          {
+            const Number &other = derivative(q, 1 - k, 1 - d);
+            return k == d ? other : -other;
+          }
+        else
+          {
+            const int l = (k + 1) % 3, m = (k + 2) % 3, e = (d + 1) % 3,
+                      f = (d + 2) % 3;
+            return derivative(q, l, e) * derivative(q, m, f) -
+                   derivative(q, l, f) * derivative(q, m, e);
+          }
+      }
+
+      Number
+      volume() const
+      {
+        Number result = determinant[0];
+        for (int q = 1; q < n_corners; ++q)
+          result += determinant[q];
+        return result;
+      }
+
+      Number
+      smallest() const
+      {
+        Number result = determinant[0];
+        for (int q = 1; q < n_corners; ++q)
+          result = determinant[q] < result ? determinant[q] : result;
+        return result;
+      }
+
+      AtCorners determinant; // m^d
+
+    private:
+      std::array<std::array<Number, dim>, n_corners> column[dim];
+    };
+
+    /** dx_d / dxi_k at Gauss point q. */
+    __attribute__((always_inline)) Number
+    slope(const int q, const int k, const int d) const
+    {
+      Number result = edges[d][k];
+#pragma GCC unroll 4
+      for (int t = 0; t < n_twists; ++t)
+        if (factors_of_twist(t) >> k & 1)
+          {
+            double others = 1;
+#pragma GCC unroll 3
+            for (int l = 0; l < dim; ++l)
+              if (l != k && factors_of_twist(t) >> l & 1)
+                others *= sign(q, l) * gauss;
+            result += others * twists[t][d];
+          }
       return result;
     }
   };

@@ -4,7 +4,7 @@
 
 #include <limber/interpolation/batch_lanes.h>
 #include <limber/interpolation/spline.h>
-#include <limber/transfer/give_by_rows.h>
+#include <limber/transfer/give_by_planes.h>
 
 namespace limber
 {
@@ -241,7 +241,7 @@ namespace limber
         result[i] = (places[i] - xi[e]) / cell.inverse_edge[e];
       return result;
     };
-    if constexpr (Basis::degree == 2)
+    if constexpr (Basis::degree == 2 && (dim == 2 || !What::force))
       {
         const SplineWeights<Basis, What::force> weights(cell, nodes, xi);
         Sums                                    sums;
@@ -278,7 +278,7 @@ namespace limber
       }
     else
       {
-        using Factors = RowFactors<Basis, What::force>;
+        using Factors = AxisFactors<Basis, What::force>;
         typename Factors::OfDirections values, slopes;
 #pragma GCC unroll 3
         for (int d = 0; d < dim; ++d)
@@ -298,12 +298,13 @@ namespace limber
 #pragma GCC unroll 3
           for (int e = 0; e < dim; ++e)
             along[e] = force_records<Sums, dim>(Vt, e);
-        add_by_rows<Basis, What::momentum, What::force>(Factors(values, slopes),
-                                                        alike,
-                                                        along,
-                                                        lanes.n,
-                                                        begins,
-                                                        of_batch.sums);
+        add_by_planes<Basis, What::momentum, What::force>(Factors(values,
+                                                                  slopes),
+                                                          alike,
+                                                          along,
+                                                          lanes.n,
+                                                          begins,
+                                                          of_batch.sums);
         if constexpr (What::affine)
           {
             auto moments = values;
@@ -314,13 +315,13 @@ namespace limber
                   moments[e][i] *= arm[i];
                 along[e] = affine_records<Sums>(points, lanes, momentum, e);
               }
-            add_by_rows<Basis, false, true>(RowFactors<Basis, true>(values,
-                                                                    moments),
-                                            alike,
-                                            along,
-                                            lanes.n,
-                                            false,
-                                            of_batch.sums);
+            add_by_planes<Basis, false, true>(AxisFactors<Basis, true>(values,
+                                                                       moments),
+                                              alike,
+                                              along,
+                                              lanes.n,
+                                              false,
+                                              of_batch.sums);
           }
       }
   }
