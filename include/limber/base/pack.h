@@ -94,6 +94,111 @@ namespace limber
 
 
   /**
+   * Eight doubles as two packs, where these fill the registers of the machine:
+   * GCC keeps vectors of its own of such a length in memory, whatever is done
+   * with them. A double counts as a pack with equal lanes.
+   */
+  struct SplitPack
+  {
+    using Half = Pack<4>;
+
+    SplitPack() = default;
+
+    __attribute__((always_inline))
+    SplitPack(const Half &lower, const Half &upper)
+      : lower(lower)
+      , upper(upper)
+    {}
+
+    __attribute__((always_inline)) SplitPack &
+    operator+=(const SplitPack &other)
+    {
+      lower += other.lower;
+      upper += other.upper;
+      return *this;
+    }
+
+    /** Add to the lower lanes. */
+    __attribute__((always_inline)) SplitPack &
+    operator+=(const Half &other)
+    {
+      lower += other;
+      return *this;
+    }
+
+    __attribute__((always_inline)) SplitPack &
+    operator-=(const SplitPack &other)
+    {
+      lower -= other.lower;
+      upper -= other.upper;
+      return *this;
+    }
+
+    __attribute__((always_inline)) SplitPack &
+    operator*=(const double factor)
+    {
+      lower *= factor;
+      upper *= factor;
+      return *this;
+    }
+
+    __attribute__((always_inline)) friend SplitPack
+    operator+(SplitPack a, const SplitPack &b)
+    {
+      return a += b;
+    }
+
+    __attribute__((always_inline)) friend SplitPack
+    operator-(SplitPack a, const SplitPack &b)
+    {
+      return a -= b;
+    }
+
+    __attribute__((always_inline)) friend SplitPack
+    operator*(const double factor, SplitPack a)
+    {
+      return a *= factor;
+    }
+
+    __attribute__((always_inline)) friend SplitPack
+    operator*(SplitPack a, const double factor)
+    {
+      return a *= factor;
+    }
+
+    double
+    operator[](const int i) const
+    {
+      return i < 4 ? lower[i] : upper[i - 4];
+    }
+
+    double &
+    operator[](const int i)
+    {
+      return reinterpret_cast<double *>(this)[i];
+    }
+
+    Half lower, upper;
+  };
+
+  template <>
+  __attribute__((always_inline)) inline SplitPack
+  load<SplitPack>(const double *const from)
+  {
+    return {load<SplitPack::Half>(from), load<SplitPack::Half>(from + 4)};
+  }
+
+  template <>
+  __attribute__((always_inline)) inline void
+  store<SplitPack>(const SplitPack &from, double *const to)
+  {
+    store(from.lower, to);
+    store(from.upper, to + 4);
+  }
+
+
+
+  /**
    * Have the compiler forget what it stored in @p values. To spread one of them
    * over the lanes of a pack is then part of a load, where GCC would permute
    * the register that it stored them from. In three dimensions only: packs of
@@ -223,7 +328,8 @@ namespace limber
   {
 #pragma GCC unroll 27
     for (Number &value : values)
-      if constexpr (std::is_class_v<Number>)
+      if constexpr (std::is_class_v<Number> &&
+                    !std::is_same_v<Number, SplitPack>)
         set_zero(value);
       else
         value = Number{};

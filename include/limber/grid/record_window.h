@@ -25,7 +25,8 @@ namespace limber
         first :
         NodeLayout<dim>::stride - width;
     static_assert(first + n_slots <= start + width);
-    using Lanes = Pack<int(width)>;
+    using Lanes =
+      std::conditional_t<width <= widest_pack, Pack<int(width)>, SplitPack>;
 
     static constexpr unsigned int
     lane_of(const unsigned int slot)
@@ -33,6 +34,33 @@ namespace limber
       return slot - start;
     }
   };
+
+
+
+  namespace internal
+  {
+    /** A record from its lower lanes and its upper ones. */
+    template <class Record, class Half>
+    __attribute__((always_inline)) inline Record
+    record_of(const Half &lower, const Half &upper)
+    {
+      if constexpr (std::is_same_v<Record, SplitPack>)
+        return {lower, upper};
+      else
+        return joined(lower, upper);
+    }
+
+    /** And back: those from lane @p first on that fill a narrow pack. */
+    template <class Half, class Record>
+    __attribute__((always_inline)) inline Half
+    half_of(const Record &record, const int first)
+    {
+      if constexpr (std::is_same_v<Record, SplitPack>)
+        return first == 0 ? record.lower : record.upper;
+      else
+        return some_lanes<Half>(record, first);
+    }
+  } // namespace internal
 
 
 
@@ -62,7 +90,7 @@ namespace limber
         transpose<n_points>(lower);
         transpose<n_points>(upper);
         for (int p = 0; p < n_points; ++p)
-          result[p] = joined(lower[p], upper[p]);
+          result[p] = internal::record_of<Record>(lower[p], upper[p]);
       }
     else
       {
@@ -96,7 +124,7 @@ namespace limber
         {
           std::array<Number, n_points> block;
           for (int p = 0; p < n_points; ++p)
-            block[p] = some_lanes<Number>(records[p], half * n_points);
+            block[p] = internal::half_of<Number>(records[p], half * n_points);
           transpose<n_points>(block);
           for (int i = 0; i < n_points; ++i)
             result[half * n_points + i] = block[i];

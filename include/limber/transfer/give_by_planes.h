@@ -52,12 +52,16 @@ namespace limber
    * The sums of a plane of nodes stay in registers from point to point; what
    * goes to it, to a row of it and to a node is formed one after the other.
    */
-  template <class Basis, bool has_alike, bool has_along, class Record>
+  template <class Basis,
+            bool has_alike,
+            bool has_along,
+            class Record,
+            class Along>
   __attribute__((always_inline)) inline void
   add_by_planes(
     const AxisFactors<Basis, has_along>                            &factors,
     const std::array<Record, AxisFactors<Basis, has_along>::width> &alike,
-    const std::array<std::array<Record, AxisFactors<Basis, has_along>::width>,
+    const std::array<std::array<Along, AxisFactors<Basis, has_along>::width>,
                      Basis::dim>                                   &along,
     const int                                                       n_points,
     const bool                                                      begins,
@@ -73,7 +77,8 @@ namespace limber
           std::copy_n(&sums[plane * n * n], n * n, of_plane.begin());
         for (int p = 0; p < n_points; ++p)
           {
-            Record to_plane{}, along_x, along_y;
+            Record to_plane{};
+            Along  along_x, along_y;
             if constexpr (has_alike)
               to_plane = alike[p];
             if constexpr (has_along)
@@ -98,7 +103,7 @@ namespace limber
               {
                 const double value  = factors.value[1][j][p];
                 Record       to_row = value * to_plane;
-                Record       slope{};
+                Along        slope{};
                 if constexpr (has_along)
                   {
                     to_row += factors.other[1][j][p] * along_y;

@@ -89,6 +89,9 @@ namespace limber
     using Record                        = typename Window::Lanes;
     static constexpr unsigned int width = Window::width;
     static constexpr unsigned int start = Window::start;
+    // Of forces, which lie in the lower lanes
+    using ForceRecord = std::
+      conditional_t<std::is_same_v<Record, SplitPack>, SplitPack::Half, Record>;
 
     __attribute__((always_inline)) void
     clear()
@@ -103,9 +106,9 @@ namespace limber
     }
 
     /** N_i times a record, for all nodes; weights are those of one point. */
-    template <std::size_t n, int points>
+    template <std::size_t n, int points, class What>
     __attribute__((always_inline)) void
-    add(const double (&weights)[n][points], const int point, const Record &what)
+    add(const double (&weights)[n][points], const int point, const What &what)
     {
 #pragma GCC unroll 27
       for (std::size_t i = 0; i < n; ++i)
@@ -192,12 +195,15 @@ namespace limber
   __attribute__((always_inline)) inline auto
   force_records(const SmallMatrix<dim, PointPack<dim>> &Vt, const int e)
   {
-    std::array<PointPack<dim>, Sums::width> slots;
+    using Record        = typename Sums::ForceRecord;
+    constexpr int width = pack_width<Record>;
+    static_assert(Sums::lane_of(NodeLayout<dim>::force) + dim <= width);
+    std::array<PointPack<dim>, width> slots;
     set_zero(slots);
 #pragma GCC unroll 3
     for (int d = 0; d < dim; ++d)
       slots[Sums::lane_of(NodeLayout<dim>::force + d)] = -Vt[d][e];
-    return records_of<typename Sums::Record>(slots);
+    return records_of<Record>(slots);
   }
 
 
@@ -291,7 +297,8 @@ namespace limber
               slope *= cell.inverse_edge[d];
           }
         std::array<typename Sums::Record, Factors::width> alike;
-        std::array<decltype(alike), dim>                  along;
+        std::array<std::array<typename Sums::ForceRecord, Factors::width>, dim>
+          along;
         if constexpr (What::momentum)
           alike = momentum_records<Sums>(points, lanes, momentum);
         if constexpr (What::force)
@@ -307,18 +314,19 @@ namespace limber
                                                           of_batch.sums);
         if constexpr (What::affine)
           {
-            auto moments = values;
+            auto                             moments = values;
+            std::array<decltype(alike), dim> turning;
             for (int e = 0; e < dim; ++e)
               {
                 const auto arm = arms(e);
                 for (int i = 0; i < Basis::n; ++i)
                   moments[e][i] *= arm[i];
-                along[e] = affine_records<Sums>(points, lanes, momentum, e);
+                turning[e] = affine_records<Sums>(points, lanes, momentum, e);
               }
             add_by_planes<Basis, false, true>(AxisFactors<Basis, true>(values,
                                                                        moments),
                                               alike,
-                                              along,
+                                              turning,
                                               lanes.n,
                                               false,
                                               of_batch.sums);
