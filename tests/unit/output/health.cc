@@ -163,6 +163,10 @@ namespace limber::test
     EXPECT_EQ(of(KernelKind::quadratic, true, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::quadratic, true, 3), Verdict::good);
     EXPECT_EQ(of(KernelKind::cubic, true, 3), Verdict::good);
+    EXPECT_EQ(of(KernelKind::gimp, true, 2), Verdict::look);
+    EXPECT_EQ(of(KernelKind::gimp, true, 3), Verdict::good);
+    EXPECT_EQ(of(KernelKind::cpgimp, true, 2), Verdict::look);
+    EXPECT_EQ(of(KernelKind::cpgimp, true, 3), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpdi, false, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpdi, true, 2), Verdict::good);
     EXPECT_EQ(of(KernelKind::cpdi2, false, 2), Verdict::look);
