@@ -65,6 +65,7 @@ ALONE = {
     "quadratic": ("#CC79A7", "s", "--"), "CPDI": ("#6a3d9a", "D", "-."),
     "cubic": ("#d01c8b", "p", "--"), "GIMP": ("#33a02c", "v", "-."),
     "cpGIMP": ("#17807e", "^", "-."), "CPDI2": ("#7a0177", "d", "-."),
+    "DDMP": ("#b2443a", "H", "--"),
     "initial frame": ("#E69F00", "*", ":"),
     "FEM Q1": ("#b15928", "P", "-"), "FEM Q1-P0-P0": ("#000000", "X", "-"),
     "FEM Q2": ("#8c5a2b", "p", "--"), "FEM Q2-P1-P1": ("#000000", "h", "--"),
@@ -88,6 +89,7 @@ KERNELS = {
     "linear": ("o", "-"), "splines": ("s", "--"), "quadratic": ("s", "--"),
     "cubic": ("p", "--"), "GIMP": ("v", "-."),
     "cpGIMP": ("^", "-."), "CPDI": ("D", "-."), "CPDI2": ("d", "-."),
+    "DDMP": ("H", "--"),
     "initial": ("*", ":"), "initial frame": ("*", ":")}
 
 # What a method differs in from the one it is named after, 'cell with APIC'. With

@@ -399,6 +399,10 @@ namespace limber
     // prm/studies.
     if (body.kernel == KernelKind::cubic)
       return body.points_per_edge < 3 ? 5e-4 : 2e-4;
+    // That bar again. Bodies that are bent are too soft from the start, which
+    // is no creep.
+    if (body.kernel == KernelKind::ddmp)
+      return body.points_per_edge < 3 ? 1.2e-2 : 2.7e-3;
     // tests/runs/health/slow_cantilever.prm with 2, 3 and 4 points along an
     // edge: what its tip sinks beyond 0.498 m, over the cells that its points
     // enter, are 1.5, 1.2 and 1.0 %. Bent strips that are only carried through

@@ -65,6 +65,11 @@ namespace limber
                          "its cells",
                          ", or 'Method/Kernel = linear', 'quadratic' or "
                          "'auto'"};
+      if (kernel == KernelKind::ddmp)
+        return Hindrance{"has no gradients that come from the nodes, as none "
+                         "jumps where no point crosses",
+                         ", or 'Method/Kernel = linear', 'quadratic' or "
+                         "'auto'"};
       if (is_spline(kernel) && treatment == Projection::assumed_strain)
         return Hindrance{"has an assumed strain with linear functions only",
                          ", or 'Method/Kernel = linear', or 'Locking treatment "
@@ -129,12 +134,39 @@ namespace limber
 
 
 
+    std::optional<Misfit>
+    misfit_of_dual_domain(const Section &section)
+    {
+      if (!treatment_of(
+             read_word(section, "Locking treatment", locking_words()))
+             .with_domains)
+        return Misfit{"Locking treatment",
+                      "its gradients come from several cells",
+                      "'Locking treatment = cell', 'node' or 'none'"};
+      if (is_set(section, "Hourglass control"))
+        return Misfit{"Hourglass control",
+                      "no motion of a cell is without resistance",
+                      "'Hourglass control = 0'"};
+      if (is_set(section, "Chequerboard control"))
+        return Misfit{"Chequerboard control",
+                      "it is for kernels whose points see one cell",
+                      "'Chequerboard control = 0'"};
+      if (read_word(section, "History", history_words()) !=
+          HistoryTreatment::keep)
+        return Misfit{"History", "points keep their own", "'History = keep'"};
+      return {};
+    }
+
+
+
     /** What does not go with a kernel in the section of a body. */
     std::optional<Misfit>
     misfit(const KernelKind kernel, const Section &section, const bool liquid)
     {
       if (is_spline(kernel))
         return misfit_of_splines(section);
+      if (kernel == KernelKind::ddmp && !liquid)
+        return misfit_of_dual_domain(section);
       if (has_domains(kernel) && !liquid)
         return misfit_of_domains(section);
       return {};

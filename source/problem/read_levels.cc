@@ -342,7 +342,9 @@ namespace limber
              "Kernel",
              has_domains(problem.grid.kernel) ?
                "domains look for their corners in a lattice" :
-               "splines need a lattice",
+             is_spline(problem.grid.kernel) ?
+               "splines need a lattice" :
+               "means around nodes need a lattice",
              "'Kernel = linear'");
     if (problem.method.integration != TimeIntegration::explicit_steps)
       refuse(method,

@@ -74,7 +74,11 @@ namespace limber
       {"cpdi2",
        KernelKind::cpdi2,
        "the same with corners that move with the grid, so that domains leave "
-       "no gaps"}};
+       "no gaps"},
+      {"ddmp",
+       KernelKind::ddmp,
+       "dual domain method: linear functions; gradients of solids partly come "
+       "from the nodes and are continuous from cell to cell"}};
     return words;
   }
 

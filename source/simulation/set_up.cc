@@ -161,9 +161,10 @@ namespace limber
               const Body<dim>           &body,
               const BackgroundGrid<dim> &grid)
     {
-      // A liquid shears its points' domains without end.
+      // A liquid shears its points' domains without end, and what controls its
+      // chequerboards is for linear functions.
       const KernelKind kernel =
-        has_domains(problem.grid.kernel) && body.is_liquid ?
+        is_for_solids(problem.grid.kernel) && body.is_liquid ?
           KernelKind::linear :
           problem.grid.kernel;
       const auto &fields = problem.output.fields;
@@ -309,7 +310,7 @@ namespace limber
     for (auto &body : bodies)
       {
         const Projection kind = body->stress->projection().kind;
-        if (body->points.view().has_domains())
+        if (is_for_solids(problem.grid.kernel) && !body->description.is_liquid)
           {
             if (averages_volume_in_cells(kind))
               body->cell_averages.emplace(grid.n_cells());

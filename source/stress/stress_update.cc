@@ -92,6 +92,8 @@ namespace limber
         result = make_cubic_sweep<dim>(law, projection, frame);
       else if (frame == Frame::initial)
         result = make_initial_frame_sweep<Linear<dim>>(law, projection);
+      else if (kernel == KernelKind::ddmp)
+        result = make_dual_domain_sweep<dim>(law, projection);
       else if (has_domains(kernel))
         result = make_convected_sweep<dim>(law, projection);
       else

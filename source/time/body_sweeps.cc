@@ -2,6 +2,7 @@
 #include <limber/interpolation/domain_means.h>
 #include <limber/time/body_sweeps.h>
 #include <limber/transfer/convected_transfer.h>
+#include <limber/transfer/dual_domain_transfer.h>
 #include <limber/transfer/project_on_nodes.h>
 
 #include <algorithm>
@@ -40,7 +41,20 @@ namespace limber
   template <int dim>
   BodySweeps<dim>::BodySweeps(const RunParts<dim> &parts)
     : parts(parts)
-  {}
+  {
+    if (parts.problem.grid.kernel == KernelKind::ddmp)
+      dual_domain.emplace(parts.grid.nodes());
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::reinit()
+  {
+    if (dual_domain)
+      dual_domain->reinit();
+  }
 
 
 
@@ -48,6 +62,8 @@ namespace limber
   std::size_t
   BodySweeps<dim>::points_to_grid(GiveToGrid what)
   {
+    if (what.force && dual_domain)
+      dual_domain->clear_stress(parts.nodes);
     if (what.force)
       {
         project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
@@ -75,6 +91,30 @@ namespace limber
                                                  sums ? &*sums : nullptr);
       }
     return n_batches;
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::finish_points_to_grid(const GiveToGrid &what)
+  {
+    if (!dual_domain)
+      return;
+    if (what.momentum)
+      dual_domain->find_volumes(parts.nodes, parts.bodies);
+    if (what.force)
+      dual_domain->add_forces(parts.nodes);
+  }
+
+
+
+  template <int dim>
+  void
+  BodySweeps<dim>::average_gradients(const bool remapped)
+  {
+    if (dual_domain)
+      dual_domain->average_gradients(parts.nodes, remapped);
   }
 
 
@@ -229,10 +269,18 @@ namespace limber
                           records);
     });
     average_over_cells([&](MaterialBody<dim> &body, double *const records) {
-      sum_divergence_of_domains<CellMeanSums<dim>>(body.points.view(),
-                                                   nodes_of(body),
-                                                   what.remapped,
-                                                   records);
+      const auto points = body.points.view();
+      const auto nodes  = nodes_of(body);
+      if (dual_domain)
+        sum_divergence_of_dual_domain<CellMeanSums<dim>>(points,
+                                                         nodes,
+                                                         what.remapped,
+                                                         records);
+      else
+        sum_divergence_of_domains<CellMeanSums<dim>>(points,
+                                                     nodes,
+                                                     what.remapped,
+                                                     records);
     });
     for (auto &body : parts.bodies)
       {

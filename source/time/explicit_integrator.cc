@@ -78,6 +78,7 @@ namespace limber
   ExplicitIntegrator<dim>::reinit()
   {
     parts.nodes.reinit();
+    sweeps.reinit();
     if (full_mass)
       full_mass->reinit();
     if (obstacles)

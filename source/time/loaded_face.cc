@@ -47,7 +47,7 @@ namespace limber
 
     // A splinter of a cut body cannot bear the load of a whole piece: carriers
     // have at least this share of the mass of the heaviest point near by.
-    constexpr double least_share = 0.25;
+    constexpr double least_share_of_piece = 0.25;
 
 
 
@@ -159,7 +159,7 @@ namespace limber
 
     std::vector<Candidate<dim>> best(all.size(), nobody);
     for_each_neighbour([&](const std::size_t p, const unsigned int i) {
-      if (points.mass[p] < least_share * heaviest[i])
+      if (points.mass[p] < least_share_of_piece * heaviest[i])
         return;
       Candidate<dim> candidate{};
       double         square = 0;

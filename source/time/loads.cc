@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/dual_domain.h>
 #include <limber/interpolation/support.h>
 #include <limber/time/loads.h>
 
@@ -183,8 +184,11 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::deform(NodalFields<dim> &nodes, const StressSweep &what)
+  ExternalLoads<dim>::deform(NodalFields<dim>   &nodes,
+                             const StressSweep  &what,
+                             const double *const mean_gradients)
   {
+    using Mean = DualDomainLayout<dim>;
     const unsigned int slot =
       what.remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
     for (LoadedFace<dim> &face : faces)
@@ -199,6 +203,19 @@ namespace limber
                 for (int e = 0; e < dim; ++e)
                   velocity_gradient[d][e] +=
                     nodes.record(at.node[i])[slot + d] * at.gradient[i][e];
+            if (mean_gradients != nullptr)
+              {
+                const double own = own_share<dim>(
+                  natural_place(points, grid.geometry[points.cell[p]], p));
+                velocity_gradient *= own;
+                for (int i = 0; i < at.n; ++i)
+                  for (int d = 0; d < dim; ++d)
+                    for (int e = 0; e < dim; ++e)
+                      velocity_gradient[d][e] +=
+                        (1 - own) * at.value[i] *
+                        mean_gradients[at.node[i] * Mean::stride +
+                                       Mean::tensor(d, e)];
+              }
             dealii::Tensor<2, dim> change =
               what.step * velocity_gradient * pull_back(points, p);
             if (!points.in_initial_frame())

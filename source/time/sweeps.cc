@@ -13,6 +13,7 @@ namespace limber
   {
     give({});
     sum_shared_nodes(0, Layout::remapped);
+    finish_giving({});
     find_contact();
   }
 
@@ -26,6 +27,7 @@ namespace limber
     what.force = false;
     give(what);
     sum_shared_nodes(0, Layout::remapped);
+    finish_giving(what);
     find_contact();
   }
 
@@ -39,6 +41,7 @@ namespace limber
     what.momentum = false;
     give(what);
     sum_shared_nodes(Layout::force, Layout::force + dim);
+    finish_giving(what);
   }
 
 
@@ -50,6 +53,16 @@ namespace limber
     what.affine =
       what.momentum && parts.problem.method.transfer == Transfer::apic;
     relocation.note_batches(sweeps.points_to_grid(what));
+    lap(Verb::points_to_grid);
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::finish_giving(const GiveToGrid &what)
+  {
+    sweeps.finish_points_to_grid(what);
     lap(Verb::points_to_grid);
   }
 
@@ -246,7 +259,8 @@ namespace limber
     what.square      = square_of_strain();
     what.curved =
       parts.problem.method.integration == TimeIntegration::semi_implicit;
-    loads.deform(parts.nodes, what);
+    sweeps.average_gradients(what.remapped);
+    loads.deform(parts.nodes, what, sweeps.mean_gradients());
     sweeps.update_stress(what,
                          {std::exchange(history_time, 0.),
                           what.step,

@@ -3,6 +3,7 @@
 #include <limber/interpolation/strain_operator.h>
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/convected_transfer.h>
+#include <limber/transfer/dual_domain_transfer.h>
 #include <limber/transfer/points_to_grid.h>
 #include <limber/transfer/points_to_splines.h>
 #include <limber/transfer/sum_momentum.h>
@@ -177,6 +178,12 @@ namespace limber
       return what.momentum ?
                choose_sums<dim, NoForce>(points, grid, what, sums) :
                0;
+    if (grid.dual_domain != nullptr)
+      {
+        if (what.momentum)
+          choose_sums<dim, NoForce>(points, grid, what, sums);
+        return stress_to_dual_domain(points, grid, what);
+      }
     return points.deviator[0] != nullptr ?
              choose_projection<dim, true>(points, grid, what, sums) :
              choose_projection<dim, false>(points, grid, what, sums);

@@ -3,6 +3,7 @@
 #include <limber/interpolation/batch_lanes.h>
 #include <limber/interpolation/domain_means.h>
 #include <limber/transfer/convected_transfer.h>
+#include <limber/transfer/dual_domain_transfer.h>
 #include <limber/transfer/project_on_nodes.h>
 
 namespace limber
@@ -77,6 +78,11 @@ namespace limber
                                                            grid,
                                                            remapped,
                                                            records);
+    if (grid.dual_domain != nullptr)
+      return sum_divergence_of_dual_domain<NodalMeanSums<dim>>(points,
+                                                               grid,
+                                                               remapped,
+                                                               records);
     with_basis(grid, [&](const auto basis) {
       using Basis = std::decay_t<decltype(basis)>;
       if (remapped)

@@ -166,6 +166,28 @@ namespace limber
 
 
 
+  /**
+   * The record of a node of the dual domain method (dual_domain.h): rows of a
+   * tensor, the mean velocity gradient around the node, 1/s, or what meets it,
+   * the volume times stress that points have given, J; around which volume,
+   * m^3; the force that follows from the stress, N.
+   */
+  template <int dim>
+  struct DualDomainLayout
+  {
+    static constexpr unsigned int volume = dim == 2 ? 4 : 11;
+    static constexpr unsigned int force  = dim == 2 ? 5 : 12;
+    static constexpr unsigned int stride = dim == 2 ? 8 : 16;
+
+    static constexpr unsigned int
+    tensor(const int d, const int e)
+    {
+      return (dim == 2 ? 2 : 4) * d + e;
+    }
+  };
+
+
+
   template <int dim>
   struct GridView
   {
@@ -175,6 +197,8 @@ namespace limber
     // By cell, where the functions of the nodes are such splines; else null
     const SplineCell<dim, 2> *quadratics = nullptr;
     const SplineCell<dim, 3> *cubics     = nullptr;
+    // Records of DualDomainLayout, where gradients partly come from them
+    double *dual_domain = nullptr;
 
     // Cells that a point has entered and that were empty before; their nodes
     // have to join the active ones.

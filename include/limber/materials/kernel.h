@@ -14,7 +14,8 @@ namespace limber
     gimp,      // linear, averaged over boxes of fixed size around points
     cpgimp,    // the same, with boxes that follow the stretch
     cpdi,      // linear, averaged over convected domains of points
-    cpdi2      // the same, with domains whose corners are carried along
+    cpdi2,     // the same, with domains whose corners are carried along
+    ddmp       // linear, with gradients that partly come from the nodes
   };
 
   inline constexpr bool
@@ -29,6 +30,14 @@ namespace limber
   {
     return kernel == KernelKind::gimp || kernel == KernelKind::cpgimp ||
            kernel == KernelKind::cpdi || kernel == KernelKind::cpdi2;
+  }
+
+  /** Whether liquids have linear functions with it, which it leaves to solids.
+   */
+  inline constexpr bool
+  is_for_solids(const KernelKind kernel)
+  {
+    return has_domains(kernel) || kernel == KernelKind::ddmp;
   }
 } // namespace limber
 

@@ -112,6 +112,11 @@ namespace limber
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_convected_sweep(const AnyLaw &law, const StrainProjection &projection);
+
+  /** The same with gradients that partly come from the nodes. */
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_dual_domain_sweep(const AnyLaw &law, const StrainProjection &projection);
 } // namespace limber
 
 #endif

@@ -2,9 +2,12 @@
 #ifndef limber_time_body_sweeps_h
 #define limber_time_body_sweeps_h
 
+#include <limber/time/dual_domain.h>
 #include <limber/time/relocation.h>
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/points_to_grid.h>
+
+#include <optional>
 
 namespace limber
 {
@@ -19,9 +22,34 @@ namespace limber
   public:
     explicit BodySweeps(const RunParts<dim> &parts);
 
+    /** Adopt a changed mesh. */
+    void
+    reinit();
+
     /** Add to the nodes; returns the number of batches. Collective. */
     std::size_t
     points_to_grid(GiveToGrid what);
+
+    /**
+     * With the dual domain method, once ranks have completed the sums of the
+     * nodes: what part of the stress does there. Collective.
+     */
+    void
+    finish_points_to_grid(const GiveToGrid &what);
+
+    /**
+     * With the dual domain method, before points and loaded faces are strained:
+     * the mean gradients around nodes. Collective.
+     */
+    void
+    average_gradients(bool remapped);
+
+    /** These (DualDomainLayout); null with other kernels. */
+    const double *
+    mean_gradients() const
+    {
+      return dual_domain ? dual_domain->data() : nullptr;
+    }
 
     void
     grid_to_points(const TakeFromGrid &what, StepExtremes &extremes);
@@ -49,9 +77,12 @@ namespace limber
   private:
     /** The nodes that the points of a body give to and take from. */
     GridView<dim>
-    nodes_of(const MaterialBody<dim> &body) const
+    nodes_of(const MaterialBody<dim> &body)
     {
-      return parts.nodes.view(body.description.nodal_field);
+      GridView<dim> view = parts.nodes.view(body.description.nodal_field);
+      if (dual_domain && !body.description.is_liquid)
+        view.dual_domain = dual_domain->data();
+      return view;
     }
 
     void
@@ -72,7 +103,8 @@ namespace limber
     void
     relax_deviators(const Pace &pace);
 
-    const RunParts<dim> parts;
+    const RunParts<dim>            parts;
+    std::optional<DualDomain<dim>> dual_domain; // with that kernel alone
   };
 } // namespace limber
 

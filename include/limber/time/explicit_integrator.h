@@ -190,6 +190,8 @@ namespace limber
     void
     give(GiveToGrid what);
     void
+    finish_giving(const GiveToGrid &what);
+    void
     take(TakeFromGrid what);
     double
     flip_share() const;

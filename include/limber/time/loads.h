@@ -39,10 +39,13 @@ namespace limber
 
     /**
      * Deform the pieces of faces as the points around them are strained, while
-     * these still are where they were.
+     * these still are where they were. @p mean_gradients are those around
+     * nodes of the dual domain method (DualDomainLayout); null elsewhere.
      */
     void
-    deform(NodalFields<dim> &nodes, const StressSweep &what);
+    deform(NodalFields<dim>  &nodes,
+           const StressSweep &what,
+           const double      *mean_gradients = nullptr);
 
     /** After points have changed ranks; collective. */
     void

@@ -167,6 +167,8 @@ namespace limber::test
     EXPECT_EQ(of(KernelKind::gimp, true, 3), Verdict::good);
     EXPECT_EQ(of(KernelKind::cpgimp, true, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpgimp, true, 3), Verdict::look);
+    EXPECT_EQ(of(KernelKind::ddmp, true, 2), Verdict::bad);
+    EXPECT_EQ(of(KernelKind::ddmp, true, 3), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpdi, false, 2), Verdict::look);
     EXPECT_EQ(of(KernelKind::cpdi, true, 2), Verdict::good);
     EXPECT_EQ(of(KernelKind::cpdi2, false, 2), Verdict::look);

@@ -155,6 +155,18 @@ TEST(Creep, OfDomainsIsThatOfWhatStrainsAndMovesThem)
 
 
 
+// Gradients are continuous, but points sample what is not smooth.
+TEST(Creep, OfDualDomainsIsATenthOfThatOfLinearFunctions)
+{
+  for (const std::string order : {"musl", "usavg"})
+    {
+      EXPECT_LT(std::abs(creep_per_cell("ddmp", 2, order)), 0.025) << order;
+      EXPECT_LT(std::abs(creep_per_cell("ddmp", 3, order)), 0.01) << order;
+    }
+}
+
+
+
 // Boxes of fixed size leave gaps where the bar is longer: some tenths of a per
 // cent, a fiftieth of what linear functions do.
 TEST(Creep, OfBoxesIsSmall)

@@ -139,6 +139,10 @@ TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
         // the mass of the functions next to a wall is not that of mirrored
         // material, an error of order 1 / N as well
         Expected{{"cubic", "flip"}, 0.333, 0.012, {32}},
+        // of points at a quarter of the cell, alpha = 9/16: 7/12 (1 - alpha) +
+        // alpha / 12 - (1 - alpha)^2 / 16 of K and 3/16 of S, by halves; walls
+        // do to them what they do to linear ones
+        Expected{{"ddmp", "flip"}, 0.2388, 0.008, {64}},
         Expected{{"linear", "fmpm 4"}, -0.052, 0.008},
         Expected{{"quadratic", "fmpm 4"}, 0.0104, 0.004},
         Expected{{"cubic", "fmpm 4"}, 0.002, 0.004},

@@ -15,7 +15,7 @@ namespace
 {
   struct Variant
   {
-    std::string law, treatment, order, transfer;
+    std::string law, treatment, order, transfer, kernel = "linear";
   };
 
 
@@ -30,6 +30,12 @@ namespace
         for (const std::string &order : stress_update_orders)
           for (const std::string &transfer : transfers)
             result.push_back({law, treatment, order, transfer});
+    // gradients that partly come from the nodes, of solids
+    for (const std::string law : {"linear elastic", "neo hookean"})
+      for (const std::string treatment : {"none", "cell", "node"})
+        for (const std::string &order : stress_update_orders)
+          for (const std::string &transfer : transfers)
+            result.push_back({law, treatment, order, transfer, "ddmp"});
     return result;
   }
 
@@ -38,7 +44,8 @@ namespace
   std::string
   name_of(const Variant &v)
   {
-    return v.law + ", " + v.treatment + ", " + v.order + ", " + v.transfer;
+    return v.law + ", " + v.treatment + ", " + v.order + ", " + v.transfer +
+           ", " + v.kernel;
   }
 
 
@@ -49,7 +56,8 @@ namespace
     return {"Body block/Material=" + v.law,
             "Body block/Locking treatment=" + v.treatment,
             "Method/Stress update=" + v.order,
-            "Method/Transfer=" + v.transfer};
+            "Method/Transfer=" + v.transfer,
+            "Method/Kernel=" + v.kernel};
   }
 
 

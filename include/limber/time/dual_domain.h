@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_dual_domain_h
+#define limber_time_dual_domain_h
+
+#include <limber/state/material_body.h>
+
+namespace limber
+{
+  /**
+   * What the dual domain method keeps at nodes and does there between the
+   * sweeps over points (interpolation/dual_domain.h): the volumes around nodes,
+   * the stress that points give them and the forces that follow, the mean
+   * velocity gradients. Points must be on the ranks that own their cells, all
+   * of one size. All but data() and clear_stress() are collective.
+   */
+  template <int dim>
+  class DualDomain
+  {
+  public:
+    explicit DualDomain(const NodeTable<dim> &table);
+
+    /** Adopt a changed mesh: all records zero. */
+    void
+    reinit();
+
+    /** The records (DualDomainLayout), for sweeps. */
+    double *
+    data()
+    {
+      return records.data();
+    }
+
+    const double *
+    data() const
+    {
+      return records.data();
+    }
+
+    /** Before points give their stress. */
+    void
+    clear_stress(const NodalFields<dim> &nodes);
+
+    /**
+     * Once the masses of the nodes are known: which cells the points of
+     * solids are in, how much each counts, and the volumes around nodes.
+     */
+    void
+    find_volumes(NodalFields<dim>                                      &nodes,
+                 const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
+
+    /** Add to the forces of the nodes those of the stress that they got. */
+    void
+    add_forces(NodalFields<dim> &nodes);
+
+    /**
+     * The mean gradients around nodes of the re-mapped, or else the new,
+     * velocity of the nodes.
+     */
+    void
+    average_gradients(NodalFields<dim> &nodes, bool remapped);
+
+  private:
+    using Layout = DualDomainLayout<dim>;
+
+    struct WeighedCell
+    {
+      std::uint32_t cell;
+      double        weight;
+    };
+
+    double *
+    record(const std::uint32_t node)
+    {
+      return records.data() + std::size_t(node) * Layout::stride;
+    }
+
+    void
+    sum_up(const NodalFields<dim> &nodes, unsigned int first, unsigned int n);
+    void
+    clear(const NodalFields<dim> &nodes, unsigned int first, unsigned int n);
+    void
+    divide_by_volumes(const NodalFields<dim> &nodes);
+
+    const NodeTable<dim>    &table;
+    LazyArray<double>        records;
+    std::vector<WeighedCell> cells; // that points are in
+    LazyArray<std::uint32_t> met;   // per cell: the last turn in which it was
+    std::uint32_t            turn = 0;
+    RecordExchange           exchange{Layout::stride};
+  };
+} // namespace limber
+
+#endif

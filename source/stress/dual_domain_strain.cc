@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/domain_means.h>
+#include <limber/interpolation/dual_domain.h>
+#include <limber/stress/dual_domain_sweep.h>
+
+#include <stdexcept>
+
+namespace limber
+{
+  namespace
+  {
+    /** By the field from that component on. */
+    template <int dim, Projection kind, unsigned int strained>
+    StressSummary
+    strain_dual_domain(const PointView<dim>  &points,
+                       const GridView<dim>   &grid,
+                       const StressSweep     &what,
+                       const PackStrain<dim> &law,
+                       PackFindings<dim>     &found)
+    {
+      using Number = PointPack<dim>;
+      Number displacement{};
+      for_each_batch(points, [&](const CellBatch &batch) {
+        const CellGeometry<dim>    &cell = grid.cells[batch.cell];
+        const DomainMean<dim, kind> divergence(what.projected_divergence,
+                                               cell,
+                                               batch.cell);
+        const DualDomainGradient<dim, NodeLayout<dim>::velocity, strained>
+          gradient(grid, batch.cell);
+        for_each_pack<dim>(batch, [&](const auto &lanes) {
+          const auto                   xi = lanes.natural(points, cell);
+          MotionIncrement<dim, Number> motion;
+          motion.step     = what.step;
+          motion.square   = what.square;
+          motion.gradient = gradient.at(xi);
+          for (auto &row : motion.gradient)
+            for (Number &component : row)
+              component *= what.step;
+          if constexpr (kind != Projection::none)
+            motion.volumetric =
+              what.step * divergence.template value<Number>(xi);
+          else
+            motion.volumetric = motion.trace();
+          law.strain_pack(points, lanes, motion, HistoryChange(), found);
+          if (what.move > 0)
+            {
+              std::array<Number, dim> shift;
+              for (int d = 0; d < dim; ++d)
+                shift[d] =
+                  what.move *
+                  Linear<dim>::template value<Number>(gradient.component(d),
+                                                      xi);
+              displacement =
+                larger(displacement,
+                       move_points<dim>(points, grid, batch.cell, lanes, shift)
+                         .displacement);
+            }
+        });
+      });
+      StressSummary result;
+      result.displacement = maximum(displacement);
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  StressSummary
+  strain_by_dual_domain(const PointView<dim>  &points,
+                        const GridView<dim>   &grid,
+                        const StressSweep     &what,
+                        const Projection       kind,
+                        const PackStrain<dim> &law,
+                        PackFindings<dim>     &found)
+  {
+    const auto with = [&](const auto projection) {
+      constexpr Projection P = decltype(projection)::value;
+      return what.remapped ?
+               strain_dual_domain<dim, P, dim>(points, grid, what, law, found) :
+               strain_dual_domain<dim, P, 0>(points, grid, what, law, found);
+    };
+    switch (kind)
+      {
+        case Projection::none:
+          return with(std::integral_constant<Projection, Projection::none>());
+        case Projection::cell:
+          return with(std::integral_constant<Projection, Projection::cell>());
+        case Projection::node:
+          return with(std::integral_constant<Projection, Projection::node>());
+        default:
+          throw std::logic_error("no such projection with dual domains");
+      }
+  }
+
+
+
+  template StressSummary
+  strain_by_dual_domain(const PointView<2> &,
+                        const GridView<2> &,
+                        const StressSweep &,
+                        Projection,
+                        const PackStrain<2> &,
+                        PackFindings<2> &);
+  template StressSummary
+  strain_by_dual_domain(const PointView<3> &,
+                        const GridView<3> &,
+                        const StressSweep &,
+                        Projection,
+                        const PackStrain<3> &,
+                        PackFindings<3> &);
+} // namespace limber
