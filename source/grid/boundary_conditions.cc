@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/boundary_conditions.h>
+#include <limber/grid/node_vector.h>
 
 #include <algorithm>
 
@@ -7,18 +8,6 @@ namespace limber
 {
   namespace
   {
-    template <int dim>
-    dealii::Tensor<1, dim>
-    vector_in(const double *const values)
-    {
-      dealii::Tensor<1, dim> result;
-      for (int d = 0; d < dim; ++d)
-        result[d] = values[d];
-      return result;
-    }
-
-
-
     /** The sign of a velocity through the side. */
     double
     outward(const unsigned int side)

@@ -257,4 +257,22 @@ namespace limber
     for (; k < plan->neighbours.size(); ++k)
       add(plan->neighbours[k].receive, received[k], values);
   }
+
+
+
+  void
+  RecordExchange::finish_largest(double *const values)
+  {
+    MPI_Waitall(requests.size(), requests.data(), MPI_STATUSES_IGNORE);
+    for (std::size_t k = 0; k < plan->neighbours.size(); ++k)
+      {
+        const double *next = received[k].data();
+        for (const std::uint32_t record : plan->neighbours[k].receive)
+          for (unsigned int slot = first; slot < last; ++slot)
+            {
+              double &value = values[std::size_t(record) * stride + slot];
+              value         = std::max(value, *next++);
+            }
+      }
+  }
 } // namespace limber

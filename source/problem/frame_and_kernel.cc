@@ -288,9 +288,11 @@ namespace limber
         return say("'linear', as splines need cells of one size "
                    "('Grid/Levels')");
       if (!root.subsection("Contact").list("Pairs").empty())
-        return say("'linear', which bodies touch with ('Contact/Pairs')");
+        return say("'linear', which loses least where bodies touch "
+                   "('Contact/Pairs')");
       if (!root.list("Obstacles").empty())
-        return say("'linear', which obstacles are met with ('Obstacles')");
+        return say("'linear', which loses least where obstacles are met "
+                   "('Obstacles')");
       for (const auto &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);

@@ -196,8 +196,8 @@ namespace limber
     {
       const Section method = root.subsection("Method"),
                     loads  = root.subsection("Loads");
-      if (problem.grid.kernel != KernelKind::linear)
-        refuse(method, "Kernel", "'Kernel = linear'");
+      if (has_domains(problem.grid.kernel))
+        refuse(method, "Kernel", "'Kernel = linear' or 'quadratic'");
       if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse(method, "Time integration", "'Time integration = explicit'");
       if (problem.method.transfer != Transfer::flip &&

@@ -81,6 +81,8 @@ namespace limber
     sweeps.reinit();
     if (full_mass)
       full_mass->reinit();
+    if (contact)
+      contact->reinit();
     if (obstacles)
       obstacles->reinit();
     for (auto &body : parts.bodies)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/base/exceptions.h>
-#include <limber/base/text.h>
+#include <limber/grid/node_vector.h>
+#include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
+#include <limber/time/contact_geometry.h>
 #include <limber/time/obstacle_contact.h>
 
 #include <algorithm>
@@ -11,52 +12,24 @@ namespace limber
 {
   namespace
   {
-    template <int dim>
-    dealii::Tensor<1, dim>
-    velocity_in(const double *const values)
-    {
-      dealii::Tensor<1, dim> result;
-      for (int d = 0; d < dim; ++d)
-        result[d] = values[d];
-      return result;
-    }
-
-
-
-    template <int dim>
-    void
-    store(const dealii::Tensor<1, dim> &vector, double *const values)
-    {
-      for (int d = 0; d < dim; ++d)
-        values[d] = vector[d];
-    }
-
-
-
-    template <int dim>
-    dealii::Tensor<1, dim>
-    along_surface(const dealii::Tensor<1, dim> &vector,
-                  const dealii::Tensor<1, dim> &normal)
-    {
-      return vector - (vector * normal) * normal;
-    }
-
-
-
-    /** Half the edge of a cube of this volume, m. */
-    template <int dim>
-    double
-    half_edge_of(const double volume)
-    {
-      return 0.5 * (dim == 2 ? std::sqrt(volume) : std::cbrt(volume));
-    }
-
-
-
     // Of the mass of a node, what has to touch. Held by whatever sees it, a
     // node a cell above the surface would be as rigid as the obstacle: the
-    // impact of a ball of 10 cells would take 0.82 of its time.
-    constexpr double least_share = 0.5;
+    // impact of a ball of 10 cells would take 0.82 of its time. Splines see
+    // more points beyond those that touch; with these shares the impact is the
+    // same with them.
+    double
+    least_touching_share(const KernelKind kernel)
+    {
+      switch (kernel)
+        {
+          case KernelKind::quadratic:
+            return 0.35;
+          case KernelKind::cubic:
+            return 0.2;
+          default:
+            return 0.5;
+        }
+    }
 
 
 
@@ -110,89 +83,6 @@ namespace limber
       some.records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
     for (auto &distances : cell_distance)
       distances.reinit(parts.grid.n_cells());
-  }
-
-
-
-  template <int dim>
-  void
-  ObstacleContact<dim>::check_start() const
-  {
-    for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
-      {
-        const ObstaclePlace<dim> place(obstacle, 0.);
-        for (const auto &body : parts.bodies)
-          {
-            const PointView<dim> points  = body->points.view();
-            double               deepest = 0;
-            for (std::size_t p = 0; p < points.size; ++p)
-              {
-                dealii::Point<dim> x;
-                for (int d = 0; d < dim; ++d)
-                  x[d] = points.position[d][p];
-                deepest = std::max(deepest, -place.distance(x).value);
-              }
-            deepest =
-              dealii::Utilities::MPI::max(deepest, parts.grid.communicator);
-            if (deepest > 1e-9 * parts.grid.smallest_edge)
-              throw InputError(
-                "Body " + in_quotes(body->description.name) +
-                " reaches into obstacle " + in_quotes(obstacle.name) +
-                " at the start, its points by up to " + brief(deepest) +
-                " m. Usually one of them is misplaced. Move the body or the "
-                "obstacle.");
-          }
-      }
-  }
-
-
-
-  // The way of what is furthest out; where the obstacle has no end, of what is
-  // in the corners of the grid.
-  template <int dim>
-  void
-  ObstacleContact<dim>::check_way(const unsigned int obstacle,
-                                  const double       time,
-                                  const double       step) const
-  {
-    const Obstacle<dim> &one = parts.problem.obstacles[obstacle];
-    if (!one.moves())
-      return;
-    const ObstaclePlace<dim> before(one, time), after(one, time + step);
-    if (!before.is_finite() || !after.is_finite())
-      throw ComputationError("Obstacle " + in_quotes(one.name) +
-                               " has no finite place at time " +
-                               brief(time + step) +
-                               " s. Usually its formulas divide by zero. "
-                               "Correct its 'Displacement' or 'Rotation'.",
-                             FailureKind::not_finite);
-    Corners<dim> box = one.shape->bounding_box();
-    double       way = 0;
-    for (unsigned int corner = 0; corner < 1u << dim; ++corner)
-      {
-        dealii::Point<dim> start, in_grid;
-        bool               ends = true;
-        for (int d = 0; d < dim; ++d)
-          {
-            const bool upper = corner >> d & 1;
-            start[d]         = upper ? box.second[d] : box.first[d];
-            in_grid[d] =
-              upper ? parts.problem.grid.upper[d] : parts.problem.grid.lower[d];
-            ends = ends && std::isfinite(start[d]);
-          }
-        if (!ends)
-          start = before.start_of(in_grid);
-        way =
-          std::max(way, before.place_of(start).distance(after.place_of(start)));
-      }
-    if (way > 0.5 * parts.grid.smallest_edge)
-      throw ComputationError(
-        "Obstacle " + in_quotes(one.name) + " moves by " +
-        brief(way / parts.grid.smallest_edge) + " cells in one step of " +
-        brief(step) + " s, at time " + brief(time) +
-        " s; more than half a cell may pass through a body. Usually its "
-        "formula jumps. Let it move more slowly, or lower "
-        "'Method/Time step'.");
   }
 
 
@@ -264,6 +154,24 @@ namespace limber
                                    const ObstaclePlace<dim> &place,
                                    Sums                     &some)
   {
+    with_degree(parts.nodes.view(), [&](const auto degree) {
+      add_points_of_degree<decltype(degree)::value>(body,
+                                                    obstacle,
+                                                    place,
+                                                    some);
+    });
+  }
+
+
+
+  template <int dim>
+  template <int degree>
+  void
+  ObstacleContact<dim>::add_points_of_degree(const unsigned int        body,
+                                             const unsigned int        obstacle,
+                                             const ObstaclePlace<dim> &place,
+                                             Sums                     &some)
+  {
     const GridView<dim>  grid    = parts.nodes.view();
     const PointView<dim> points  = parts.bodies[body]->points.view();
     const double inverse_density = 1 / parts.bodies[body]->stress->density();
@@ -275,6 +183,7 @@ namespace limber
       if (distance_of_cell(obstacle, place, batch.cell) >
           2 * (std::sqrt(square) + half_edge[body]))
         return;
+      CellFunctions<dim, degree> functions(grid, batch.cell);
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           dealii::Point<dim> x;
@@ -284,21 +193,17 @@ namespace limber
           if (distance.value >
               half_edge_of<dim>(points.mass[p] * inverse_density))
             continue;
-          const auto xi = natural_place(points, cell, p);
-          for (unsigned int k = 0; k < cell.node.size(); ++k)
+          functions.go_to(points, p);
+          for (int k = 0; k < functions.n; ++k)
             {
-              double weight = points.mass[p];
-              for (int d = 0; d < dim; ++d)
-                weight *= k >> d & 1 ? xi[d] : 1 - xi[d];
+              const double  weight = points.mass[p] * functions.value(k);
               double *const record =
                 some.records.data() +
-                std::size_t(cell.node[k] / Layout::stride) * Sums::stride;
+                std::size_t(functions.node(k)) * Sums::stride;
               for (int d = 0; d < dim; ++d)
                 {
                   record[Sums::normal + d] += weight * distance.normal[d];
-                  record[Sums::place + d] +=
-                    weight *
-                    (cell.origin[d] + (k >> d & 1) / cell.inverse_edge[d]);
+                  record[Sums::place + d] += weight * functions.place(k, d);
                 }
               record[Sums::weight] += weight;
             }
@@ -318,6 +223,7 @@ namespace limber
   {
     const Obstacle<dim>     &one = parts.problem.obstacles[obstacle];
     const ObstaclePlace<dim> before(one, time), after(one, time + step);
+    const double least_share = least_touching_share(parts.problem.grid.kernel);
     for (const std::uint32_t node : parts.nodes.active_nodes())
       {
         const double *const record =
@@ -327,7 +233,7 @@ namespace limber
               least_share * parts.nodes.record(field, node)[Layout::mass])
           continue;
         Touch touch;
-        touch.normal        = velocity_in<dim>(record + Sums::normal);
+        touch.normal        = vector_in<dim>(record + Sums::normal);
         const double length = touch.normal.norm();
         if (!(length > 1e-6 * record[Sums::weight]))
           continue; // it is met from all sides alike
@@ -335,7 +241,7 @@ namespace limber
         touch.node     = node;
         touch.field    = field;
         touch.obstacle = obstacle;
-        const dealii::Point<dim> place(velocity_in<dim>(record + Sums::place) /
+        const dealii::Point<dim> place(vector_in<dim>(record + Sums::place) /
                                        record[Sums::weight]);
         touch.arm = place - before.centre();
         if (one.moves())
@@ -373,13 +279,14 @@ namespace limber
       if (touch.state != State::free)
         {
           double *const record   = parts.nodes.record(touch.field, touch.node);
-          const Vector  velocity = velocity_in<dim>(record + slot),
+          const Vector  velocity = vector_in<dim>(record + slot),
                        relative  = velocity - touch.velocity;
           work(touch, relative, record[Layout::mass]);
-          store<dim>(touch.state == State::sticking ?
-                       touch.velocity :
-                       velocity - (relative * touch.normal) * touch.normal,
-                     record + slot);
+          store_vector<dim>(touch.state == State::sticking ?
+                              touch.velocity :
+                              velocity -
+                                (relative * touch.normal) * touch.normal,
+                            record + slot);
         }
   }
 
@@ -403,8 +310,8 @@ namespace limber
         const double *const record =
           parts.nodes.record(touch.field, touch.node);
         touch.state = decide(touch,
-                             (velocity_in<dim>(record + Layout::momentum) +
-                              step * velocity_in<dim>(record + Layout::force)) /
+                             (vector_in<dim>(record + Layout::momentum) +
+                              step * vector_in<dim>(record + Layout::force)) /
                                record[Layout::mass]);
       }
     hold(slot);
@@ -430,8 +337,8 @@ namespace limber
   {
     double *const record   = parts.nodes.record(touch.field, touch.node);
     const double  mass     = record[Layout::mass];
-    const Vector  velocity = velocity_in<dim>(record + Layout::velocity),
-                 increment = velocity_in<dim>(record + Layout::increment);
+    const Vector  velocity = vector_in<dim>(record + Layout::velocity),
+                 increment = vector_in<dim>(record + Layout::increment);
     touch.state            = decide(touch, velocity);
     if (touch.state == State::free)
       return;
@@ -447,8 +354,8 @@ namespace limber
     touch.slides = sliding - touch.rubbing / mass;
 
     const Vector impulse = pressing * touch.normal - touch.rubbing;
-    store<dim>(velocity + impulse / mass, record + Layout::velocity);
-    store<dim>(increment + impulse / mass, record + Layout::increment);
+    store_vector<dim>(velocity + impulse / mass, record + Layout::velocity);
+    store_vector<dim>(increment + impulse / mass, record + Layout::increment);
 
     if (!parts.nodes.owns(touch.node))
       return;

@@ -9,11 +9,11 @@
 #include <vector>
 
 /**
- * @file Sums over ranks of the records of nodes and cells. Every rank that
- * holds a record, as its owner or as a ghost, sends what it has summed up to
- * every other that holds it too, and all add the same numbers in the order of
- * ranks. So one exchange leaves the same complete sum, to the last bit, with
- * all of them, and nothing has to be sent back by the owner.
+ * @file Sums, or largest values, over ranks of the records of nodes and cells.
+ * Every rank that holds a record, as its owner or as a ghost, sends what it has
+ * summed up to every other that holds it too, and all add the same numbers in
+ * the order of ranks. So one exchange leaves the same complete sum, to the last
+ * bit, with all of them, and nothing has to be sent back by the owner.
  */
 namespace limber
 {
@@ -93,6 +93,10 @@ namespace limber
     /** Add what others have sent to the same slots. */
     void
     finish(double *values);
+
+    /** Instead of finish(): keep the largest of all, the same everywhere. */
+    void
+    finish_largest(double *values);
 
   private:
     void

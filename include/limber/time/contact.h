@@ -48,7 +48,11 @@ namespace limber
   public:
     explicit Contact(const RunParts<dim> &parts);
 
-    /** Where bodies touch; the masses of nodes are known. */
+    /** Adopt a changed mesh, or another share of it. */
+    void
+    reinit();
+
+    /** Where bodies touch; the masses of nodes are known. Collective. */
     void
     find();
 
@@ -103,8 +107,28 @@ namespace limber
     struct Separation
     {
       std::array<Vector, 3> direction;
-      std::array<double, 3> highest_a{{-1e300, -1e300, -1e300}};
-      std::array<double, 3> lowest_b{{1e300, 1e300, 1e300}};
+      // How far a goes along it, and b against it
+      std::array<double, 3> furthest_a{{-1e300, -1e300, -1e300}};
+      std::array<double, 3> furthest_b{{-1e300, -1e300, -1e300}};
+    };
+
+    /**
+     * What ranks tell each other of the touches of two fields: n numbers a
+     * node, of which the sums or the largest are wanted.
+     */
+    struct SharedSlots
+    {
+      SharedSlots(const unsigned int n, const bool of_largest)
+        : n(n)
+        , of_largest(of_largest)
+        , nothing(of_largest ? -1e300 : 0)
+      {}
+
+      const unsigned int n;
+      const bool         of_largest;
+      const double       nothing; // of nodes that nothing was gathered at
+      LazyArray<double>  records;
+      RecordExchange     exchange{n};
     };
 
     /** What two fields do where they meet. */
@@ -114,7 +138,7 @@ namespace limber
       double     friction = 0;
     };
 
-    /** A corner of a cell at which two fields touch. */
+    /** A node of a cell at which two fields touch. */
     struct Corner
     {
       std::uint32_t touch;
@@ -139,11 +163,15 @@ namespace limber
     find_nodes();
     void
     find_neighbours();
+    template <std::size_t n>
     void
-    add_corners(unsigned int body, const CellGeometry<dim> &cell);
-    template <class Work>
+    add_corners(unsigned int body, const std::array<std::uint32_t, n> &nodes);
+    template <class Begin>
     void
-    for_each_neighbour(const Work &work);
+    for_each_neighbour(const Begin &begin);
+    template <class SlotsOf>
+    void
+    share(SharedSlots &slots, const SlotsOf &slots_of);
     void
     find_gradients();
     void
@@ -157,16 +185,19 @@ namespace limber
     void
     exchange(Touch &touch);
     void
-    share(Touch &touch);
+    join(Touch &touch);
 
-    const RunParts<dim>      parts;
-    const unsigned int       n_fields;
-    std::vector<Law>         laws;
+    const RunParts<dim> parts;
+    const unsigned int  n_fields;
+    std::vector<Law>    laws;
+    // Fields a < b that may part, in the same order on all ranks
+    std::vector<std::array<unsigned int, 2>> parting;
     std::vector<Touch>       touches;  // those of a node side by side
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0
     std::vector<Neighbours>  neighbours;
     std::vector<Corner>      corners;     // of the neighbours
     std::vector<Separation>  separations; // of the touches
+    SharedSlots              gradients{2 * dim, false}, extents{6, true};
   };
 } // namespace limber
 

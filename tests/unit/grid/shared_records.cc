@@ -112,6 +112,35 @@ namespace limber
 
 
 
+    // The rest of the slots stays what it was.
+    TEST(SharedRecords, AllHoldersGetTheSameLargestValue)
+    {
+      Ring                ring;
+      const SharedRecords shared(ring.records);
+      const ExchangePlan  plan(shared);
+      std::vector<double> values(ring.n_local() * stride), expected(values);
+      for (unsigned int i = 0; i < ring.n_local(); ++i)
+        for (unsigned int k = 0; k < stride; ++k)
+          {
+            const auto index = ring.records.local_to_global(i);
+            const auto of    = [&](const unsigned int rank) {
+              return std::cos(1. + 3. * rank + index + 10. * k) - 2;
+            };
+            values[i * stride + k] = of(ring.rank);
+            double &largest        = expected[i * stride + k];
+            largest                = of(ring.rank);
+            for (unsigned int r = 0; r < ring.n_ranks; ++r)
+              if (k == 1 && ring.holds(r, index))
+                largest = std::max(largest, of(r));
+          }
+      RecordExchange exchange(stride);
+      exchange.start(plan, values.data(), 1, 2);
+      exchange.finish_largest(values.data());
+      EXPECT_EQ(values, expected);
+    }
+
+
+
     TEST(SharedRecords, ThoseWhoAddSendToThoseWhoWant)
     {
       Ring                ring;

@@ -336,7 +336,7 @@ TEST(Obstacles, BadOnesAreRefused)
 TEST(Obstacles, WhatDoesNotGoWithThemIsRefused)
 {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-    {{"Method/Kernel=quadratic"}, "entry 'Kernel'"},
+    {{"Method/Kernel=gimp"}, "entry 'Kernel'"},
     {{"Method/Time integration=implicit", "Method/Time step=0.1"},
      "entry 'Time integration'"},
     {{"Method/Transfer=fmpm"}, "entry 'Transfer'"},

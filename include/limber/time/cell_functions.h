@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_cell_functions_h
+#define limber_time_cell_functions_h
+
+#include <limber/interpolation/spline_factors.h>
+#include <limber/points/point_view.h>
+
+#include <type_traits>
+
+namespace limber
+{
+  /**
+   * The functions of the nodes that a cell sees, of degree 1 to 3, at one place
+   * after the other: for the few points near what they touch. The sweeps over
+   * all points have their own (interpolation/linear.h, spline.h).
+   */
+  template <int dim, int degree>
+  class CellFunctions
+  {
+  public:
+    static constexpr int along = degree + 1; // functions in a direction
+    static constexpr int n = dim == 2 ? along * along : along * along * along;
+
+    CellFunctions(const GridView<dim> &grid, const std::uint32_t cell)
+      : cell(grid.cells[cell])
+      , nodes(nodes_of(grid, cell))
+    {
+      if constexpr (degree > 1)
+        spline = &spline_cell(grid, cell);
+      for (int d = 0; d < dim; ++d)
+        {
+          std::array<double, along> natural;
+          if constexpr (degree == 1)
+            natural = {{0, 1}};
+          else
+            natural =
+              SplineFactors<degree>::places(spline->lower[d], spline->upper[d]);
+          for (int i = 0; i < along; ++i)
+            places[d][i] =
+              this->cell.origin[d] + natural[i] / this->cell.inverse_edge[d];
+        }
+    }
+
+    /**
+     * The offsets of the records of the nodes of a cell; of one beyond a side,
+     * where its function is zero, that of the node in the side.
+     */
+    static const std::array<std::uint32_t, n> &
+    nodes_of(const GridView<dim> &grid, const std::uint32_t cell)
+    {
+      if constexpr (degree == 1)
+        return grid.cells[cell].node;
+      else
+        return spline_cell(grid, cell).node;
+    }
+
+    /** The number of node k. */
+    std::uint32_t
+    node(const int k) const
+    {
+      return nodes[k] / NodeLayout<dim>::stride;
+    }
+
+    /** Where node k is along d, m. */
+    double
+    place(const int k, const int d) const
+    {
+      return places[d][digit(k, d)];
+    }
+
+    /** Go to the place of a point in the cell. */
+    void
+    go_to(const PointView<dim> &points, const std::size_t p)
+    {
+      const auto xi = natural_place(points, cell, p);
+      for (int d = 0; d < dim; ++d)
+        if constexpr (degree == 1)
+          {
+            values[d] = {{1 - xi[d], xi[d]}};
+            slopes[d] = {{-1, 1}};
+          }
+        else
+          {
+            const auto weights =
+              SplineFactors<degree>::weights(spline->lower[d],
+                                             spline->upper[d],
+                                             xi[d]);
+            values[d] = weights.value;
+            slopes[d] = weights.slope;
+          }
+    }
+
+    /** Of node k, there. */
+    double
+    value(const int k) const
+    {
+      double result = 1;
+      for (int d = 0; d < dim; ++d)
+        result *= values[d][digit(k, d)];
+      return result;
+    }
+
+    /** Derivative along d of the function of node k, there, 1/m. */
+    double
+    slope(const int k, const int d) const
+    {
+      double result = cell.inverse_edge[d] * slopes[d][digit(k, d)];
+      for (int e = 0; e < dim; ++e)
+        if (e != d)
+          result *= values[e][digit(k, e)];
+      return result;
+    }
+
+  private:
+    struct NoSpline
+    {};
+    using Spline =
+      std::conditional_t<degree == 1,
+                         NoSpline,
+                         SplineCell<dim, degree == 1 ? 2 : degree>>;
+
+    /** Which of the functions along d that of node k has as a factor. */
+    static constexpr int
+    digit(const int k, const int d)
+    {
+      return (d == 0 ? k : d == 1 ? k / along : k / (along * along)) % along;
+    }
+
+    static const Spline &
+    spline_cell(const GridView<dim> &grid, const std::uint32_t cell)
+    {
+      if constexpr (degree == 2)
+        return grid.quadratics[cell];
+      else
+        return grid.cubics[cell];
+    }
+
+    using Factors = std::array<std::array<double, along>, dim>;
+
+    const CellGeometry<dim>            &cell;
+    const std::array<std::uint32_t, n> &nodes;
+    const Spline                       *spline = nullptr;
+    Factors                             places, values, slopes;
+  };
+
+
+
+  /** Call work(std::integral_constant) with the degree of a grid's functions.
+   */
+  template <int dim, class Work>
+  inline void
+  with_degree(const GridView<dim> &grid, const Work &work)
+  {
+    if (grid.quadratics != nullptr)
+      work(std::integral_constant<int, 2>());
+    else if (grid.cubics != nullptr)
+      work(std::integral_constant<int, 3>());
+    else
+      work(std::integral_constant<int, 1>());
+  }
+} // namespace limber
+
+#endif
