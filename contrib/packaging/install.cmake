@@ -29,8 +29,9 @@ install(DIRECTORY doc/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/doc)
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME limber)
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
-# Whoever builds a package answers for it: name yourself before handing it on.
-set(LIMBER_MAINTAINER "built locally <root@localhost>" CACHE STRING
+# Mail goes to the administrator of the machine: whoever hands a package on names a
+# person instead.
+set(LIMBER_MAINTAINER "Limber developers <root@localhost>" CACHE STRING
   "Name and address in the Debian package")
 set(CPACK_PACKAGE_CONTACT "${LIMBER_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY

@@ -140,6 +140,28 @@ def style_of(method):
             "linestyle": line or "None"}
 
 
+def kernel_and_treatment(method):
+    """('quadratic', 'node') of 'quadratic node'; nothing of any other name."""
+    kernel = next((k for k in sorted(KERNELS, key=len, reverse=True)
+                   if method.startswith(f"{k} ")), None)
+    treatment = method[len(kernel) + 1:] if kernel else ""
+    return (kernel, treatment) if treatment in TREATMENTS else None
+
+
+LINES = {"none": "-", "cell": "-", "node": "--", "assumed strain": "-."}
+
+
+def style_of_kernel(method):
+    """As style_of(), where panels tell treatments apart: the colour and marker
+    are the kernel's, the line is the treatment's."""
+    known = kernel_and_treatment(method)
+    if not known:
+        return style_of(method)
+    kernel, treatment = known
+    style = style_of("initial frame" if kernel == "initial" else kernel)
+    return {**style, "linestyle": LINES.get(treatment, ":")}
+
+
 def line_of(method):
     """As style_of(), for dense curves: without markers."""
     return {**style_of(method), "marker": "None"}

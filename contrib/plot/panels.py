@@ -59,6 +59,7 @@ class Look:
         self.field, self.body, self.enlarge = field, body, enlarge
         self.limits, self.view, self.zoom = limits, view, zoom
         self.is_body = field == "body"
+        self.pixels = 1100  # of a panel in three dimensions
 
     def fix(self, states):
         """Colours, unit and corners for good, from all states that are seen."""
@@ -191,21 +192,45 @@ def _draw_elements(axis, state, look):
 
 
 def _draw_spheres(axis, state, look):
-    azimuth, elevation = look.view
-    camera = spheres.Camera(look.lower, look.upper, azimuth, elevation,
-                            _upwards(state.source), 1100)
-    picture = spheres.render(camera, state.place, look.colours(state.values),
-                             0.75 * state.spacing)
+    camera = _camera_of(look, _upwards(state.source), look.pixels)
+    radius = 0.75 * state.spacing
     left, right = camera.low[0], camera.high[0]
     bottom, top = camera.low[1], camera.high[1]
-    _draw_edges(axis, camera, look)
-    axis.imshow(picture, extent=(left, right, bottom, top), zorder=2,
+    _draw_floor(axis, camera, look, state, radius)
+    axis.imshow(spheres.render(camera, state.place, look.colours(state.values),
+                               radius),
+                extent=(left, right, bottom, top), zorder=2,
                 interpolation="antialiased")
     margin = 0.03 * (right - left)
-    axis.set_xlim(left - margin, right + margin)
-    axis.set_ylim(bottom - 2 * margin, top + margin)
+    axis.set_xlim(left - 2.5 * margin, right + margin)
+    axis.set_ylim(bottom - 2.5 * margin, top + 0.3 * margin)
     axis.set_aspect("equal")
     axis.set_axis_off()
+
+
+def _camera_of(look, up, pixels):
+    """A camera that sees the box of the look and all of its floor."""
+    lower, upper, _ = _floor_of(look, up)
+    return spheres.Camera(lower, upper, *look.view, up, pixels)
+
+
+def _floor_of(look, up):
+    """The box that is seen, grown to whole squares of the floor that go a fifth
+    of one beyond, and the edge of a square: a round number of metres."""
+    extent = max(np.delete(look.upper - look.lower, up))
+    edge = _round(extent / 9)
+    lower, upper = look.lower.copy(), look.upper.copy()
+    for d in range(3):
+        if d != up:
+            lower[d] = edge * np.floor(lower[d] / edge - 0.2)
+            upper[d] = edge * np.ceil(upper[d] / edge + 0.2)
+    return lower, upper, edge
+
+
+def _round(length):
+    """The next one of 1, 2, 5 times a power of ten that is not less."""
+    power = 10.**np.floor(np.log10(length))
+    return next(n * power for n in (1, 2, 5, 10) if n * power >= length * 0.999)
 
 
 def _upwards(source):
@@ -214,52 +239,99 @@ def _upwards(source):
     return int(np.argmax(abs(gravity))) if np.any(gravity) else 1
 
 
-def _upwards_of(camera):
-    """The axis that is seen upright: no part of it goes to the right."""
-    return int(np.argmin(abs(camera.turn[0])))
+def _draw_floor(axis, camera, look, state, radius):
+    """Squares below the points with their shadow, and scales in metres along
+    the two edges of the floor next to the eye and upwards at the left."""
+    up = _upwards(state.source)
+    lower, upper, edge = _floor_of(look, up)
+    level = [d for d in range(3) if d != up]
+
+    def seen(place):
+        return camera.project(np.array(place))[..., :2]
+
+    def point(**at):
+        place = lower.copy()
+        for d, value in at.items():
+            place["xyz".index(d)] = value
+        return place
+
+    a, b = ("xyz"[d] for d in level)
+    ends = {"xyz"[d]: (lower[d], upper[d]) for d in range(3)}
+    corners = [point(**{a: ends[a][i], b: ends[b][j]})
+               for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    plane = axis.fill(*seen(corners).T, color="0.965", zorder=0, linewidth=0)[0]
+    for one, other in ((a, b), (b, a)):
+        for value in _marks(*ends[one], edge):
+            line = [point(**{one: value, other: end}) for end in ends[other]]
+            axis.plot(*seen(line).T, color="0.82", linewidth=0.6, zorder=0.5)
+    dark = spheres.shadow(camera, state.place, radius, lower[up], up)
+    shade = axis.imshow(
+        np.dstack([np.zeros((*dark.shape, 3)), 0.38 * dark]), zorder=0.7,
+        extent=(camera.low[0], camera.high[0], camera.low[1], camera.high[1]))
+    shade.set_clip_path(plane)
+
+    factor, unit = (1e3, "mm") if max(upper - lower) < 0.2 else (1, "m")
+    centre = seen((lower + upper) / 2)
+    nearest = min(corners, key=lambda c: seen(c)[1])  # has a number of one scale
+    for one, other in ((a, b), (b, a)):
+        # the one of the two edges that is lower in the picture
+        end = min(ends[other], key=lambda e: seen(point(
+            **{one: np.mean(ends[one]), other: e}))[1])
+        values = [value for value in _marks(*ends[one], edge) if one == a or
+                  abs(value - nearest["xyz".index(one)]) > edge / 2]
+        _scale(axis, [seen(point(**{one: value, other: end}))
+                      for value in values],
+               np.array(values) * factor, f"{one} [{unit}]", centre)
+    corner = min(corners, key=lambda c: seen(c)[0])
+    top = corner.copy()
+    top[up] = upper[up]
+    axis.plot(*seen([corner, top]).T, color="0.5", linewidth=0.7, zorder=1)
+    rise = _round((upper[up] - lower[up]) / 4)
+    values = _marks(*ends["xyz"[up]], rise)
+    places = []
+    for value in values:
+        corner[up] = value
+        places.append(seen(corner))
+        axis.plot(*(places[-1][:, None] + [[0, -0.006 * (
+            camera.high[0] - camera.low[0])], [0, 0]]), color="0.5",
+            linewidth=0.7, zorder=1)
+    _scale(axis, places, values * factor, f"{'xyz'[up]} [{unit}]", None)
 
 
-def _draw_edges(axis, camera, look):
-    """The box that is seen, with its sizes in metres."""
-    lower, upper = look.lower, look.upper
-    corners = np.array([[(lower, upper)[i >> d & 1][d] for d in range(3)]
-                        for i in range(8)])
-    seen = camera.project(corners)
-    front = np.argmax(seen[:, 2])
-    for i in range(8):
-        for d in range(3):
-            j = i ^ (1 << d)
-            if i < j:
-                hidden = front in (i, j)
-                # edges at the corner next to the eye would cross the picture
-                axis.plot(*seen[[i, j], :2].T, color="0.7", linewidth=0.7,
-                          zorder=3 if hidden else 1,
-                          alpha=0.35 if hidden else 1)
-    up = _upwards_of(camera)
-    lowest = [i for i in range(8) if not i >> up & 1]
-    for d, name in enumerate("xyz"):
-        size = f"{name} = {lower[d]:.2g} to {upper[d]:.3g} m"
-        if d == up:  # along the edge at the left
-            i = np.argmin(seen[:, 0])
-            middle = seen[[i, i ^ (1 << d)], :2].mean(axis=0)
-            axis.annotate(size, middle, textcoords="offset points",
-                          xytext=(-4, 0), fontsize=7, color="0.35", rotation=90,
-                          horizontalalignment="right",
-                          verticalalignment="center")
-            continue
-        edges = [(i, i ^ (1 << d)) for i in lowest if i < i ^ (1 << d)
-                 and i ^ (1 << d) in lowest]
-        if not edges:
-            continue
-        i, j = min(edges, key=lambda e: seen[list(e), 1].mean())
-        middle = seen[[i, j], :2].mean(axis=0)
-        centre = seen[:, :2].mean(axis=0)
-        outward = np.sign(middle - centre)
-        axis.annotate(size, middle,
-                      textcoords="offset points",
-                      xytext=(4 * outward[0], -4), fontsize=7, color="0.35",
-                      horizontalalignment="left" if outward[0] > 0 else "right",
-                      verticalalignment="top")
+def _marks(low, high, step):
+    """Multiples of a step within an interval, its ends included."""
+    return step * np.arange(int(np.ceil(low / step - 1e-6)),
+                            int(np.floor(high / step + 1e-6)) + 1)
+
+
+def _scale(axis, places, values, name, centre):
+    """Numbers at places along an edge of the floor, outward from its centre, or
+    at the left; some six of them. The name stands further
+    out at the middle."""
+    style = {"fontsize": 7, "color": "0.3", "textcoords": "offset points"}
+    if len(places) == 0:
+        return
+    every = -(-len(places) // 6)
+    step = values[1] - values[0] if len(values) > 1 else 1
+    numbered = [(place, value) for place, value in zip(places, values)
+                if round(value / step) % every == 0]
+    middle = (places[0] + places[-1]) / 2
+    if centre is None:
+        for place, value in numbered:
+            axis.annotate(f"{value:.4g}", place, xytext=(-5, 0), ha="right",
+                          va="center", **style)
+        axis.annotate(name, middle, xytext=(-24, 0), ha="center", va="center",
+                      rotation=90, **style)
+        return
+    along = places[-1] - places[0]
+    outward = np.array([along[1], -along[0]]) / max(np.hypot(*along), 1e-300)
+    if outward[1] > 0 or (outward[1] == 0 and outward[0] < 0):
+        outward = -outward
+    for place, value in numbered:
+        axis.annotate(f"{value:.4g}", place, xytext=9 * outward, ha="center",
+                      va="center", **style)
+    axis.annotate(name, middle, xytext=24 * outward, ha="center", va="center",
+                  **style)
 
 
 def figure_of(states, look, labels, width=None):
@@ -270,8 +342,8 @@ def figure_of(states, look, labels, width=None):
     dimension = states[0][0].source.dimension
     aspect = look.aspect
     if dimension == 3:
-        camera = spheres.Camera(look.lower, look.upper, *look.view,
-                                _upwards(states[0][0].source), 100)
+        camera = _camera_of(look, _upwards(states[0][0].source), 100)
+        look.pixels = 1500 if columns == 1 else 1100
         aspect = camera.shape[0] / camera.shape[1]
     panel = (width or (6.5 if columns == 1 else min(4.2, 13 / columns)))
     height = min(panel * aspect, 6) + (0.75 if rows == 1 else 0.45)

@@ -27,11 +27,11 @@ def main():
         sys.exit(__doc__)
     folders = {"3D": Path(sys.argv[1]), "2D": Path(sys.argv[2])}
 
-    figure = plt.figure(figsize=(13, 6.2), layout="constrained")
-    above, below = figure.subfigures(2, 1, height_ratios=[3.2, 3])
+    figure = plt.figure(figsize=(13, 7.2), layout="constrained")
+    above, below = figure.subfigures(2, 1, height_ratios=[3.6, 3])
     axes = above.subplots(1, len(SNAPSHOTS))
     source = fields.Source(folders["3D"])
-    look = panels.Look("speed", view=(28., 18.))
+    look = panels.Look("speed", view=(38., 22.))
     states = [panels.State(source, source.nearest(wanted / SCALE), look)
               for wanted in SNAPSHOTS]
     look.fix(states)

@@ -7,7 +7,9 @@ Reads study.csv and study.json, as `limber study`, `limber stability` and `limbe
 inf-sup` write them. One panel for each measure and one line for each method;
 where the axis is a variation and there are others, also one panel for each of
 their values. On charts of error against cost the Pareto front is ringed, and
-the ends of lines say which variant they are. Variants that have failed stand
+the ends of lines say which variant they are; where several kernels stand there
+with and without a treatment of locking ('quadratic none', 'quadratic node'), one
+panel shows them without and one with it, in the same colours. Variants that have failed stand
 as crosses at the upper edge, each with what went wrong; open triangles at the
 lower edge are values too small for the axis, with the value beside. On maps of
 stability an open triangle means that no limit was found below it.
@@ -82,6 +84,8 @@ def draw_line(axis, rows, measure, meta, style, floor, marks, grown=1.):
         key = tuple(row[name] for name in others)
         joined.setdefault(key, []).append((x, y, row))
     label = rows[0]["method"]
+    if meta["rivals"] and label.endswith(" none"):
+        label = None  # the colour is named in the other panel
     for line in joined.values():
         seen = [p for p in line if floor is None or p[1] >= floor]
         axis.plot([p[0] for p in seen], [p[1] for p in seen], label=label,
@@ -193,7 +197,8 @@ def draw_panel(axis, rows, measure, meta):
         floor = None
     for index, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
-        style = charts.style_of(method)
+        style = (charts.style_of_kernel if meta["rivals"] else
+                 charts.style_of)(method)
         # where formulas are drawn, measured values stand alone, and can be
         # told apart where they coincide
         if meta["closed forms"]:
@@ -242,11 +247,32 @@ def draw_panel(axis, rows, measure, meta):
     return marks
 
 
+RIVALS = 3  # kernels without a treatment that make two panels
+
+
+def by_treatment(rows):
+    """Titles and rows of the panels without and with a treatment of locking, or
+    nothing. Finite elements are in both."""
+    known = {method: charts.kernel_and_treatment(method)
+             for method in methods_of(rows)}
+    bare = [m for m, k in known.items() if k and k[1] == "none"]
+    if len(bare) < RIVALS or len(bare) == len(known):
+        return None
+    return {
+        "without a cure for locking": [
+            row for row in rows if row["method"] in bare or
+            row["method"].startswith("FEM ")],
+        "with one": [row for row in rows if row["method"] not in bare]}
+
+
 def panels_of(rows, meta):
     """Titles and rows of the panels beside each other: for a chart against one of
-    several variations one for each combination of the others, else one."""
+    several variations one for each combination of the others; against cost two if
+    kernels are compared without and with a treatment, else one."""
+    if meta["against cost"]:
+        return by_treatment(rows) or {"": rows}
     others = [name for name in meta["variations"] if name != meta["horizontal"]]
-    if meta["against cost"] or not others:
+    if not others:
         return {"": rows}
     panels = {}
     for row in rows:
@@ -263,6 +289,11 @@ def draw_measure(axes, panels, measure, meta):
                           ([title] if title else []))
         if title:
             axis.set_title(title, fontsize=10)
+    if meta["against cost"] and len(panels) > 1:
+        ends = [axis.get_xlim() for axis in axes]
+        for axis in axes:
+            axis.set_xlim(min(low for low, _ in ends),
+                          max(high for _, high in ends))
     limits = [axis.get_ylim() for axis in axes]
     for axis in axes:
         axis.set_ylim(min(low for low, _ in limits),
@@ -288,6 +319,7 @@ def draw(rows, meta):
     meta = {**meta, "measures": measures_of(rows, meta)}
     measures = meta["measures"]
     panels = panels_of(rows, meta)
+    meta["rivals"] = meta["against cost"] and len(panels) > 1
     number_of_panels = len(panels) * len(measures)
     per_row = min(number_of_panels, PER_ROW)
     lines = -(-number_of_panels // per_row)

@@ -1,6 +1,8 @@
 """Points in three dimensions as shaded spheres, in numpy alone: no graphics
-card, no display. An orthographic camera, a depth buffer, light from the upper
-left, and dimmer where neighbours stand closer to the eye."""
+card, no display (VTK as Debian packages it needs an X server even off screen). An
+orthographic camera, a depth buffer that is smoothed to the surface the points
+stand for, light from the upper left with a highlight, dimmer where neighbours
+stand closer to the eye, and a soft shadow on the floor."""
 
 from charts import np
 
@@ -75,13 +77,50 @@ def render(camera, places, colours, radius):
     buffer, owner = _closed(buffer, owner, r)
     covered = owner >= 0
 
-    smooth = _smoothed(buffer, covered, r)
-    light = _light(smooth, covered) * _open_sky(smooth, covered, r)
+    flat = np.ones((rows, columns, 3))
+    flat[covered] = colours[order][owner[covered]]
+    smooth, flat = _smoothed(buffer, flat, covered, r)
+    diffuse, highlight = _light(smooth, covered)
+    sky = _open_sky(smooth, covered, r)
+    # A little white light shows the shape of dark colours, too.
+    lit = (flat * (0.66 + 0.42 * diffuse)[..., None] +
+           (0.07 * diffuse + 0.14 * highlight)[..., None]) * sky[..., None]
     picture = np.zeros((rows, columns, 4))
-    picture[covered, :3] = (colours[order][owner[covered]] *
-                            light[covered][:, None])
+    picture[covered, :3] = lit[covered]
     picture[covered, 3] = 1
     return np.clip(picture, 0, 1)
+
+
+def shadow(camera, places, radius, floor, up):
+    """Soft shadow on the plane @p floor across the axis @p up, from a light
+    above and at the left of the camera: its darkness, 0 to 1, for the pixels of
+    render()."""
+    rows, columns = camera.shape
+    away = 0.35 * camera.turn[0]  # from the light, along the floor
+    slope = np.where(np.arange(3) == up, 0., away)
+    fallen = places + (places[:, up] - floor)[:, None] * slope
+    fallen[:, up] = floor
+    seen = camera.project(fallen)
+    x = np.round((seen[:, 0] - camera.low[0]) * camera.scale).astype(int)
+    y = np.round((camera.high[1] - seen[:, 1]) * camera.scale).astype(int)
+    inside = (x >= 0) & (x < columns) & (y >= 0) & (y < rows)
+    dark = np.zeros((rows, columns))
+    dark[y[inside], x[inside]] = 1
+    r = max(int(np.ceil(radius * camera.scale)), 1)
+    dark = np.minimum(_blurred(dark, r) * 4 * r, 1)  # joins the dots
+    return _blurred(_blurred(dark, 3 * r), 2 * r)
+
+
+def _blurred(values, r):
+    """Means over boxes of 2 r + 1 pixels."""
+    for axis in (0, 1):
+        width = [(0, 0), (0, 0)]
+        width[axis] = (r + 1, r)
+        total = np.cumsum(np.pad(values, width, mode="edge"), axis=axis)
+        n = values.shape[axis]
+        values = (np.take(total, np.arange(2 * r + 1, 2 * r + 1 + n), axis) -
+                  np.take(total, np.arange(n), axis)) / (2 * r + 1)
+    return values
 
 
 def _shifted(values, i, j, outside):
@@ -109,26 +148,34 @@ def _closed(depth, owner, r):
     return depth, owner
 
 
-def _smoothed(depth, covered, r):
-    """The surface that the spheres stand for: means over neighbours at about
-    the same depth, thrice."""
-    step = max(int(round(r / 2)), 1)
-    for _ in range(3):
+def _smoothed(depth, colours, covered, r):
+    """The surface that the spheres stand for, and its colours: means over
+    neighbours at about the same depth, over ever shorter distances."""
+    for step in (r, 0.7 * r, r, 0.5 * r, 0.7 * r, 0.3 * r):
         total = np.where(covered, depth, 0.)
+        paint = colours.copy()
         count = covered.astype(float)
-        for i, j in ((0, step), (0, -step), (step, 0), (-step, 0),
-                     (step, step), (-step, -step), (step, -step),
-                     (-step, step)):
+        near = max(int(round(step)), 1)
+        across = max(int(round(0.7 * step)), 1)
+        for i, j in ((0, near), (0, -near), (near, 0), (-near, 0),
+                     (across, across), (-across, -across), (across, -across),
+                     (-across, across)):
             other = _shifted(depth, i, j, -np.inf)
             with np.errstate(invalid="ignore"):
-                same = covered & (abs(other - depth) < 2.5 * r)
+                same = covered & (abs(other - depth) < 4 * near)
             total += np.where(same, other, 0)
             count += same
-        depth = np.where(covered, total / np.maximum(count, 1), -np.inf)
-    return depth
+            for c in range(3):
+                paint[..., c] += np.where(
+                    same, _shifted(colours[..., c], i, j, 0), 0)
+        count = np.maximum(count, 1)
+        depth = np.where(covered, total / count, -np.inf)
+        colours = np.where(covered[..., None], paint / count[..., None], colours)
+    return depth, colours
 
 
 def _light(depth, covered):
+    """Diffuse light and highlight of each pixel, 0 to 1."""
     slopes = []
     for i, j in ((0, 1), (1, 0)):
         ahead, behind = (_shifted(depth, -i * s, -j * s, -np.inf)
@@ -142,8 +189,11 @@ def _light(depth, covered):
         slopes.append(np.clip(np.nan_to_num(slope), -3, 3))
     normal = np.stack([-slopes[0], slopes[1], np.ones_like(depth)], axis=2)
     normal /= np.linalg.norm(normal, axis=2, keepdims=True)
-    lit = np.clip(normal @ (LIGHT / np.linalg.norm(LIGHT)), 0, 1)
-    return np.where(covered, 0.6 + 0.47 * lit, 0)
+    towards = LIGHT / np.linalg.norm(LIGHT)
+    half = towards + np.array([0, 0, 1.])  # the eye is along the last axis
+    diffuse = np.clip(normal @ towards, 0, 1)
+    highlight = np.clip(normal @ (half / np.linalg.norm(half)), 0, 1)**30
+    return diffuse, highlight
 
 
 def _open_sky(depth, covered, r):
