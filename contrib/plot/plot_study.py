@@ -160,14 +160,19 @@ def draw_closed_forms(axis, methods, meta):
 
 def place_marks(axis, marks):
     """Small texts beside points, as many as there is room for: those that would
-    cover another one move to another side or are left out."""
+    cover another one or a point move to another side or are left out."""
     axis.figure.canvas.draw()
-    taken = []
+    taken = [(px - 4, py - 4, px + 4, py + 4) for line in axis.lines
+             if line.get_marker() not in ("None", "x") and
+             line.get_transform() == axis.transData
+             for px, py in axis.transData.transform(
+                 np.column_stack(line.get_data()).astype(float))]
     inside = axis.get_window_extent()
     for _, x, y, text, colour in sorted(marks, key=lambda m: -m[0]):
         px, py = axis.transData.transform((x, y))
         width, height = 5 * len(text) + 2, 10
-        for dx, dy in ((5, 3), (5, -11), (-width - 3, 3), (-width - 3, -11)):
+        for dx, dy in ((5, 3), (5, -11), (-width - 3, 3), (-width - 3, -11),
+                       (-width / 2, 6), (-width / 2, -15)):
             box = (px + dx, py + dy, px + dx + width, py + dy + height)
             if (box[2] < inside.x1 and box[0] > inside.x0 and
                     box[1] > inside.y0 and all(
