@@ -4,8 +4,9 @@
     all_studies.py [--limber PROGRAM] [--short] [--results FOLDER] [NAME ...]
 
 Without names all of prm/studies; an hour and a half on a quiet machine, --short
-some minutes. Runs that are there and have not changed are kept. Errors do not
-depend on the machine; CPU times do, so nothing else should be running.
+some minutes. Runs that are there and have not changed are kept. After a study of
+kernels rivals.py draws the chart of all four. Errors do not depend on the machine;
+CPU times do, so nothing else should be running.
 """
 
 import argparse
@@ -67,6 +68,9 @@ def main():
             failed.append(name)
             continue
         publish(Path(arguments.results) / name, arguments.target, name)
+    if any(name.startswith("kernels_") for name in set(names) - set(failed)):
+        subprocess.run([sys.executable, "-B", "contrib/studies/rivals.py",
+                        "--target", arguments.target], check=True)
     if failed:
         sys.exit("These studies have failed: " + ", ".join(failed))
 
