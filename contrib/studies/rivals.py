@@ -78,8 +78,9 @@ def main():
         draw_panel(axis, lines_of(name, measure), title)
         for handle, label in zip(*axis.get_legend_handles_labels()):
             entries.setdefault(label, handle)
-    figure.legend(entries.values(), entries.keys(), loc="outside right upper",
-                  fontsize=9, title="pale: no treatment")
+    axes[0][1].legend(entries.values(), entries.keys(), fontsize=9,
+                      title="pale: no treatment", loc="upper left",
+                      bbox_to_anchor=(1.01, 1))
     figure.suptitle("Error against cost: every kernel on four kinds of scene")
     charts.save(figure, arguments.target / "rivals.png")
 
