@@ -67,6 +67,7 @@ ALONE = {
     "cpGIMP": ("#17807e", "^", "-."), "CPDI2": ("#7a0177", "d", "-."),
     "DDMP": ("#b2443a", "H", "--"),
     "initial frame": ("#E69F00", "*", ":"),
+    "quasi-static": ("#08519c", "h", "-"),
     "FEM Q1": ("#b15928", "P", "-"), "FEM Q1-P0-P0": ("#000000", "X", "-"),
     "FEM Q2": ("#8c5a2b", "p", "--"), "FEM Q2-P1-P1": ("#000000", "h", "--"),
     "USL": ("#D55E00", "^", "-"), "USF": ("#009E73", "v", "-"),
@@ -90,7 +91,8 @@ KERNELS = {
     "cubic": ("p", "--"), "GIMP": ("v", "-."),
     "cpGIMP": ("^", "-."), "CPDI": ("D", "-."), "CPDI2": ("d", "-."),
     "DDMP": ("H", "--"),
-    "initial": ("*", ":"), "initial frame": ("*", ":")}
+    "initial": ("*", ":"), "initial frame": ("*", ":"),
+    "quasi-static": ("h", "-")}
 
 # What a method differs in from the one it is named after, 'cell with APIC'. With
 # a kernel beside it, marker and line are the kernel's.
