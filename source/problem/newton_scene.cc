@@ -92,11 +92,12 @@ namespace limber
                "in which flow has no rate",
                "'Viscosity' or 'Limit friction angle' of the law to 0");
       if (body.treatment != Projection::none &&
-          body.treatment != Projection::cell)
+          body.treatment != Projection::cell &&
+          body.treatment != Projection::assumed_strain)
         refuse(section,
                "Locking treatment",
-               "whose tangent knows 'none' and 'cell' alone",
-               "'Locking treatment = cell'");
+               "whose tangent knows 'assumed strain', 'cell' and 'none' alone",
+               "'Locking treatment = assumed strain'");
       if (body.history != HistoryTreatment::keep)
         refuse(section,
                "History",

@@ -436,7 +436,7 @@ namespace limber
         fluid ?
           Choice{Projection::cell,
                  "'cell', as a liquid resists volume changes only."} :
-        is_solved_by_newton(problem.method.integration) ?
+        body.is_plastic && is_solved_by_newton(problem.method.integration) ?
           Choice{Projection::cell, "'cell', which does not lock in volume."} :
         !linear && body.is_plastic ?
           Choice{Projection::node,

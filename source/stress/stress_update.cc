@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/stress/make_sweep.h>
+#include <limber/stress/strain_projection.h>
 
 #include <stdexcept>
 
@@ -7,48 +8,6 @@ namespace limber
 {
   namespace
   {
-    /**
-     * The strain of an hourglass mode that resists bending as a beam does:
-     * the mate contracts by nu / (1 - nu) where the third axis is held, and
-     * by nu each in the trilinear mode (doc/theory/treatments.md).
-     */
-    template <class Law>
-    StrainProjection
-    strain_projection(const Law              &law,
-                      const Projection        kind,
-                      const HourglassResponse response)
-    {
-      const double     K = law.bulk_modulus, G = law.shear_modulus;
-      StrainProjection result;
-      result.kind = kind;
-      switch (response)
-        {
-          case HourglassResponse::automatic:
-            throw std::logic_error("no hourglass response chosen");
-          case HourglassResponse::bending:
-            result.own            = 1;
-            result.mate           = -(K - 2. / 3. * G) / (K + 4. / 3. * G);
-            result.trilinear_own  = 1;
-            result.trilinear_mate = -(3 * K - 2 * G) / (2 * (3 * K + G));
-            break;
-          case HourglassResponse::deviatoric:
-            result.own            = 0.5;
-            result.mate           = -0.5;
-            result.trilinear_own  = 2. / 3.;
-            result.trilinear_mate = -1. / 3.;
-            break;
-          case HourglassResponse::incompressible:
-            result.own            = 1;
-            result.mate           = -1;
-            result.trilinear_own  = 1;
-            result.trilinear_mate = -0.5;
-            break;
-        }
-      return result;
-    }
-
-
-
     /** Without shear stress there is no more to project than the pressure. */
     template <class Law>
     Projection

@@ -3,6 +3,8 @@
 #include <limber/materials/law_list.h>
 #include <limber/points/cell_batch.h>
 #include <limber/points/locate.h>
+#include <limber/stress/assumed_trial.h>
+#include <limber/stress/strain_projection.h>
 #include <limber/stress/trial_stress.h>
 
 #include <algorithm>
@@ -22,8 +24,8 @@ namespace limber
       LinearFunctions(const PointView<dim>    &points,
                       const CellGeometry<dim> &cell,
                       const std::size_t        p)
+        : xi(natural_place(points, cell, p))
       {
-        const auto xi = natural_place(points, cell, p);
         for (int i = 0; i < n; ++i)
           {
             std::array<double, dim> factor;
@@ -44,6 +46,7 @@ namespace limber
           }
       }
 
+      std::array<double, dim>                xi;
       std::array<double, n>                  value;
       std::array<std::array<double, dim>, n> gradient;
     };
@@ -63,9 +66,13 @@ namespace limber
       using Work      = typename TrialStress<dim>::Work;
 
     public:
-      LawTrialStress(const Law &law, const bool mean_volume, const Frame frame)
+      LawTrialStress(const Law              &law,
+                     const StrainProjection &projection,
+                     const Frame             frame)
         : law(law)
-        , mean_volume(mean_volume)
+        , projection(projection)
+        , mean_volume(projection.kind == Projection::cell)
+        , assumes(projection.kind == Projection::assumed_strain)
         , initial(frame == Frame::initial)
       {}
 
@@ -116,6 +123,11 @@ namespace limber
             {
               const Motion &motion = trial.motions[p - batch.begin];
               keep(motion, points, p);
+              if (initial)
+                keep_deformation(assumes ? trial.assumed.points[p - batch.begin].F :
+                                           motion.f,
+                                 points,
+                                 p);
               result.plastic_work += motion.volume * motion.plastic_work;
             }
           result.longest_way =
@@ -144,7 +156,8 @@ namespace limber
       struct Motion
       {
         Gradients gradient;     // of the functions where forces act, 1/m
-        Matrix    f;            // of the step, or F in the initial frame
+        Matrix    f;            // of the step, or F in the initial frame;
+                                // where strain is assumed, as it is assumed
         double    growth;       // of the volume by it, the point's own
         double    volume;       // at the start, m^dim
         double    former_ratio; // volume ratio that the growth belongs to
@@ -163,6 +176,7 @@ namespace limber
       {
         std::array<std::array<double, dim>, n_nodes> u; // of the nodes, m
         std::vector<Motion>                          motions;
+        AssumedTrial<dim, finite> assumed;
         double volume = 0;               // of all at the start, m^dim
         double slope = 0, curvature = 0; // of the energy, by mean growth, J
       };
@@ -196,6 +210,8 @@ namespace limber
             mean_growth += motion.volume * motion.growth;
           }
         mean_growth /= trial.volume;
+        if (assumes && !assume(points, cell, batch, trial))
+          return false;
 
         trial.slope = trial.curvature = 0;
         for (std::size_t p = batch.begin; p < batch.end; ++p)
@@ -217,6 +233,49 @@ namespace limber
         return true;
       }
 
+      // Each point is deformed as its cell lets it; false as above.
+      bool
+      assume(const PointView<dim>    &points,
+             const CellGeometry<dim> &cell,
+             const CellBatch         &batch,
+             Trial                   &trial) const
+      {
+        auto &assumed = trial.assumed;
+        assumed.points.resize(trial.motions.size());
+        for (std::size_t k = 0; k < trial.motions.size(); ++k)
+          {
+            const LinearFunctions<dim> functions(points,
+                                                 cell,
+                                                 batch.begin + k);
+            assumed.points[k] = {trial.motions[k].f,
+                                 functions.xi,
+                                 trial.motions[k].volume,
+                                 functions.gradient};
+          }
+        if (!assumed.finish(projection))
+          return false;
+        for (std::size_t k = 0; k < trial.motions.size(); ++k)
+          {
+            Motion &motion = trial.motions[k];
+            motion.f       = assumed.deformation(k);
+            motion.growth  = volume_ratio(motion.f);
+            if (finite && !(motion.growth > 0))
+              return false;
+          }
+        return true;
+      }
+
+      static double
+      volume_ratio(const Matrix &f)
+      {
+        if constexpr (finite)
+          return determinant<dim>(f);
+        double result = 1;
+        for (int d = 0; d < dim; ++d)
+          result += f[d][d] - 1;
+        return result;
+      }
+
       bool
       deform(const PointView<dim>                               &points,
              const CellGeometry<dim>                            &cell,
@@ -235,14 +294,9 @@ namespace limber
             }
         motion.volume   = points.mass[p] / law.density;
         motion.gradient = functions.gradient;
+        motion.growth   = volume_ratio(motion.f);
         if constexpr (!finite)
-          {
-            motion.growth = 1;
-            for (int d = 0; d < dim; ++d)
-              motion.growth += motion.f[d][d] - 1;
-            return true;
-          }
-        motion.growth = determinant<dim>(motion.f);
+          return true;
         if (!(motion.growth > 0))
           return false;
         const Matrix cof = cofactor<dim>(motion.f); // det(f) f^-T
@@ -368,13 +422,19 @@ namespace limber
       // The first derivative of the energy. Where volumes are averaged, it goes
       // by the mean growth, whose derivative is the mean of growth * gradient.
       void
-      resist(const Trial &trial, CellResponse<dim> &response) const
+      resist(Trial &trial, CellResponse<dim> &response) const
       {
         for (const Motion &motion : trial.motions)
+          response.energy +=
+            motion.volume * (law.template strain_energy<dim>(motion.state) +
+                             motion.plastic_work);
+        if (assumes)
           {
-            response.energy +=
-              motion.volume * (law.template strain_energy<dim>(motion.state) +
-                               motion.plastic_work);
+            trial.assumed.add_force(stress_on_assumed(trial), response.force);
+            return;
+          }
+        for (const Motion &motion : trial.motions)
+          {
             const Matrix &s    = motion.stress;
             const double  mean = mean_stress(motion);
             for (int i = 0; i < n_nodes; ++i)
@@ -395,13 +455,40 @@ namespace limber
         return motion.slope * (finite ? motion.growth : 1.);
       }
 
+      // First Piola and Kirchhoff's, Pa
+      std::vector<Matrix>
+      stress_on_assumed(const Trial &trial) const
+      {
+        std::vector<Matrix> result;
+        for (const Motion &motion : trial.motions)
+          {
+            Matrix       stress = motion.stress;
+            const double mean   = mean_stress(motion);
+            for (int d = 0; d < dim; ++d)
+              stress[d][d] += mean;
+            if constexpr (finite)
+              {
+                stress = times<dim>(stress, cofactor<dim>(motion.f));
+                for (auto &row : stress)
+                  for (double &entry : row)
+                    entry /= motion.growth;
+              }
+            result.push_back(stress);
+          }
+        return result;
+      }
+
+      // [d, e][k, l]: what the force along d by the gradient along e grows by
+      // with the displacement along k by the gradient along l
+      using Moduli =
+        std::array<std::array<double, dim * dim>, std::size_t(dim *dim)>;
+
       /** What the stress of a point grows by, in the tangent. */
       struct Rates
       {
         // Lie derivative of the deviator by the strain along (k, l) at a given
         // volume: entry [d, e][k, l]
-        std::array<std::array<double, dim * dim>, std::size_t(dim *dim)>
-          deviator{};
+        Moduli deviator{};
         // of the slope of the energy, by growth and by strain at a given volume
         double curvature = 0;
         Matrix slope{};
@@ -501,8 +588,22 @@ namespace limber
       // couples pressure and shear, the deviator follows the mean volume, and
       // the pressure of the cell the strains of its points.
       void
-      add_tangent(const Trial &trial, CellResponse<dim> &response) const
+      add_tangent(Trial &trial, CellResponse<dim> &response) const
       {
+        if (assumes)
+          {
+            std::vector<Moduli> moduli;
+            for (const Motion &motion : trial.motions)
+              moduli.push_back(
+                moduli_of(motion, mean_stress(motion), rates_of(motion)));
+            trial.assumed.add_tangent(
+              stress_on_assumed(trial),
+              [&](const std::size_t p, int d, int e, int f, int g) {
+                return moduli[p][d * dim + e][f * dim + g];
+              },
+              response.tangent);
+            return;
+          }
         // derivatives of mean growth and, times the volume, of the slope
         std::array<double, n_dofs> mean_growth{}, slope_of_cell{};
         std::array<double, n_dofs> by_growth{}; // of the force
@@ -540,16 +641,12 @@ namespace limber
               by_growth[k] * mean_growth[l];
       }
 
-      void
-      add_tangent(const Motion      &motion,
-                  const double       mean,
-                  const Rates       &rates,
-                  CellResponse<dim> &response) const
+      Moduli
+      moduli_of(const Motion &motion,
+                const double  mean,
+                const Rates  &rates) const
       {
-        // a[d, e][k, l]: what the force along d by the gradient along e grows
-        // by with the displacement along k by the gradient along l
-        constexpr int n      = dim * dim;
-        auto          a      = rates.deviator;
+        Moduli        a      = rates.deviator;
         const Matrix &s      = motion.stress;
         const double  growth = finite ? motion.growth : 1.;
         const double  volumetric =
@@ -574,7 +671,17 @@ namespace limber
                         growth * rates.by_growth[d][e];
                     }
             }
+        return a;
+      }
 
+      void
+      add_tangent(const Motion      &motion,
+                  const double       mean,
+                  const Rates       &rates,
+                  CellResponse<dim> &response) const
+      {
+        constexpr int    n = dim * dim;
+        const Moduli     a = moduli_of(motion, mean, rates);
         const Gradients &g = motion.gradient;
         for (int i = 0; i < n_nodes; ++i)
           for (int d = 0; d < dim; ++d)
@@ -604,10 +711,16 @@ namespace limber
           points.deviator[k][p] = motion.state.deviator[k];
         for (unsigned int k = 0; k < motion.state.history.size(); ++k)
           points.history[k][p] = motion.state.history[k];
-        if (initial)
-          for (int d = 0; d < dim; ++d)
-            for (int e = 0; e < dim; ++e)
-              points.deformation[d * dim + e][p] = motion.f[d][e];
+      }
+
+      static void
+      keep_deformation(const Matrix         &F,
+                       const PointView<dim> &points,
+                       const std::size_t     p)
+      {
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            points.deformation[d * dim + e][p] = F[d][e];
       }
 
       double
@@ -637,7 +750,8 @@ namespace limber
       }
 
       const FurtherDeformation<Law> law;
-      const bool                    mean_volume, initial;
+      const StrainProjection        projection;
+      const bool                    mean_volume, assumes, initial;
     };
   } // namespace
 
@@ -648,9 +762,11 @@ namespace limber
   make_trial_stress(const std::string         &name,
                     const std::vector<double> &values,
                     const Projection           kind,
+                    const HourglassResponse    response,
                     const Frame                frame)
   {
-    if (kind != Projection::none && kind != Projection::cell)
+    if (kind != Projection::none && kind != Projection::cell &&
+        kind != Projection::assumed_strain)
       throw std::logic_error("no tangent of this projection");
     std::unique_ptr<const TrialStress<dim>> result;
     for_each_law([&](auto *const candidate) {
@@ -667,8 +783,11 @@ namespace limber
             {
               if (Law::is_plastic && frame == Frame::initial)
                 throw std::logic_error("no flow in the initial frame");
+              const Law candidate_law(own);
               result = std::make_unique<LawTrialStress<dim, Law>>(
-                Law(own), kind == Projection::cell, frame);
+                candidate_law,
+                strain_projection(candidate_law, kind, response),
+                frame);
             }
         }
     });
@@ -683,10 +802,12 @@ namespace limber
   make_trial_stress(const std::string &,
                     const std::vector<double> &,
                     Projection,
+                    HourglassResponse,
                     Frame);
   template std::unique_ptr<const TrialStress<3>>
   make_trial_stress(const std::string &,
                     const std::vector<double> &,
                     Projection,
+                    HourglassResponse,
                     Frame);
 } // namespace limber

@@ -49,6 +49,7 @@ namespace limber
         responses.push_back(make_trial_stress<dim>(body->description.law,
                                                    body->description.material,
                                                    body->description.treatment,
+                                                   body->description.hourglass,
                                                    body->description.frame));
         factorises_all |= !responses.back()->has_symmetric_tangent();
       }

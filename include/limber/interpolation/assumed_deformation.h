@@ -33,12 +33,11 @@
  */
 namespace limber
 {
-  /** F_a of the points of a body in a cell. */
-  template <int dim, bool finite_strain>
+  /** F_a of the points of a body in a cell, by packs or one by one. */
+  template <int dim, bool finite_strain, class Number = PointPack<dim>>
   class AssumedDeformation
   {
   public:
-    using Number = PointPack<dim>;
     using Matrix = SmallMatrix<dim, Number>;
     using Mean   = SmallMatrix<dim, double>;
 
@@ -79,7 +78,7 @@ namespace limber
     __attribute__((always_inline)) void
     finish()
     {
-      const auto   total        = all_sums(sums);
+      const auto   total        = sums_of_lanes();
       const double inverse_mass = 1 / total[0];
       Mean         mean;
       for (int d = 0; d < dim; ++d)
@@ -209,6 +208,16 @@ namespace limber
 
     static constexpr std::size_t n_sums =
       dim == 2 ? F_sum(dim, 0) : slope_sum(dim, 0, 0);
+
+    __attribute__((always_inline)) std::array<double, n_sums>
+    sums_of_lanes() const
+    {
+      if constexpr (pack_width<Number> == 1)
+        return sums;
+      else
+        return all_sums(sums);
+    }
+
     std::array<Number, n_sums> sums;
   };
 

@@ -53,7 +53,8 @@ namespace limber
    * Projection::cell the volume of all points in a cell grows by the mean of
    * det f (current frame) or is the mean of det F (initial frame), weighted by
    * initial volume, in energy, force and tangent alike, so that the tangent is
-   * symmetric (doc/theory/implicit_steps.md).
+   * symmetric (doc/theory/implicit_steps.md). With Projection::assumed_strain
+   * f or F is the assumed one of assumed_deformation.h.
    */
   template <int dim>
   class TrialStress
@@ -105,13 +106,15 @@ namespace limber
 
   /**
    * For the law of that name, of a solid; @p values in the order of its
-   * entries, the projection 'none' or 'cell'.
+   * entries, the projection 'none', 'cell' or 'assumed_strain'; @p response
+   * counts with the last.
    */
   template <int dim>
   std::unique_ptr<const TrialStress<dim>>
   make_trial_stress(const std::string         &law,
                     const std::vector<double> &values,
                     Projection                 kind,
+                    HourglassResponse          response,
                     Frame                      frame);
 } // namespace limber
 

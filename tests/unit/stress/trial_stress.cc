@@ -67,6 +67,7 @@ namespace
       , trial(make_trial_stress<dim>(Law::name,
                                      values_of<Law>(),
                                      Case::kind,
+                                     HourglassResponse::bending,
                                      Case::frame))
     {
       const auto                                 points = view();
@@ -183,8 +184,10 @@ namespace
   using TrialCasesOf =
     testing::Types<TrialCase<Law, dim, Projection::none, Frame::current>,
                    TrialCase<Law, dim, Projection::cell, Frame::current>,
+                   TrialCase<Law, dim, Projection::assumed_strain, Frame::current>,
                    TrialCase<Law, dim, Projection::none, Frame::initial>,
-                   TrialCase<Law, dim, Projection::cell, Frame::initial>>;
+                   TrialCase<Law, dim, Projection::cell, Frame::initial>,
+                   TrialCase<Law, dim, Projection::assumed_strain, Frame::initial>>;
 
   TYPED_TEST_SUITE_P(TrialStresses);
 
@@ -398,7 +401,8 @@ namespace
   template <class Law, int dim>
   using PlasticCasesOf =
     testing::Types<TrialCase<Law, dim, Projection::none, Frame::current>,
-                   TrialCase<Law, dim, Projection::cell, Frame::current>>;
+                   TrialCase<Law, dim, Projection::cell, Frame::current>,
+                   TrialCase<Law, dim, Projection::assumed_strain, Frame::current>>;
   using J2Plane    = PlasticCasesOf<J2, 2>;
   using J2Space    = PlasticCasesOf<J2, 3>;
   using SandPlane  = PlasticCasesOf<DruckerPrager<false>, 2>;

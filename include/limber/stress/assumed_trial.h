@@ -1,0 +1,461 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_assumed_trial_h
+#define limber_stress_assumed_trial_h
+
+#include <limber/interpolation/assumed_deformation.h>
+
+#include <optional>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * The assumed strain of the points of a cell in a trial
+   * (assumed_deformation.h), with what Newton's method needs of it: the first
+   * and second derivative of the energy sum V W(F_a) by the displacements of
+   * the nodes. Turned back with the cell, G = R^T F and A G = R^T F_a vary by
+   *
+   *   delta (A G) = A(g) + S A(G) - A(S G),   g = R^T delta F,
+   *
+   * where S = R^T delta R is the spin whose axis is H^-1 axis(<g>), H = tr(U)
+   * 1 - U. With P^ = R^T P(F_a), Q = A P^ and the torque t_a = sum V Q : S_a G
+   * about each axis a, the force is sum V Q : g less the axis of the spin
+   * times t, since P^ : S A(G) = 0 as the stress is symmetric. The second
+   * derivative of F_a, spins of spins included, is in 'add_turning'.
+   *
+   * Degrees of freedom node by node, as in CellResponse.
+   */
+  template <int dim, bool finite_strain>
+  class AssumedTrial
+  {
+  public:
+    static constexpr int n_nodes = 1 << dim;
+    static constexpr int n_dofs  = dim * n_nodes;
+    static constexpr int n_spins = !finite_strain ? 0 : dim == 2 ? 1 : 3;
+    using Vector                 = std::array<double, dim>;
+    using Matrix                 = SmallMatrix<dim, double>;
+    using Gradients              = std::array<Vector, n_nodes>;
+    // In 2d the first alone counts: GCC 12 loses sums in arrays of one
+    using Axis = std::array<double, 3>;
+
+    /** What is given of a point: its own F, place and volume. */
+    struct Point
+    {
+      Matrix    F;
+      Vector    xi;       // natural place in the cell
+      double    volume;   // at the start, m^dim
+      Gradients gradient; // of the functions, 1/m
+    };
+
+    std::vector<Point> points;
+
+    /** When all points are there; false where a mean is turned inside out. */
+    bool
+    finish(const StrainProjection &projection)
+    {
+      operation.emplace(projection);
+      volume = 0;
+      for (const Point &point : points)
+        {
+          operation->add(point.F, point.xi, point.volume);
+          volume += point.volume;
+        }
+      operation->finish();
+      if constexpr (!finite_strain)
+        return true;
+      else
+        return determinant<dim>(operation->rotation) > 0;
+    }
+
+    /** F_a */
+    Matrix
+    deformation(const std::size_t p) const
+    {
+      return operation->evaluate(points[p].F, points[p].xi);
+    }
+
+    /** Of the stress P = dW/dF_a of the points (Pa): the force on nodes, N. */
+    void
+    add_force(const std::vector<Matrix>  &stress,
+              std::array<double, n_dofs> &force)
+    {
+      meet(stress);
+      for (std::size_t p = 0; p < points.size(); ++p)
+        for (int k = 0; k < n_dofs; ++k)
+          force[k] += points[p].volume * contract(back[p], turned_back(p, k));
+      if constexpr (finite_strain)
+        for (int k = 0; k < n_dofs; ++k)
+          for (int a = 0; a < n_spins; ++a)
+            force[k] -= pull[a] * contract(spin(a), mean_of_dof(k));
+    }
+
+    /**
+     * What resists against the motion of the displacements k and l of nodes:
+     * @p moduli (p, d, e, f, g) is what the Kirchhoff stress along d and e,
+     * with which gradients work, grows by with the displacement along f by the
+     * gradient along g, in the present configuration of the point.
+     */
+    template <class Moduli>
+    void
+    add_tangent(const std::vector<Matrix>           &stress,
+                const Moduli                        &moduli,
+                std::array<double, n_dofs * n_dofs> &tangent)
+    {
+      meet(stress);
+      vary();
+      for (std::size_t p = 0; p < points.size(); ++p)
+        add_material(p, moduli, tangent);
+      if constexpr (finite_strain)
+        add_turning(tangent);
+    }
+
+  private:
+    using Means = std::pair<Matrix, Matrix>; // mean and, in 3d, torsion
+
+    static double
+    contract(const Matrix &a, const Matrix &b)
+    {
+      double result = 0;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          result += a[d][e] * b[d][e];
+      return result;
+    }
+
+    /** The spin about axis a: S_a : X is twice the axis of X. */
+    static Matrix
+    spin(const int a)
+    {
+      Matrix result{};
+      if constexpr (dim == 2)
+        {
+          result[1][0] = 1;
+          result[0][1] = -1;
+        }
+      else
+        {
+          const int b = (a + 1) % 3, c = (a + 2) % 3;
+          result[c][b] = 1;
+          result[b][c] = -1;
+        }
+      return result;
+    }
+
+    /** R^T dF of a point by the displacement of degree of freedom k. */
+    Matrix
+    turned_back(const std::size_t p, const int k) const
+    {
+      Matrix result;
+      for (int c = 0; c < dim; ++c)
+        for (int e = 0; e < dim; ++e)
+          {
+            double component;
+            if constexpr (finite_strain)
+              component = operation->rotation[k % dim][c];
+            else
+              component = c == k % dim;
+            result[c][e] = component * points[p].gradient[k / dim][e];
+          }
+      return result;
+    }
+
+    /** Of a field over the points, field(p). */
+    template <class Field>
+    Means
+    means_of(const Field &field) const
+    {
+      Means result{};
+      for (std::size_t p = 0; p < points.size(); ++p)
+        {
+          const Matrix X = field(p);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              {
+                const double share = points[p].volume / volume * X[d][e];
+                result.first[d][e] += share;
+                if constexpr (dim == 3)
+                  if (d != e)
+                    {
+                      const int f = 3 - d - e;
+                      result.second[d][e] +=
+                        share * (points[p].xi[f] - operation->centroid[f]) *
+                        operation->inverse_variance[f];
+                    }
+              }
+        }
+      return result;
+    }
+
+    /** (A X)_p */
+    Matrix
+    assume(const Matrix &X, const Means &means, const std::size_t p) const
+    {
+      return operation->assume(X, means.first, means.second, points[p].xi);
+    }
+
+    Matrix
+    mean_of_dof(const int k) const
+    {
+      return means_of([&](const std::size_t p) { return turned_back(p, k); })
+        .first;
+    }
+
+    /** Stress turned back, its transpose, and what pulls at the frame. */
+    void
+    meet(const std::vector<Matrix> &stress)
+    {
+      turned.resize(points.size());
+      back.resize(points.size());
+      for (std::size_t p = 0; p < points.size(); ++p)
+        turned[p] = operation->turned_back(stress[p]);
+      const Means means = means_of([&](const std::size_t p) { return turned[p]; });
+      for (std::size_t p = 0; p < points.size(); ++p)
+        back[p] = assume(turned[p], means, p);
+      if constexpr (finite_strain)
+        {
+          invert_inertia();
+          Axis torque{};
+          for (std::size_t p = 0; p < points.size(); ++p)
+            for (int a = 0; a < n_spins; ++a)
+              torque[a] +=
+                points[p].volume *
+                contract(back[p],
+                         times<dim>(spin(a),
+                                    operation->turned_back(points[p].F)));
+          pull = divided(torque);
+        }
+    }
+
+    // H of the stretch, which is symmetric
+    void
+    invert_inertia()
+    {
+      const Matrix &U = operation->stretch;
+      if constexpr (dim == 2)
+        inverse[0][0] = 1 / (U[0][0] + U[1][1]);
+      else
+        {
+          Matrix H;
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              H[d][e] = (d == e ? U[0][0] + U[1][1] + U[2][2] : 0.) - U[d][e];
+          inverse              = cofactor<dim>(H);
+          const double inverse_of_determinant = 1 / determinant<dim>(H);
+          for (auto &row : inverse)
+            for (double &entry : row)
+              entry *= inverse_of_determinant;
+        }
+    }
+
+    Axis
+    divided(const Axis &axis) const
+    {
+      Axis result{};
+      for (int a = 0; a < n_spins; ++a)
+        for (int b = 0; b < n_spins; ++b)
+          result[a] += inverse[a][b] * axis[b];
+      return result;
+    }
+
+    /** Mean, spin and A G by each degree of freedom. */
+    void
+    vary()
+    {
+      turning.resize(n_spins * points.size());
+      for (int a = 0; a < n_spins; ++a)
+        {
+          const auto spun = [&](const std::size_t p) {
+            return times<dim>(spin(a), operation->turned_back(points[p].F));
+          };
+          const Means means = means_of(spun);
+          for (std::size_t p = 0; p < points.size(); ++p)
+            turning[a * points.size() + p] = assume(spun(p), means, p);
+        }
+
+      varied.resize(n_dofs * points.size());
+      own.resize(n_dofs * points.size());
+      for (int k = 0; k < n_dofs; ++k)
+        {
+          const Means means =
+            means_of([&](const std::size_t p) { return turned_back(p, k); });
+          mean[k] = means.first;
+          if constexpr (finite_strain)
+            {
+              Axis axis;
+              for (int a = 0; a < n_spins; ++a)
+                axis[a] = contract(spin(a), mean[k]);
+              axes[k] = divided(axis);
+            }
+          for (std::size_t p = 0; p < points.size(); ++p)
+            {
+              Matrix &total = varied[k * points.size() + p];
+              total         = assume(turned_back(p, k), means, p);
+              own[k * points.size() + p] = total;
+              for (int a = 0; a < n_spins; ++a)
+                {
+                  const Matrix change = change_by_spin(a, p);
+                  for (int d = 0; d < dim; ++d)
+                    for (int e = 0; e < dim; ++e)
+                      total[d][e] += axes[k][a] * change[d][e];
+                }
+            }
+        }
+    }
+
+    /** S_a A(G) - A(S_a G) */
+    Matrix
+    change_by_spin(const int a, const std::size_t p) const
+    {
+      Matrix result =
+        times<dim>(spin(a), operation->turned_back(deformation(p)));
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          result[d][e] -= turning[a * points.size() + p][d][e];
+      return result;
+    }
+
+    template <class Moduli>
+    void
+    add_material(const std::size_t                    p,
+                 const Moduli                        &moduli,
+                 std::array<double, n_dofs * n_dofs> &tangent) const
+    {
+      // the change of F_a as a gradient in the present configuration
+      std::array<Matrix, n_dofs> gradient;
+      for (int k = 0; k < n_dofs; ++k)
+        {
+          gradient[k] = operation->turned(varied[k * points.size() + p]);
+          if constexpr (finite_strain)
+            {
+              const Matrix F   = deformation(p);
+              const Matrix cof = cofactor<dim>(F);
+              const double J   = determinant<dim>(F);
+              Matrix       pushed{};
+              for (int d = 0; d < dim; ++d)
+                for (int e = 0; e < dim; ++e)
+                  for (int c = 0; c < dim; ++c)
+                    pushed[d][e] += gradient[k][d][c] * cof[e][c] / J;
+              gradient[k] = pushed;
+            }
+        }
+      for (int k = 0; k < n_dofs; ++k)
+        {
+          Matrix row{};
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              for (int f = 0; f < dim; ++f)
+                for (int g = 0; g < dim; ++g)
+                  row[f][g] += gradient[k][d][e] * moduli(p, d, e, f, g);
+          for (int l = 0; l < n_dofs; ++l)
+            tangent[k * n_dofs + l] +=
+              points[p].volume * contract(row, gradient[l]);
+        }
+    }
+
+    // The stress times the second derivative of F_a: with spins S and T by k
+    // and l, primes for what belongs to l,
+    //   P^ : [T delta(A G) + S (A(g') - A(T G))]
+    //   - Q : [T g + S (g' - T G)] - dS' t,
+    // where the axis of the spin changes by
+    //   H dw' = axis(-T <g>) - dH' w,   dH' = tr(dU') 1 - dU',
+    //   dU' = <g'> - T U.
+    void
+    add_turning(std::array<double, n_dofs * n_dofs> &tangent) const
+    {
+      std::array<Axis, n_dofs> by_spin{};
+      std::array<Axis, 3>      by_spins{};
+      for (std::size_t p = 0; p < points.size(); ++p)
+        for (int b = 0; b < n_spins; ++b)
+          {
+            // P^ : S_b X = S_b^T P^ : X
+            const Matrix stress = transpose_times<dim>(spin(b), turned[p]),
+                         given  = transpose_times<dim>(spin(b), back[p]);
+            const double V      = points[p].volume;
+            for (int k = 0; k < n_dofs; ++k)
+              by_spin[k][b] +=
+                V * (contract(stress, own[k * points.size() + p]) -
+                     contract(given, turned_back(p, k)));
+            for (int a = 0; a < n_spins; ++a)
+              {
+                by_spins[a][b] += V * contract(stress, change_by_spin(a, p));
+                by_spins[b][a] +=
+                  V * (contract(given,
+                                times<dim>(spin(a),
+                                           operation->turned_back(
+                                             points[p].F))) -
+                       contract(stress, turning[a * points.size() + p]));
+              }
+          }
+
+      Matrix puller{};
+      for (int a = 0; a < n_spins; ++a)
+        {
+          const Matrix S = spin(a);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              puller[d][e] += pull[a] * S[d][e];
+        }
+      std::array<Axis, n_dofs> by_axis{};
+      for (int k = 0; k < n_dofs; ++k)
+        for (int b = 0; b < n_spins; ++b)
+          by_axis[k][b] = contract(puller, times<dim>(spin(b), mean[k]));
+
+      for (int l = 0; l < n_dofs; ++l)
+        {
+          const auto turn = change_of_inertia(l);
+          for (int k = 0; k < n_dofs; ++k)
+            {
+              double entry = 0;
+              for (int a = 0; a < n_spins; ++a)
+                {
+                  entry += axes[l][a] * (by_spin[k][a] + by_axis[k][a]) +
+                           axes[k][a] * (by_spin[l][a] + turn[a]);
+                  for (int b = 0; b < n_spins; ++b)
+                    entry += axes[k][a] * by_spins[a][b] * axes[l][b];
+                }
+              tangent[k * n_dofs + l] += entry;
+            }
+        }
+    }
+
+    /** H^-1 t times the change of H by degree of freedom l. */
+    Axis
+    change_of_inertia(const int l) const
+    {
+      Matrix stretch = mean[l];
+      for (int a = 0; a < n_spins; ++a)
+        {
+          const Matrix turned = times<dim>(spin(a), operation->stretch);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              stretch[d][e] -= axes[l][a] * turned[d][e];
+        }
+      double trace = 0;
+      for (int d = 0; d < dim; ++d)
+        trace += stretch[d][d];
+      Axis result;
+      for (int a = 0; a < n_spins; ++a)
+        {
+          result[a] = trace * pull[a];
+          if constexpr (dim == 3)
+            for (int b = 0; b < n_spins; ++b)
+              result[a] -= stretch[a][b] * pull[b];
+        }
+      return result;
+    }
+
+    std::optional<AssumedDeformation<dim, finite_strain, double>> operation;
+    double                                                        volume = 0;
+    std::vector<Matrix> turned, back; // P^ and Q of the points
+    SmallMatrix<3, double>           inverse{}; // of H
+    Axis      pull{};    // H^-1 t
+    // By degree of freedom: mean of g, axis of the spin; of each point A(g) and
+    // the change of A G
+    std::array<Matrix, n_dofs>                      mean;
+    std::array<Axis, n_dofs> axes{};
+    std::vector<Matrix>                             own, varied;
+    std::vector<Matrix>                             turning; // A(S_a G)
+  };
+} // namespace limber
+
+#endif
