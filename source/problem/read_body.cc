@@ -436,8 +436,6 @@ namespace limber
         fluid ?
           Choice{Projection::cell,
                  "'cell', as a liquid resists volume changes only."} :
-        body.is_plastic && is_solved_by_newton(problem.method.integration) ?
-          Choice{Projection::cell, "'cell', which does not lock in volume."} :
         !linear && body.is_plastic ?
           Choice{Projection::node,
                  "'node', as plastic flow keeps its volume."} :
