@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_solver.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <limber/base/exceptions.h>
 #include <limber/fem/linear_solver.h>
-
-#include <Teuchos_ParameterList.hpp>
-#include <ml_MultiLevelPreconditioner.h>
+#include <limber/fem/multigrid.h>
 
 namespace limber
 {
@@ -82,18 +78,7 @@ namespace limber
         return;
       }
 
-    Teuchos::ParameterList settings;
-    ML_Epetra::SetDefaults("SA", settings);
-    settings.set("ML output", 0);
-    settings.set("smoother: type", "Chebyshev");
-    settings.set("smoother: sweeps", 2);
-    settings.set("coarse: type", "Amesos-KLU");
-    settings.set("PDE equations", int(dim));
-    settings.set("null space: type", "pre-computed");
-    settings.set("null space: dimension", dim == 2 ? 3 : 6);
-    settings.set("null space: vectors",
-                 const_cast<double *>(rigid_motions.data()));
-    methods->multigrid.initialize(matrix, settings);
+    make_multigrid(methods->multigrid, matrix, dim, rigid_motions, 2);
   }
 
 

@@ -143,6 +143,12 @@ namespace limber
         return 9 * K * G / (3 * K + G);
       }
 
+      double
+      bulk_over_shear() const override
+      {
+        return mean_volume ? law.bulk_modulus / law.shear_modulus : 0;
+      }
+
       // Flow whose strength follows the pressure makes volume as it is given
       // only where it is associated.
       bool
@@ -605,9 +611,10 @@ namespace limber
             return;
           }
         // derivatives of mean growth and, times the volume, of the slope
-        std::array<double, n_dofs> mean_growth{}, slope_of_cell{};
-        std::array<double, n_dofs> by_growth{}; // of the force
-        double                     curvature_of_cell = trial.curvature;
+        std::array<double, n_dofs> &mean_growth = response.volume_row;
+        std::array<double, n_dofs>  slope_of_cell{};
+        std::array<double, n_dofs>  by_growth{}; // of the force
+        double                      curvature_of_cell = trial.curvature;
         for (const Motion &motion : trial.motions)
           {
             const Rates rates = rates_of(motion);
@@ -633,12 +640,13 @@ namespace limber
           }
         if (!mean_volume)
           return;
-        for (int k = 0; k < n_dofs; ++k)
-          for (int l = 0; l < n_dofs; ++l)
-            response.tangent[k * n_dofs + l] +=
-              mean_growth[k] *
-                (curvature_of_cell * mean_growth[l] + slope_of_cell[l]) +
-              by_growth[k] * mean_growth[l];
+        response.volume_stiffness = curvature_of_cell;
+        if constexpr (flows)
+          for (int k = 0; k < n_dofs; ++k)
+            for (int l = 0; l < n_dofs; ++l)
+              response.tangent[k * n_dofs + l] +=
+                mean_growth[k] * slope_of_cell[l] +
+                by_growth[k] * mean_growth[l];
       }
 
       Moduli

@@ -17,6 +17,15 @@ namespace limber
   namespace
   {
     constexpr std::uint32_t not_numbered = 0xffffffffu;
+
+    // In mixed form the matrix keeps what volumes resist with in a material
+    // whose bulk modulus is that many shear moduli (nu = .29): multigrid then
+    // sees one that is well compressible, and not the deviator alone.
+    constexpr double kept_bulk = 2;
+    // Of what an unbounded body gives in to a pressure that alternates: the
+    // share that cells know of. The rest is for surfaces and sides. Both were
+    // found by counting iterations.
+    constexpr double alternating_share = 0.95;
   } // namespace
 
 
@@ -24,8 +33,26 @@ namespace limber
   template <int dim>
   struct NewtonEquations<dim>::Matrix
   {
+    /** Of the averaged volume of a body's points in a cell; mixed form alone.
+     */
+    struct Volume
+    {
+      std::size_t                         body;
+      std::array<std::uint32_t, 1 << dim> numbers;
+      std::array<double, dim << dim>      row;       // 1/m
+      double                              stiffness; // not in the matrix, J
+      double                              kept;      // in the matrix, J
+      double                              shear;     // G times the volume, J
+    };
+
     dealii::TrilinosWrappers::SparseMatrix values;
     std::optional<LinearSolver>            solver;
+    std::vector<Volume>                    volumes;
+    dealii::SparsityPattern                volume_pattern;
+    dealii::SparsityPattern                pressure_pattern;
+    dealii::SparseMatrix<double>           volume_rows, of_pressure;
+    std::vector<double>                    compliance, kept;
+    std::optional<MixedSolver>             mixed_solver;
     // rows and columns of held components meet nothing else; this is what
     // their correction does to the others
     std::vector<std::uint32_t> rows, columns;
@@ -38,7 +65,8 @@ namespace limber
 
   template <int dim>
   NewtonEquations<dim>::NewtonEquations(const RunParts<dim> &parts,
-                                        const std::size_t    largest_direct)
+                                        const std::size_t    largest_direct,
+                                        const double         mixed_beyond)
     : parts(parts)
     , largest_direct(largest_direct)
     , constraints(parts.problem.sides)
@@ -52,6 +80,7 @@ namespace limber
                                                    body->description.hourglass,
                                                    body->description.frame));
         factorises_all |= !responses.back()->has_symmetric_tangent();
+        mixed |= responses.back()->bulk_over_shear() > mixed_beyond;
       }
   }
 
@@ -354,6 +383,8 @@ namespace limber
       {
         matrix->values        = 0;
         matrix->is_factorised = false;
+        matrix->volumes.clear();
+        matrix->mixed_solver.reset();
         matrix->rows.clear();
         matrix->columns.clear();
         matrix->of_held.clear();
@@ -365,15 +396,17 @@ namespace limber
             by_node.data(),
             former != nullptr ? former_by_node.data() : nullptr,
             inertia != nullptr,
-            [&](const std::uint32_t cell, const CellResponse<dim> &response) {
+            [&](const std::uint32_t cell, CellResponse<dim> &response) {
               const auto numbers = numbers_in(cell);
               total_energy += response.energy;
               for (unsigned int i = 0; i < n; ++i)
                 for (int d = 0; d < dim; ++d)
                   total_forces[std::size_t(numbers[i]) * dim + d] +=
                     response.force[i * dim + d];
-              if (inertia != nullptr)
-                add_to_matrix(numbers.data(), n, response.tangent.data());
+              if (inertia == nullptr)
+                return;
+              add_volume(b, numbers, response);
+              add_to_matrix(numbers.data(), n, response.tangent.data());
             }))
         return false;
     add_ghost_forces(displacement);
@@ -382,11 +415,22 @@ namespace limber
       return true;
 
     add_ghost_tangent();
-    matrix->largest = 0;
     for (std::size_t k = 0; k < size(); ++k)
       if (!is_held(k))
         matrix->values.add(k, k, (*inertia)[k]);
+    fill_held_rows();
+    return true;
+  }
+
+
+
+  // What is held meets nothing else, and is as stiff as the rest.
+  template <int dim>
+  void
+  NewtonEquations<dim>::fill_held_rows()
+  {
     matrix->values.compress(dealii::VectorOperation::add);
+    matrix->largest = 0;
     for (std::size_t k = 0; k < size(); ++k)
       if (!is_held(k))
         matrix->largest =
@@ -395,7 +439,205 @@ namespace limber
       if (is_held(k))
         matrix->values.set(k, k, matrix->largest);
     matrix->values.compress(dealii::VectorOperation::insert);
-    return true;
+  }
+
+
+
+  // Into the tangent, but for what pressures of the mixed form carry.
+  template <int dim>
+  void
+  NewtonEquations<dim>::add_volume(
+    const std::size_t                          body,
+    const std::array<std::uint32_t, 1 << dim> &numbers,
+    CellResponse<dim>                         &response)
+  {
+    const double bulk_over_shear = responses[body]->bulk_over_shear();
+    double       kept            = response.volume_stiffness;
+    if (is_iterated() && mixed && bulk_over_shear > kept_bulk &&
+        response.volume_stiffness > 0)
+      {
+        const double shear = response.volume_stiffness / bulk_over_shear;
+        kept               = kept_bulk * shear;
+        matrix->volumes.push_back({body,
+                                   numbers,
+                                   response.volume_row,
+                                   response.volume_stiffness - kept,
+                                   kept,
+                                   shear});
+      }
+    response.add_volume_stiffness(kept);
+  }
+
+
+
+  // What mixed form has kept apart, for a factorisation of the whole
+  template <int dim>
+  void
+  NewtonEquations<dim>::condense_volumes()
+  {
+    CellResponse<dim> response;
+    for (const typename Matrix::Volume &volume : matrix->volumes)
+      {
+        response.tangent.fill(0);
+        response.volume_row = volume.row;
+        response.add_volume_stiffness(volume.stiffness);
+        add_to_matrix(volume.numbers.data(),
+                      volume.numbers.size(),
+                      response.tangent.data());
+      }
+    matrix->volumes.clear();
+    fill_held_rows();
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonEquations<dim>::make_mixed_solver(const std::vector<double> &motions)
+  {
+    const auto &volumes       = matrix->volumes;
+    const auto  for_each_free = [&](const auto &work) {
+      for (std::size_t c = 0; c < volumes.size(); ++c)
+        for (unsigned int k = 0; k < volumes[c].row.size(); ++k)
+          {
+            const std::size_t column =
+              std::size_t(volumes[c].numbers[k / dim]) * dim + k % dim;
+            if (!is_held(column))
+              work(c, column, volumes[c].row[k]);
+          }
+    };
+    matrix->volume_rows.clear();
+    matrix->volume_pattern.reinit(volumes.size(), size(), dim << dim);
+    for_each_free([&](const std::size_t c, const std::size_t column, double) {
+      matrix->volume_pattern.add(c, column);
+    });
+    matrix->volume_pattern.compress();
+    matrix->volume_rows.reinit(matrix->volume_pattern);
+    for_each_free(
+      [&](const std::size_t c, const std::size_t column, const double value) {
+        matrix->volume_rows.set(c, column, value);
+      });
+    matrix->compliance.clear();
+    matrix->kept.clear();
+    for (const typename Matrix::Volume &volume : volumes)
+      {
+        matrix->compliance.push_back(1 / volume.stiffness);
+        matrix->kept.push_back(volume.kept);
+      }
+    fill_pressure_matrix();
+    typename MixedSolver::Equations equations;
+    equations.stiffness   = &matrix->values;
+    equations.rows        = &matrix->volume_rows;
+    equations.compliance  = &matrix->compliance;
+    equations.of_pressure = &matrix->of_pressure;
+    equations.kept        = &matrix->kept;
+    matrix->mixed_solver.emplace(dim, motions, equations);
+  }
+
+
+
+  // What volumes give in to pressures, where the matrix keeps nothing of their
+  // stiffness, 1/K + B A^-1 B^T, nearly: V/G, but nothing where pressures
+  // alternate from cell to cell in two directions or more, as they move no
+  // node. Of s = sin^2(k/2) along x and y, B A^-1 B^T is nearly proportional to
+  // 1 - 2 s_x s_y / (s_x + s_y), and this matrix to 1 - s_x s_y, both zero in
+  // the pattern alone.
+  template <int dim>
+  void
+  NewtonEquations<dim>::fill_pressure_matrix()
+  {
+    constexpr unsigned int n       = 1 << dim;
+    const auto            &volumes = matrix->volumes;
+    using Around = std::array<std::uint32_t, n>; // volumes around a node
+    std::vector<Around> complete;
+    Around              nothing;
+    nothing.fill(not_numbered);
+    for (std::size_t begin = 0, end; begin < volumes.size(); begin = end)
+      {
+        std::vector<Around> around(nodes.size(), nothing);
+        for (end = begin;
+             end < volumes.size() && volumes[end].body == volumes[begin].body;
+             ++end)
+          for (unsigned int i = 0; i < n; ++i)
+            around[volumes[end].numbers[i]][n - 1 - i] = end;
+        for (const Around &of_node : around)
+          if (std::count(of_node.begin(), of_node.end(), not_numbered) == 0)
+            complete.push_back(of_node);
+      }
+
+    dealii::DynamicSparsityPattern pattern(volumes.size(), volumes.size());
+    for (std::size_t c = 0; c < volumes.size(); ++c)
+      pattern.add(c, c);
+    for (const Around &of_node : complete)
+      for (const std::uint32_t c : of_node)
+        pattern.add_entries(c, of_node.begin(), of_node.end());
+    matrix->of_pressure.clear();
+    matrix->pressure_pattern.copy_from(pattern);
+    matrix->of_pressure.reinit(matrix->pressure_pattern);
+    std::vector<double> root(volumes.size());
+    for (std::size_t c = 0; c < volumes.size(); ++c)
+      {
+        root[c] = 1 / std::sqrt(volumes[c].shear);
+        matrix->of_pressure.add(c,
+                                c,
+                                1 / (volumes[c].kept + volumes[c].stiffness) +
+                                  root[c] * root[c]);
+      }
+    for (const Around &of_node : complete)
+      for (unsigned int directions = 0; directions < n; ++directions)
+        if (__builtin_popcount(directions) >= 2)
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+              {
+                const double sign =
+                  __builtin_popcount((i ^ j) & directions) % 2 == 0 ? 1 : -1;
+                matrix->of_pressure.add(of_node[i],
+                                        of_node[j],
+                                        -alternating_share * sign *
+                                          root[of_node[i]] * root[of_node[j]] /
+                                          (n * n));
+              }
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  NewtonEquations<dim>::solve_mixed(NodalVector               &solution,
+                                    const NodalVector         &right_side,
+                                    const std::vector<double> &of_held)
+  {
+    if (!matrix->mixed_solver)
+      make_mixed_solver(rigid_motions());
+    // what held components do to the volumes
+    std::vector<double> of_volumes;
+    for (const typename Matrix::Volume &volume : matrix->volumes)
+      {
+        of_volumes.push_back(0);
+        for (unsigned int k = 0; k < volume.row.size(); ++k)
+          {
+            const std::size_t column =
+              std::size_t(volume.numbers[k / dim]) * dim + k % dim;
+            if (is_held(column))
+              of_volumes.back() -= volume.row[k] * of_held[column];
+          }
+      }
+    return matrix->mixed_solver->solve(solution, right_side, of_volumes);
+  }
+
+
+
+  // One after the other
+  template <int dim>
+  std::vector<double>
+  NewtonEquations<dim>::rigid_motions() const
+  {
+    std::vector<double> result(n_rigid_motions<dim> * size());
+    for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
+      for (std::size_t k = 0; k < size(); ++k)
+        result[m * size() + k] =
+          rigid_motion<dim>(m, k % dim, places[k / dim], places[0]);
+    return result;
   }
 
 
@@ -499,33 +741,23 @@ namespace limber
                               const std::vector<double> &of_held,
                               std::vector<double>       &correction)
   {
+    if (!is_iterated() && !matrix->volumes.empty())
+      condense_volumes();
     NodalVector right_side(size()), solution(size());
     for (std::size_t k = 0; k < size(); ++k)
       right_side[k] = is_held(k) ? of_held[k] * matrix->largest : unbalanced[k];
     for (std::size_t e = 0; e < matrix->rows.size(); ++e)
       right_side[matrix->rows[e]] -=
         matrix->of_held[e] * of_held[matrix->columns[e]];
-    const bool direct = size() <= largest_direct || factorises_all;
     try
       {
-        if (!matrix->solver || matrix->solver->direct != direct)
-          {
-            matrix->is_factorised = false;
-            std::vector<double> motions(n_rigid_motions<dim> * size());
-            for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
-              for (std::size_t k = 0; k < size(); ++k)
-                motions[m * size() + k] =
-                  rigid_motion<dim>(m, k % dim, places[k / dim], places[0]);
-            matrix->solver.emplace(direct, dim, motions);
-          }
-        if (!matrix->is_factorised)
-          matrix->solver->set_matrix(matrix->values);
-        matrix->is_factorised = true;
-        n_linear_iterations += matrix->solver->solve(solution, right_side);
+        n_linear_iterations += matrix->volumes.empty() ?
+                                 solve_condensed(solution, right_side) :
+                                 solve_mixed(solution, right_side, of_held);
       }
     catch (const ComputationError &)
       {
-        if (direct)
+        if (!is_iterated())
           return false;
         factorises_all = true; // from now on
         return solve(unbalanced, of_held, correction);
@@ -538,6 +770,24 @@ namespace limber
         all += std::abs(correction[k]);
       }
     return std::isfinite(all);
+  }
+
+
+
+  template <int dim>
+  unsigned int
+  NewtonEquations<dim>::solve_condensed(NodalVector       &solution,
+                                        const NodalVector &right_side)
+  {
+    if (!matrix->solver || matrix->solver->direct == is_iterated())
+      {
+        matrix->is_factorised = false;
+        matrix->solver.emplace(!is_iterated(), dim, rigid_motions());
+      }
+    if (!matrix->is_factorised)
+      matrix->solver->set_matrix(matrix->values);
+    matrix->is_factorised = true;
+    return matrix->solver->solve(solution, right_side);
   }
 
 

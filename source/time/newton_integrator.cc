@@ -139,7 +139,10 @@ namespace limber
            " iterations a step, at most " + std::to_string(most_iterations) +
            "; steps halved: " + std::to_string(halvings) +
            (equations.linear_iterations() > 0 ?
-              "; conjugate gradients: " +
+              std::string(equations.is_mixed() ?
+                            "; minimal residuals of displacements and "
+                            "pressures: " :
+                            "; conjugate gradients: ") +
                 brief(double(equations.linear_iterations()) /
                       double(std::max(1ul, corrections))) +
                 " iterations a correction" +

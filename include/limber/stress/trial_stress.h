@@ -17,15 +17,32 @@ namespace limber
   /**
    * How the points of a body in a cell resist a displacement of its nodes.
    * Degrees of freedom node by node: component d of node i is i * dim + d.
+   * Where volumes are averaged, the tangent is that at a given mean growth, and
+   * the derivative of the force has the term of rank one besides
+   *
+   *   volume_stiffness * volume_row volume_row^T,
+   *
+   * which grows without bound towards incompressibility.
    */
   template <int dim>
   struct CellResponse
   {
     static constexpr int n = dim << dim;
 
-    double                    energy = 0; // of strain, J
-    std::array<double, n>     force{};    // derivative of the energy, N
-    std::array<double, n * n> tangent{};  // derivative of the force, N/m
+    double                    energy = 0;   // of strain, J
+    std::array<double, n>     force{};      // derivative of the energy, N
+    std::array<double, n * n> tangent{};    // derivative of the force, N/m
+    std::array<double, n>     volume_row{}; // of the mean growth, 1/m
+    double                    volume_stiffness = 0; // J
+
+    /** Put that much of the volume stiffness into the tangent. */
+    void
+    add_volume_stiffness(const double stiffness)
+    {
+      for (int k = 0; k < n; ++k)
+        for (int l = 0; l < n; ++l)
+          tangent[k * n + l] += stiffness * volume_row[k] * volume_row[l];
+    }
   };
 
 
@@ -62,8 +79,7 @@ namespace limber
   public:
     virtual ~TrialStress() = default;
 
-    using Work =
-      std::function<void(std::uint32_t cell, const CellResponse<dim> &)>;
+    using Work = std::function<void(std::uint32_t cell, CellResponse<dim> &)>;
 
     /**
      * Call @p work for each occupied cell, with the tangent on request. All
@@ -97,6 +113,10 @@ namespace limber
     /** At rest, Pa. */
     virtual double
     young_modulus() const = 0;
+
+    /** Where the mean volume of the points in a cell acts: K / G at rest. */
+    virtual double
+    bulk_over_shear() const = 0;
 
     virtual bool
     has_symmetric_tangent() const = 0;

@@ -2,7 +2,7 @@
 #ifndef limber_time_newton_equations_h
 #define limber_time_newton_equations_h
 
-#include <limber/fem/linear_solver.h>
+#include <limber/fem/mixed_solver.h>
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
 #include <limber/time/integrator.h>
@@ -33,11 +33,14 @@ namespace limber
   {
   public:
     /**
-     * Up to @p largest_direct unknowns are factorised, more are solved for with
-     * conjugate gradients, unless the tangent is not symmetric.
+     * Up to @p largest_direct unknowns are factorised. More are solved for with
+     * conjugate gradients, or where a body has averaged volumes and a bulk
+     * modulus of @p mixed_beyond shear moduli and more, in mixed form with
+     * minimal residuals; unless the tangent is not symmetric.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
-                             std::size_t largest_direct = default_direct);
+                             std::size_t largest_direct = default_direct,
+                             double      mixed_beyond   = default_mixed);
     ~NewtonEquations();
 
     /**
@@ -128,14 +131,21 @@ namespace limber
           const std::vector<double> &of_held,
           std::vector<double>       &correction);
 
-    /** Of conjugate gradients, in all. */
+    /** Of conjugate gradients or minimal residuals, in all. */
     unsigned long
     linear_iterations() const
     {
       return n_linear_iterations;
     }
 
-    /** Conjugate gradients have failed; all is factorised since. */
+    /** Cells have pressures of their own where equations are iterated. */
+    bool
+    is_mixed() const
+    {
+      return mixed;
+    }
+
+    /** Iterations have failed; all is factorised since. */
     bool
     gave_up_iterating() const
     {
@@ -151,6 +161,8 @@ namespace limber
 
     // faster than iterations up to here
     static constexpr std::size_t default_direct = dim == 2 ? 60000 : 12000;
+    // less work than conjugate gradients from here on: nu = .475
+    static constexpr double default_mixed = 20;
 
     // A face between two cells with points, near the surface
     struct GhostFace
@@ -175,6 +187,31 @@ namespace limber
     void
     add_ghost_tangent();
     void
+    add_volume(std::size_t                                body,
+               const std::array<std::uint32_t, 1 << dim> &numbers,
+               CellResponse<dim>                         &response);
+    void
+    condense_volumes();
+    void
+    fill_held_rows();
+    std::vector<double>
+    rigid_motions() const;
+    bool
+    is_iterated() const
+    {
+      return size() > largest_direct && !factorises_all;
+    }
+    unsigned int
+    solve_condensed(NodalVector &solution, const NodalVector &right_side);
+    void
+    make_mixed_solver(const std::vector<double> &motions);
+    void
+    fill_pressure_matrix();
+    unsigned int
+    solve_mixed(NodalVector               &solution,
+                const NodalVector         &right_side,
+                const std::vector<double> &of_held);
+    void
     add_to_matrix(const std::uint32_t *nodes_of_block,
                   unsigned int         n_nodes,
                   const double        *block);
@@ -186,6 +223,7 @@ namespace limber
 
     const RunParts<dim>                                  parts;
     const std::size_t                                    largest_direct;
+    bool                                                 mixed = false;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
     std::vector<std::uint32_t>      cells, nodes;   // with points, sorted

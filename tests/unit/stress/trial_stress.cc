@@ -152,7 +152,8 @@ namespace
         displacement.data(),
         former,
         with_tangent,
-        [&](const std::uint32_t cell, const CellResponse<dim> &response) {
+        [&](const std::uint32_t cell, CellResponse<dim> &response) {
+          response.add_volume_stiffness(response.volume_stiffness);
           result.energy += response.energy;
           const auto dof = [&](const int k) {
             return grid.node_number(cell, k / dim) * dim + k % dim;

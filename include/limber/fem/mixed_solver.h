@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_mixed_solver_h
+#define limber_fem_mixed_solver_h
+
+#include <deal.II/lac/sparse_matrix.h>
+
+#include <limber/fem/linear_solver.h>
+
+namespace limber
+{
+  /**
+   * Solves (A + B^T C^-1 B) u = f, the equations of a solid whose rows b of B
+   * tell the growth of the volume of a cell, as
+   *
+   *   A u + B^T p = f,     B u - C p = g,      C diagonal,
+   *
+   * which does not mind how little the volume gives in (C to zero). Minimal
+   * residuals (MINRES; Paige and Saunders, SIAM J. Numer. Anal. 12, 1975) with
+   * one V-cycle of multigrid for A and a polynomial of Chebyshev in a sparse
+   * matrix for the pressures (block diagonal: Silvester and Wathen, SIAM J.
+   * Numer. Anal. 31, 1994). For one rank.
+   *
+   * A may keep the part B^T D B of the stiffness of the volumes, D diagonal.
+   * With A0 what is in it besides, the pressures then have, in terms of
+   * Q = (C^-1 + D)^-1 + B A0^-1 B^T and a = D / (C^-1 + D), the exact inverse
+   *
+   *   (C + B A^-1 B^T)^-1 = (1 - a) ((1 - a) Q^-1 + D),
+   *
+   * where D is a multiple of C^-1 (Woodbury's formula); the preconditioner is
+   * this with the caller's approximation of Q.
+   */
+  class MixedSolver
+  {
+  public:
+    struct Equations
+    {
+      const dealii::TrilinosWrappers::SparseMatrix *stiffness   = nullptr; // A
+      const dealii::SparseMatrix<double>           *rows        = nullptr; // B
+      const std::vector<double>                    *compliance  = nullptr; // C
+      const std::vector<double>                    *kept        = nullptr; // D
+      const dealii::SparseMatrix<double>           *of_pressure = nullptr; // Q
+    };
+
+    /** @p rigid_motions: see make_multigrid(). */
+    MixedSolver(unsigned int               dim,
+                const std::vector<double> &rigid_motions,
+                const Equations           &equations);
+
+    ~MixedSolver();
+
+    /**
+     * The displacements u for the right sides f and g. Returns the iterations
+     * it took; throws ComputationError where they do not converge.
+     */
+    unsigned int
+    solve(NodalVector               &solution,
+          const NodalVector         &right_side,
+          const std::vector<double> &of_volumes) const;
+
+  private:
+    struct Methods;
+
+    const Equations          equations;
+    std::unique_ptr<Methods> methods;
+  };
+} // namespace limber
+
+#endif

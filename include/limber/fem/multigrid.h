@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_fem_multigrid_h
+#define limber_fem_multigrid_h
+
+#include <deal.II/lac/trilinos_precondition.h>
+#include <deal.II/lac/trilinos_sparse_matrix.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * One V-cycle of smoothed aggregation (ML) for a matrix of elasticity.
+   * @p rigid_motions: values of each motion on the locally owned degrees of
+   * freedom, one motion after the other, needed during this call alone;
+   * @p dim: components of a node; @p sweeps: of the smoother (Chebyshev).
+   */
+  void
+  make_multigrid(dealii::TrilinosWrappers::PreconditionAMG    &multigrid,
+                 const dealii::TrilinosWrappers::SparseMatrix &matrix,
+                 unsigned int                                  dim,
+                 const std::vector<double>                    &rigid_motions,
+                 int                                           sweeps);
+} // namespace limber
+
+#endif
