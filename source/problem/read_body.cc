@@ -436,6 +436,10 @@ namespace limber
         fluid ?
           Choice{Projection::cell,
                  "'cell', as a liquid resists volume changes only."} :
+        !soft && is_solved_by_newton(problem.method.integration) ?
+          Choice{Projection::cell,
+                 "'cell', which does not lock in volume, and whose pressures "
+                 "are solved for as well where the system is large."} :
         !linear && body.is_plastic ?
           Choice{Projection::node,
                  "'node', as plastic flow keeps its volume."} :
