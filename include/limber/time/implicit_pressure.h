@@ -2,12 +2,7 @@
 #ifndef limber_time_implicit_pressure_h
 #define limber_time_implicit_pressure_h
 
-#include <limber/grid/boundary_conditions.h>
-#include <limber/time/integrator.h>
-#include <limber/time/pressure_solver.h>
-
-#include <optional>
-#include <vector>
+#include <limber/time/pressure_system.h>
 
 namespace limber
 {
@@ -85,135 +80,23 @@ namespace limber
 
   private:
     using Layout                          = NodeLayout<dim>;
-    static constexpr unsigned int n_nodes = 1 << dim;
+    using Medium                          = typename PressureCells<dim>::Medium;
+    using Record                          = typename PressureCells<dim>::Record;
+    using Result                          = typename PressureCells<dim>::Result;
+    static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
-    /** What ranks tell each other of a cell of a body. */
-    struct Record
-    {
-      static constexpr unsigned int number = 0; // of the unknown, from 1 on
-      static constexpr unsigned int mass   = 1; // kg
-      static constexpr unsigned int moment = 2; // sum of m J p, kg Pa
-      static constexpr unsigned int rows   = 3; // B by nodes, m^2 or m
-      static constexpr unsigned int stride = rows + n_nodes * dim;
-    };
-
-    /** Pressure and dilation, for ranks that have points in a cell. */
-    struct Result
-    {
-      static constexpr unsigned int pressure = 0, dilation = 1;
-      static constexpr unsigned int scale  = dilation; // while it is solved
-      static constexpr unsigned int stride = 2;
-    };
-
-    /** A body whose pressure is implicit. */
-    struct Liquid
-    {
-      MaterialBody<dim> *body;
-      LazyArray<double>  records; // by cell
-      // By node, the cell of the body at each place around it, from 1 on: the
-      // node is corner k of the cell at place k.
-      LazyArray<std::uint32_t> around;
-      LazyArray<double>        results; // by cell
-      // Owned, in the order of their rows; the first of these, here
-      std::vector<std::uint32_t> cells;
-      std::uint32_t              first = 0;
-    };
-
-    template <class Work>
     void
-    for_each_near(std::uint32_t cell, int n, const Work &work) const;
-    void
-    gather(Liquid &liquid);
-    bool
-    knows_all_cells() const;
-    void
-    choose_cells();
-    void
-    find_columns();
-    void
-    exchange(Liquid &liquid);
-    void
-    look_around(Liquid &liquid);
-    void
-    hold_nodes(double end);
-    void
-    assemble(double step);
-    void
-    assemble_row(std::size_t   liquid,
-                 std::uint32_t cell,
-                 std::uint32_t row,
-                 double        step);
-    double
-    scale();
-    void
-    share(Liquid &liquid, unsigned int slot);
-    void
-    keep_result(Liquid &liquid, double step);
+    keep_result(Medium &medium, double step);
     void
     push_nodes(double step);
 
-    double *
-    record(Liquid &liquid, const std::uint32_t cell)
-    {
-      return liquid.records.data() + std::size_t(cell) * Record::stride;
-    }
-    const double *
-    record(const Liquid &liquid, const std::uint32_t cell) const
-    {
-      return liquid.records.data() + std::size_t(cell) * Record::stride;
-    }
-    std::uint32_t
-    node_of(const std::uint32_t cell, const unsigned int corner) const
-    {
-      return parts.grid.geometry[cell].node[corner] / Layout::stride;
-    }
-    const std::uint32_t *
-    around(const Liquid &liquid, const std::uint32_t node) const
-    {
-      return liquid.around.data() + std::size_t(node) * n_nodes;
-    }
-    bool
-    is_inside(const Liquid &liquid, std::uint32_t node) const;
-    double
-    pattern_scale(const Liquid &liquid, std::uint32_t node, double step) const;
-    double *
-    result(Liquid &liquid, const std::uint32_t cell)
-    {
-      return liquid.results.data() + std::size_t(cell) * Result::stride;
-    }
-    double
-    excess(std::uint32_t cell, std::uint32_t node, double density) const;
-
-    const RunParts<dim>         parts;
-    BoundaryConditions<dim>    &boundaries;
-    std::optional<ExchangePlan> shared_cells;
-    RecordExchange              records_exchange{Record::stride};
-    RecordExchange              result_exchange{Result::stride};
-    std::vector<Liquid>         liquids;
-    // By node and component: 1/m, or 0 where a side holds it; and the velocity
-    // without the pressures, or that of the side
-    LazyArray<double> mobility, velocity;
-    LazyArray<double> force; // of the pressures, likewise, N
-    PressureEquations equations;
-    bool              has_cells     = false; // of the present mesh
-    double            share_of_pace = 0;     // of the step, see solve()
-
-    // By place in a row: the cell that it stands for
-    std::vector<std::uint32_t> mates;
-
-    // By row
-    struct Former
-    {
-      double pressure;   // P0, Pa
-      double compliance; // C, m^3/Pa
-    };
-    std::vector<Former> former;
-    std::vector<double> growth;    // e
-    std::vector<double> pressures; // P1, Pa; over the scales while solved
-    std::vector<double> scales;    // of rows and columns
-
-    PressureSolver solver;
-    Effort         spent;
+    const RunParts<dim> parts;
+    PressureCells<dim>  cells;
+    PressureSystem<dim> system;
+    // Of the pressures, by node and component, N
+    LazyArray<double> force;
+    PressureSolver    solver;
+    Effort            spent;
   };
 } // namespace limber
 

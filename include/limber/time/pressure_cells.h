@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_pressure_cells_h
+#define limber_time_pressure_cells_h
+
+#include <limber/time/integrator.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * The cells of bodies whose pressure is implicit, numbered: one unknown for
+   * each cell of each body, those of a rank together and in the order of ranks.
+   * Empty cells near the material have numbers too, so that the same serve for
+   * some steps.
+   */
+  template <int dim>
+  class PressureCells
+  {
+  public:
+    static constexpr unsigned int n_nodes = 1 << dim; // of a cell
+
+    /** What ranks tell each other of a cell of a body. */
+    struct Record
+    {
+      static constexpr unsigned int number = 0; // of the unknown, from 1 on
+      static constexpr unsigned int mass   = 1; // kg
+      static constexpr unsigned int moment = 2; // sum of m J p, kg Pa
+      static constexpr unsigned int rows   = 3; // B by nodes, m^2 or m
+      static constexpr unsigned int stride = rows + n_nodes * dim;
+    };
+
+    /** Pressure and dilation, for ranks that have points in a cell. */
+    struct Result
+    {
+      static constexpr unsigned int pressure = 0, dilation = 1;
+      static constexpr unsigned int scale  = dilation; // while it is solved
+      static constexpr unsigned int stride = 2;
+    };
+
+    /** A body whose pressure is implicit. */
+    struct Medium
+    {
+      MaterialBody<dim> *body;
+      LazyArray<double>  records; // by cell
+      // By node, the cell of the body at each place around it, from 1 on: the
+      // node is corner k of the cell at place k.
+      LazyArray<std::uint32_t> around;
+      LazyArray<double>        results; // by cell
+      // Owned, in the order of their rows; the first of these, here
+      std::vector<std::uint32_t> cells;
+      std::uint32_t              first = 0;
+
+      double *
+      record(const std::uint32_t cell)
+      {
+        return records.data() + std::size_t(cell) * Record::stride;
+      }
+      const double *
+      record(const std::uint32_t cell) const
+      {
+        return records.data() + std::size_t(cell) * Record::stride;
+      }
+      double *
+      result(const std::uint32_t cell)
+      {
+        return results.data() + std::size_t(cell) * Result::stride;
+      }
+      const double *
+      result(const std::uint32_t cell) const
+      {
+        return results.data() + std::size_t(cell) * Result::stride;
+      }
+      const std::uint32_t *
+      cells_around(const std::uint32_t node) const
+      {
+        return around.data() + std::size_t(node) * n_nodes;
+      }
+      /** Whether the body is in all cells around a node. */
+      bool
+      is_inside(const std::uint32_t node) const
+      {
+        const std::uint32_t *const cells = cells_around(node);
+        return std::all_of(cells, cells + n_nodes, [](const std::uint32_t c) {
+          return c > 0;
+        });
+      }
+    };
+
+    explicit PressureCells(const RunParts<dim> &parts);
+
+    /** Adopt a mesh that has changed. */
+    void
+    reinit();
+
+    /**
+     * What cells hold now, as owners and their neighbours know it. Returns
+     * whether cells have got other numbers. Collective.
+     */
+    bool
+    update();
+
+    /** Hand a slot of the results from the owners of cells to all who hold
+     * them. Collective. */
+    void
+    share(Medium &medium, unsigned int slot);
+
+    /** Call work(place, cell) for the cells at most @p n away, known here. */
+    template <class Work>
+    void
+    for_each_near(std::uint32_t cell, int n, const Work &work) const;
+
+    /** Call work(cell) for those of a medium and those that ranks share. */
+    template <class Work>
+    void
+    for_each_known(const Medium &medium, const Work &work) const
+    {
+      std::for_each(medium.cells.begin(), medium.cells.end(), work);
+      for (const auto &neighbour : parts.grid.shared_cells.neighbours)
+        std::for_each(neighbour.records.begin(), neighbour.records.end(), work);
+    }
+
+    std::uint32_t
+    node_of(const std::uint32_t cell, const unsigned int corner) const
+    {
+      return parts.grid.geometry[cell].node[corner] / NodeLayout<dim>::stride;
+    }
+
+    std::vector<Medium> media;
+    std::uint32_t       n     = 0; // unknowns of this rank
+    std::uint32_t       first = 0; // of them among those of all ranks
+    std::uint32_t       n_all = 0; // of all ranks
+
+  private:
+    void
+    gather(Medium &medium);
+    bool
+    knows_all_cells() const;
+    void
+    choose_cells();
+    void
+    exchange(Medium &medium);
+    void
+    look_around(Medium &medium);
+
+    const RunParts<dim>         parts;
+    std::optional<ExchangePlan> shared_cells;
+    RecordExchange              records_exchange{Record::stride};
+    RecordExchange              result_exchange{Result::stride};
+    bool                        has_cells = false; // of the present mesh
+  };
+
+
+
+  template <int dim>
+  template <class Work>
+  void
+  PressureCells<dim>::for_each_near(const std::uint32_t cell,
+                                    const int           n,
+                                    const Work         &work) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
+    const unsigned int       width    = 2 * n + 1,
+                       all = dim == 2 ? width * width : width * width * width;
+    for (unsigned int place = 0; place < all; ++place)
+      {
+        std::array<double, dim> x;
+        for (unsigned int d = 0, rest = place; d < dim; ++d, rest /= width)
+          x[d] = geometry.origin[d] +
+                 (0.5 + int(rest % width) - n) / geometry.inverse_edge[d];
+        if (const auto near = parts.grid.bins.cell_at(x); near != invalid_cell)
+          work(place, near);
+      }
+  }
+} // namespace limber
+
+#endif

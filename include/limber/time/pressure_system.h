@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_pressure_system_h
+#define limber_time_pressure_system_h
+
+#include <limber/grid/boundary_conditions.h>
+#include <limber/time/pressure_cells.h>
+#include <limber/time/pressure_solver.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * The equations of the implicit pressure, see ImplicitPressure: their
+   * pattern, C + dt^2 B M^-1 B^T + gamma T, and C P0 - dt B v* + V e.
+   */
+  template <int dim>
+  class PressureSystem
+  {
+  public:
+    using Medium = typename PressureCells<dim>::Medium;
+
+    PressureSystem(const RunParts<dim>     &parts,
+                   BoundaryConditions<dim> &boundaries,
+                   PressureCells<dim>      &cells);
+
+    /** Adopt a mesh that has changed. */
+    void
+    reinit();
+
+    /** Adopt the numbers of the cells. */
+    void
+    find_columns();
+
+    /**
+     * Of nodes that are advanced without these pressures, on which no side has
+     * acted yet, in a step of so many seconds until @p end; the density control
+     * acts with this @p share.
+     */
+    void
+    assemble(double end, double step, double share);
+
+    /**
+     * Rows and columns such that the diagonal is one, which makes the equations
+     * of cells that hold little as large as others; and the pressures that
+     * points bring, with which to start. Returns the size of the right side if
+     * all volumes were to change by one. Collective.
+     */
+    double
+    scale();
+
+    /** The part of gamma T P in a cell, m^3, with the pressures that cells
+     * know of each other. */
+    double
+    flux(const Medium &medium, std::uint32_t cell, double step) const;
+
+    /** 1/m of a component of a node, or 0 where a side holds it. */
+    double
+    mobility_of(const std::uint32_t node, const int d) const
+    {
+      return mobility[std::size_t(node) * dim + d];
+    }
+
+    PressureEquations equations;
+
+    // By row
+    struct Former
+    {
+      double pressure;   // P0, Pa
+      double compliance; // C, m^3/Pa
+    };
+    std::vector<Former> former;
+    std::vector<double> growth;    // e
+    std::vector<double> pressures; // P1, Pa; over the scales while solved
+    std::vector<double> scales;    // of rows and columns
+
+  private:
+    using Layout                          = NodeLayout<dim>;
+    using Record                          = typename PressureCells<dim>::Record;
+    using Result                          = typename PressureCells<dim>::Result;
+    static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
+
+    void
+    hold_nodes(double end);
+    void
+    assemble_row(std::size_t   medium,
+                 std::uint32_t cell,
+                 std::uint32_t row,
+                 double        step,
+                 double        share);
+    double
+    pattern_scale(const Medium &medium, std::uint32_t node, double step) const;
+    double
+    excess(std::uint32_t cell, std::uint32_t node, double density) const;
+
+    const RunParts<dim>      parts;
+    BoundaryConditions<dim> &boundaries;
+    PressureCells<dim>      &cells;
+    // By node and component: 1/m, or 0 where a side holds it; and the velocity
+    // without the pressures, or that of the side
+    LazyArray<double> mobility, velocity;
+    // By place in a row: the cell that it stands for
+    std::vector<std::uint32_t> mates;
+  };
+} // namespace limber
+
+#endif

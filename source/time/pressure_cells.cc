@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/mean_gradients.h>
+#include <limber/time/pressure_cells.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    // Cells around the material that have numbers too, so that the same serve
+    // for some steps
+    constexpr int margin = 3;
+  } // namespace
+
+
+
+  template <int dim>
+  PressureCells<dim>::PressureCells(const RunParts<dim> &parts)
+    : parts(parts)
+  {
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  PressureCells<dim>::reinit()
+  {
+    shared_cells.emplace(parts.grid.shared_cells);
+    media.clear();
+    for (auto &body : parts.bodies)
+      if (body->implicit)
+        {
+          Medium medium;
+          medium.body = body.get();
+          medium.records.reinit(std::size_t(parts.grid.n_cells()) *
+                                Record::stride);
+          medium.around.reinit(std::size_t(parts.nodes.table.n()) * n_nodes);
+          medium.results.reinit(std::size_t(parts.grid.n_cells()) *
+                                Result::stride);
+          media.push_back(std::move(medium));
+        }
+    has_cells = false;
+  }
+
+
+
+  template <int dim>
+  bool
+  PressureCells<dim>::update()
+  {
+    const bool are_new = !has_cells || !knows_all_cells();
+    if (are_new)
+      choose_cells();
+    has_cells = true;
+    for (Medium &medium : media)
+      {
+        gather(medium);
+        exchange(medium);
+        look_around(medium);
+      }
+    return are_new;
+  }
+
+
+
+  // Whether all cells that hold something have equations, on all ranks.
+  template <int dim>
+  bool
+  PressureCells<dim>::knows_all_cells() const
+  {
+    int known = 1;
+    for (const Medium &medium : media)
+      {
+        const CellSums<dim> sums = medium.body->cell_sums->view();
+        for (const std::uint32_t cell : parts.nodes.owned_occupied_cells())
+          if (sums.present_mass(cell) > 0 &&
+              !(medium.record(cell)[Record::number] > 0))
+            known = 0;
+      }
+    return dealii::Utilities::MPI::min(known, parts.grid.communicator) > 0;
+  }
+
+
+
+  template <int dim>
+  void
+  PressureCells<dim>::choose_cells()
+  {
+    n = 0;
+    for (Medium &medium : media)
+      {
+        for (const std::uint32_t cell : medium.cells)
+          medium.record(cell)[Record::number] = 0;
+        medium.cells.clear();
+        const CellSums<dim> sums = medium.body->cell_sums->view();
+        for (const auto *const occupied : {&parts.nodes.owned_occupied_cells(),
+                                           &parts.nodes.ghost_occupied_cells()})
+          for (const std::uint32_t cell : *occupied)
+            if (sums.present_mass(cell) > 0)
+              for_each_near(cell, margin, [&](unsigned int, const auto near) {
+                if (near < parts.grid.n_owned_cells() &&
+                    !(medium.record(near)[Record::number] > 0))
+                  {
+                    medium.record(near)[Record::number] = 1;
+                    medium.cells.push_back(near);
+                  }
+              });
+        std::sort(medium.cells.begin(), medium.cells.end());
+        medium.first = n;
+        n += medium.cells.size();
+      }
+
+    const MPI_Comm communicator = parts.grid.communicator;
+    MPI_Exscan(&n, &first, 1, MPI_UINT32_T, MPI_SUM, communicator);
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      first = 0; // which MPI leaves undefined
+    n_all = dealii::Utilities::MPI::sum(n, communicator);
+    for (Medium &medium : media)
+      for (std::size_t k = 0; k < medium.cells.size(); ++k)
+        medium.record(medium.cells[k])[Record::number] =
+          1. + first + medium.first + k;
+  }
+
+
+
+  // What the cells of this rank hold, which know the points of all ranks, and
+  // what each rank knows of the pressure of its points.
+  template <int dim>
+  void
+  PressureCells<dim>::gather(Medium &medium)
+  {
+    for (const auto &neighbour : parts.grid.shared_cells.neighbours)
+      for (const std::uint32_t cell : neighbour.records)
+        if (cell >= parts.grid.n_owned_cells())
+          std::fill_n(medium.record(cell), Record::stride, 0.);
+
+    const CellSums<dim> sums            = medium.body->cell_sums->view();
+    const double        inverse_density = 1 / medium.body->stress->density();
+    for (const std::uint32_t cell : medium.cells)
+      {
+        double *const of_cell = medium.record(cell);
+        const double  mass    = sums.present_mass(cell);
+        of_cell[Record::mass] = mass;
+        std::fill(of_cell + Record::moment, of_cell + Record::stride, 0.);
+        if (!(mass > 0))
+          continue;
+        const auto gradients =
+          mean_gradients<dim>(parts.grid.geometry[cell],
+                              CellMeans<Linear<dim>>(&sums, cell));
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (int d = 0; d < dim; ++d)
+            of_cell[Record::rows + a * dim + d] =
+              mass * inverse_density * gradients[a][d];
+      }
+
+    const PointView<dim> points = medium.body->points.view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      medium.record(points.cell[p])[Record::moment] +=
+        points.mass[p] * points.pressure[p];
+  }
+
+
+
+  template <int dim>
+  void
+  PressureCells<dim>::exchange(Medium &medium)
+  {
+    records_exchange.start(*shared_cells,
+                           medium.records.data(),
+                           0,
+                           Record::stride);
+    records_exchange.finish(medium.records.data());
+  }
+
+
+
+  // Of nodes at a cell of this rank all cells around are known here.
+  template <int dim>
+  void
+  PressureCells<dim>::look_around(Medium &medium)
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      std::fill_n(medium.around.data() + std::size_t(node) * n_nodes,
+                  n_nodes,
+                  0);
+    const auto enter = [&](const std::uint32_t cell) {
+      if (medium.record(cell)[Record::mass] > 0)
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          medium.around[std::size_t(node_of(cell, a)) * n_nodes + a] = cell + 1;
+    };
+    for_each_known(medium, enter);
+  }
+
+
+
+  // From the owners of cells to all who hold them.
+  template <int dim>
+  void
+  PressureCells<dim>::share(Medium &medium, const unsigned int slot)
+  {
+    for (const auto &neighbour : parts.grid.shared_cells.neighbours)
+      for (const std::uint32_t cell : neighbour.records)
+        if (cell >= parts.grid.n_owned_cells() ||
+            !(medium.record(cell)[Record::number] > 0))
+          medium.result(cell)[slot] = 0;
+    result_exchange.start(*shared_cells, medium.results.data(), slot, slot + 1);
+    result_exchange.finish(medium.results.data());
+  }
+
+
+
+  template class PressureCells<2>;
+  template class PressureCells<3>;
+} // namespace limber

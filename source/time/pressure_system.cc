@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/pressure_system.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    // Nodes may hold so much more than there is room for.
+    constexpr double excess_allowed = 0.02;
+
+
+
+    /** The signs of places around a node multiplied over the directions in
+     * @p pattern. */
+    double
+    sign(const unsigned int pattern, const unsigned int place)
+    {
+      return __builtin_parity(pattern & place) ? -1. : 1.;
+    }
+
+
+
+    /**
+     * Call work(pattern, weight) for the sets of two and more directions in
+     * which a pattern alternates. With the weights sum_d 1/h_d^2 over these
+     * directions d all of them together are the difference between the compact
+     * Laplacian of a cell's 2 dim neighbours and the wide one.
+     */
+    template <int dim, class Work>
+    void
+    for_each_pattern(const CellGeometry<dim> &cell, const Work &work)
+    {
+      for (unsigned int s = 3; s < 1 << dim; ++s)
+        if (s & (s - 1))
+          {
+            double weight = 0;
+            for (int d = 0; d < dim; ++d)
+              if (s >> d & 1)
+                weight += cell.inverse_edge[d] * cell.inverse_edge[d];
+            work(s, weight);
+          }
+    }
+
+
+
+    /** The place of the second cell around the first one, which share a node:
+     * corner a of the first and corner b of the second. */
+    template <int dim>
+    unsigned int
+    place_in_row(const unsigned int a, const unsigned int b)
+    {
+      unsigned int place = 0;
+      for (int d = dim - 1; d >= 0; --d)
+        place = 3 * place + 1 + (a >> d & 1) - (b >> d & 1);
+      return place;
+    }
+
+
+
+    constexpr unsigned int
+    row_width(const int dim)
+    {
+      return dim == 2 ? 9 : 27;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  PressureSystem<dim>::PressureSystem(const RunParts<dim>     &parts,
+                                      BoundaryConditions<dim> &boundaries,
+                                      PressureCells<dim>      &cells)
+    : parts(parts)
+    , boundaries(boundaries)
+    , cells(cells)
+  {
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::reinit()
+  {
+    mobility.reinit(std::size_t(parts.nodes.table.n()) * dim);
+    velocity.reinit(std::size_t(parts.nodes.table.n()) * dim);
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::find_columns()
+  {
+    auto &media            = cells.media;
+    equations.n            = cells.n;
+    equations.first        = cells.first;
+    equations.n_all        = cells.n_all;
+    equations.width        = row_width(dim) * media.size();
+    const std::size_t size = std::size_t(equations.n) * equations.width;
+    equations.columns.assign(size, PressureEquations::no_column);
+    mates.assign(size, invalid_cell);
+    for (const Medium &medium : media)
+      for (std::size_t k = 0; k < medium.cells.size(); ++k)
+        cells.for_each_near(
+          medium.cells[k], 1, [&](const unsigned int place, const auto near) {
+            for (std::size_t l = 0; l < media.size(); ++l)
+              if (const double number = media[l].record(near)[Record::number];
+                  number > 0)
+                {
+                  const std::size_t at = (medium.first + k) * equations.width +
+                                         l * row_width(dim) + place;
+                  equations.columns[at] = number - 1;
+                  mates[at]             = near;
+                }
+          });
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::hold_nodes(const double end)
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        const double *const of_node = parts.nodes.record(node);
+        const double        mass    = of_node[Layout::mass];
+        for (int d = 0; d < dim; ++d)
+          {
+            mobility[std::size_t(node) * dim + d] = mass > 0 ? 1 / mass : 0;
+            velocity[std::size_t(node) * dim + d] =
+              mass > 0 ? of_node[Layout::velocity + d] : 0;
+          }
+      }
+    boundaries.for_each_held(parts.nodes,
+                             end,
+                             [&](const std::uint32_t node,
+                                 const unsigned int  d,
+                                 const double        value) {
+                               mobility[std::size_t(node) * dim + d] = 0;
+                               velocity[std::size_t(node) * dim + d] = value;
+                             });
+  }
+
+
+
+  // dt^2 <M> / (rho_0^2 4^(dim - 1)) of a node that is inside.
+  template <int dim>
+  double
+  PressureSystem<dim>::pattern_scale(const Medium       &medium,
+                                     const std::uint32_t node,
+                                     const double        step) const
+  {
+    constexpr double all  = dim == 2 ? 4 : 16;
+    double           mass = 0;
+    for (unsigned int k = 0; k < n_nodes; ++k)
+      mass += medium.record(medium.cells_around(node)[k] - 1)[Record::mass];
+    const double density = medium.body->stress->density();
+    return step * step * mass / n_nodes / (density * density * all);
+  }
+
+
+
+  // By how much of its room a node holds more than it may, at @p density now.
+  template <int dim>
+  double
+  PressureSystem<dim>::excess(const std::uint32_t cell,
+                              const std::uint32_t node,
+                              const double        density) const
+  {
+    double room = 1;
+    for (int d = 0; d < dim; ++d)
+      room /= parts.grid.geometry[cell].inverse_edge[d];
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      if (parts.nodes.table.sides[node] >> side & 1)
+        room *= 0.5;
+    const double held = parts.nodes.record(node)[Layout::mass] / density;
+    return std::max(0., held / room - 1 - excess_allowed);
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::assemble(const double end,
+                                const double step,
+                                const double share)
+  {
+    hold_nodes(end);
+    const auto &media = cells.media;
+    equations.values.assign(equations.columns.size(), 0.);
+    equations.right_side.assign(equations.n, 0.);
+    former.assign(equations.n, {});
+    growth.assign(equations.n, 0.);
+    for (std::size_t l = 0; l < media.size(); ++l)
+      for (std::size_t k = 0; k < media[l].cells.size(); ++k)
+        assemble_row(l, media[l].cells[k], media[l].first + k, step, share);
+  }
+
+
+
+  template <int dim>
+  double
+  PressureSystem<dim>::scale()
+  {
+    auto &media = cells.media;
+    pressures.assign(equations.n, 0.);
+    scales.assign(equations.n, 0.);
+    double squares = 0;
+    for (std::size_t l = 0; l < media.size(); ++l)
+      {
+        Medium &medium = media[l];
+        for (std::size_t k = 0; k < medium.cells.size(); ++k)
+          {
+            const std::uint32_t row = medium.first + k;
+            double             &diagonal =
+              equations.values[std::size_t(row) * equations.width +
+                               l * row_width(dim) + place_in_row<dim>(0, 0)];
+            const double *const of_cell = medium.record(medium.cells[k]);
+            if (!(of_cell[Record::mass] > 0))
+              diagonal = 1;
+            scales[row] = 1 / std::sqrt(diagonal);
+            medium.result(medium.cells[k])[Result::scale] = scales[row];
+            equations.right_side[row] *= scales[row];
+            if (!(of_cell[Record::mass] > 0))
+              continue;
+            pressures[row] =
+              of_cell[Record::moment] / of_cell[Record::mass] / scales[row];
+            const double volume = of_cell[Record::mass] /
+                                  medium.body->stress->density() * scales[row];
+            squares += volume * volume;
+          }
+        cells.share(medium, Result::scale);
+      }
+    for (std::uint32_t row = 0; row < equations.n; ++row)
+      for (unsigned int place = 0; place < equations.width; ++place)
+        if (const std::size_t at = std::size_t(row) * equations.width + place;
+            mates[at] != invalid_cell)
+          equations.values[at] *=
+            scales[row] *
+            media[place / row_width(dim)].result(mates[at])[Result::scale];
+    return std::sqrt(
+      dealii::Utilities::MPI::sum(squares, parts.grid.communicator));
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::assemble_row(const std::size_t   number,
+                                    const std::uint32_t cell,
+                                    const std::uint32_t row,
+                                    const double        step,
+                                    const double        share)
+  {
+    const auto   &media  = cells.media;
+    const Medium &medium = media[number];
+    if (!(medium.record(cell)[Record::mass] > 0))
+      return;
+    const StressUpdate<dim> &law     = *medium.body->stress;
+    const double             density = law.density();
+    const double *const      own     = medium.record(cell);
+    const double             volume  = own[Record::mass] / density;
+    const double      gamma  = medium.body->description.chequerboard_control;
+    const std::size_t begin  = std::size_t(row) * equations.width;
+    double *const     values = equations.values.data() + begin;
+    constexpr unsigned int in_body = row_width(dim);
+    double                &right   = equations.right_side[row];
+    const double           control = medium.body->description.density_control;
+
+    const CellSums<dim> sums = medium.body->cell_sums->view();
+    const double        J =
+      sums.now[std::size_t(cell) * sums.stride + sums.volumetric()] /
+      own[Record::mass];
+    const auto response = law.volumetric_response(J);
+    former[row]         = {response.pressure, volume / response.stiffness};
+    right               = volume * (response.pressure / response.stiffness);
+
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      {
+        const std::uint32_t node = cells.node_of(cell, a);
+        const double *const held = &velocity[std::size_t(node) * dim];
+        double              scaled[dim];
+        for (int d = 0; d < dim; ++d)
+          {
+            const double entry = own[Record::rows + a * dim + d];
+            right -= step * entry * held[d];
+            scaled[d] =
+              step * step * entry * mobility[std::size_t(node) * dim + d];
+          }
+        if (control > 0)
+          growth[row] +=
+            share * control / n_nodes * excess(cell, node, density / J);
+
+        for (std::size_t l = 0; l < media.size(); ++l)
+          for (unsigned int b = 0; b < n_nodes; ++b)
+            {
+              const std::uint32_t other = media[l].cells_around(node)[b];
+              if (other == 0)
+                continue;
+              const double *const mate  = media[l].record(other - 1);
+              const unsigned int  place = l * in_body + place_in_row<dim>(a, b);
+              for (int d = 0; d < dim; ++d)
+                values[place] += scaled[d] * mate[Record::rows + b * dim + d];
+            }
+        if (gamma > 0 && medium.is_inside(node))
+          {
+            const double scale = gamma * pattern_scale(medium, node, step);
+            for_each_pattern<dim>(
+              parts.grid.geometry[cell],
+              [&](const unsigned int pattern, const double weight) {
+                for (unsigned int b = 0; b < n_nodes; ++b)
+                  values[number * in_body + place_in_row<dim>(a, b)] +=
+                    scale * weight * sign(pattern, a) * sign(pattern, b);
+              });
+          }
+      }
+    right += volume * growth[row];
+    values[number * in_body + place_in_row<dim>(0, 0)] +=
+      former[row].compliance;
+  }
+
+
+
+  template <int dim>
+  double
+  PressureSystem<dim>::flux(const Medium       &medium,
+                            const std::uint32_t cell,
+                            const double        step) const
+  {
+    const double gamma = medium.body->description.chequerboard_control;
+    double       flux  = 0;
+    if (gamma > 0)
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        if (const std::uint32_t node = cells.node_of(cell, a);
+            medium.is_inside(node))
+          {
+            const double scale = gamma * pattern_scale(medium, node, step);
+            for_each_pattern<dim>(
+              parts.grid.geometry[cell],
+              [&](const unsigned int pattern, const double weight) {
+                double sum = 0;
+                for (unsigned int b = 0; b < n_nodes; ++b)
+                  sum += sign(pattern, b) *
+                         medium.result(medium.cells_around(node)[b] -
+                                       1)[Result::pressure];
+                flux += scale * weight * sign(pattern, a) * sum;
+              });
+          }
+    return flux;
+  }
+
+
+
+  template class PressureSystem<2>;
+  template class PressureSystem<3>;
+} // namespace limber
