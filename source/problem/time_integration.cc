@@ -222,6 +222,22 @@ namespace limber
 
 
 
+    /**
+     * Whether the pressure of a solid is implicit where those of liquids are:
+     * it is one for each cell, and the stress follows from the strain.
+     */
+    template <int dim>
+    bool
+    has_pressure_of_cells(const Section &section, const Body<dim> &body)
+    {
+      return read_word(section, "Material", law_words()).is_elastic &&
+             body.treatment == Projection::cell &&
+             body.frame == Frame::current &&
+             body.history == HistoryTreatment::keep;
+    }
+
+
+
     /** What keeps the pressure of a liquid from being implicit. */
     template <int dim>
     void
@@ -272,11 +288,24 @@ namespace limber
     const auto    where  = [&](const std::string &entry) {
       return in_quotes(method.text(entry)) + " in " + method.where(entry);
     };
+    const auto section_of = [&](const Body<dim> &body) {
+      return root.subsection("Body " + body.name);
+    };
+    const bool with_solids = std::all_of(
+      problem.bodies.begin(), problem.bodies.end(), [&](const auto &body) {
+        return body.is_liquid || has_pressure_of_cells(section_of(body), body);
+      });
+    for (auto &body : problem.bodies)
+      body.implicit_pressure = body.is_liquid || with_solids;
     if (std::none_of(problem.bodies.begin(),
                      problem.bodies.end(),
-                     [](const auto &body) { return body.is_liquid; }))
-      refuse(where("Time integration") + ", as the scene has no liquid",
-             "the material of a body to 'newtonian fluid'");
+                     [](const auto &body) { return body.implicit_pressure; }))
+      refuse(where("Time integration") +
+               ", as the scene has no liquid, and no elastic solid in the "
+               "current frame with one pressure for each cell",
+             "the material of a body to 'newtonian fluid', or that of a solid "
+             "to an elastic one with 'Locking treatment = cell', 'Frame = "
+             "current' and 'History = keep'");
     if (problem.grid.kernel != KernelKind::linear)
       refuse("the kernel " + where("Kernel"), "'Kernel = linear'");
     if (problem.method.order != StressUpdateOrder::automatic &&
@@ -287,11 +316,11 @@ namespace limber
     problem.method.order = StressUpdateOrder::usl;
 
     for (auto &body : problem.bodies)
-      if (body.is_liquid)
+      if (body.implicit_pressure)
         {
-          const Section section = root.subsection("Body " + body.name);
-          check_liquid(section, body);
-          body.implicit_pressure = true;
+          const Section section = section_of(body);
+          if (body.is_liquid)
+            check_liquid(section, body);
           if (section.text("Chequerboard control") == "auto")
             body.chequerboard_control = compact_share;
         }

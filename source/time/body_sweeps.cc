@@ -294,17 +294,19 @@ namespace limber
           body->cell_shift.size() > 0 ? body->cell_shift.data() : nullptr;
         CellPressures pressures;
         if (body->implicit)
-          pressures = body->implicit->view();
-        what.implicit    = body->implicit ? &pressures : nullptr;
-        what.remapped    = remapped && !body->implicit;
+          pressures = body->implicit->view(description.is_liquid);
+        what.implicit = body->implicit ? &pressures : nullptr;
+        what.remapped = remapped && !(body->implicit && description.is_liquid);
         const auto sums  = sums_of(*body);
         const auto found = body->stress->update(body->points.view(),
                                                 nodes_of(*body),
                                                 sums ? &*sums : nullptr,
                                                 what);
-        if (!body->implicit)
-          extremes.wave_squared =
-            std::max(extremes.wave_squared, found.wave_speed_squared);
+        extremes.wave_squared =
+          std::max(extremes.wave_squared,
+                   body->implicit ? body->stress->deviatoric_wave_speed_squared(
+                                      body->points.view()) :
+                                    found.wave_speed_squared);
         extremes.displacement =
           std::max(extremes.displacement, found.displacement);
         extremes.speed_squared =

@@ -54,9 +54,10 @@ namespace limber
           std::max(viscosity,
                    body->stress->viscosity() / body->stress->density());
         const PointView<dim> points = body->points.view();
-        if (!body->implicit)
-          extremes.wave_squared =
-            std::max(extremes.wave_squared,
+        extremes.wave_squared =
+          std::max(extremes.wave_squared,
+                   body->implicit ?
+                     body->stress->deviatoric_wave_speed_squared(points) :
                      body->stress->wave_speed_squared(points));
         for (std::size_t p = 0; p < points.size; ++p)
           {

@@ -103,10 +103,12 @@ namespace limber
         if (!(volume > 0))
           continue;
         const double flux = system.flux(medium, cell, step);
-        medium.result(cell)[Result::dilation] =
-          flux / volume - system.growth[row];
         const double change =
           system.pressures[row] - system.former[row].pressure;
+        medium.result(cell)[Result::dilation] =
+          medium.body->description.is_liquid ?
+            flux / volume - system.growth[row] :
+            -system.former[row].compliance * change / volume;
         lost += 0.5 * system.former[row].compliance * change * change +
                 system.pressures[row] * (flux - volume * system.growth[row]);
       }

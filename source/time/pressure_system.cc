@@ -277,9 +277,11 @@ namespace limber
     const double        J =
       sums.now[std::size_t(cell) * sums.stride + sums.volumetric()] /
       own[Record::mass];
-    const auto response = law.volumetric_response(J);
-    former[row]         = {response.pressure, volume / response.stiffness};
-    right               = volume * (response.pressure / response.stiffness);
+    auto response = law.volumetric_response(J);
+    if (!medium.body->description.is_liquid)
+      response.pressure = own[Record::moment] / own[Record::mass];
+    former[row] = {response.pressure, volume / response.stiffness};
+    right       = volume * (response.pressure / response.stiffness);
 
     for (unsigned int a = 0; a < n_nodes; ++a)
       {

@@ -14,7 +14,31 @@ namespace limber
     constexpr double share_of_swing = 0.2;
 
     constexpr double growth = 1.5; // of steps, from one to the next
-  }                                // namespace
+
+    // Of the mass of a full node: less is light
+    constexpr double light = 0.6;
+
+
+
+    /** The smallest density of bodies that bear shear, kg/m^3, where the
+     * pressure of all of them is implicit; otherwise 0. */
+    template <int dim>
+    double
+    lightest_solid_of(const RunParts<dim> &parts)
+    {
+      double result = 0;
+      for (const auto &body : parts.bodies)
+        {
+          if (body->description.is_liquid)
+            continue;
+          if (!body->implicit)
+            return 0;
+          const double density = body->stress->density();
+          result = result > 0 ? std::min(result, density) : density;
+        }
+      return result;
+    }
+  } // namespace
 
 
 
@@ -27,7 +51,10 @@ namespace limber
     , remaps(!this->full_mass &&
              std::any_of(parts.bodies.begin(),
                          parts.bodies.end(),
-                         [](const auto &body) { return !body->implicit; }))
+                         [](const auto &body) {
+                           return !body->description.is_liquid;
+                         }))
+    , lightest_solid(lightest_solid_of(parts))
   {}
 
 
@@ -101,16 +128,66 @@ namespace limber
     this->clear_remapped();
     this->g2p_and_remap();
     account(Layout::strain_velocity);
+    if (lightest_solid > 0)
+      strain_by_heavy_nodes();
     this->interpolate_hanging();
     this->update_stress_and_move(this->step);
   }
 
 
 
-  // What is kinetic after the increments of nodes with lumped mass have gone to
-  // the points, and less what is on record as removed on the way: points get
-  // less of those of short waves, as their full mass has it. In explicit steps
-  // these are too short for that to be seen.
+  // The pressures of solids work along the new velocity v1: so do the stresses
+  // that resist them, or work would come from the difference to what points
+  // give back (in bending both are large and opposite), the more the longer
+  // steps are. But nodes that are light fly off with what stress makes of them
+  // in a step of full ones. Points give back less of short waves than lumped
+  // nodes have got: the work of stress on that is lost.
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::strain_by_heavy_nodes()
+  {
+    for (const std::uint32_t node : this->parts.nodes.active_nodes())
+      {
+        double full =
+          lightest_solid * std::pow(this->parts.grid.smallest_edge, dim);
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          if (this->parts.nodes.table.sides[node] >> side & 1)
+            full *= 0.5;
+        double *const record = this->parts.nodes.record(node);
+        if (!(record[Layout::mass] > light * full))
+          continue;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double change = record[Layout::velocity + d] -
+                                  record[Layout::strain_velocity + d];
+            if (this->parts.nodes.owns(node))
+              this->parts.ledger.viscous += change * impulse_of_stress(node, d);
+            record[Layout::strain_velocity + d] += change;
+          }
+      }
+  }
+
+
+
+  // What is neither pressure, weight nor resistance, N s; nothing where a side
+  // holds the node, whose force is not known.
+  template <int dim>
+  double
+  SemiImplicitIntegrator<dim>::impulse_of_stress(const std::uint32_t node,
+                                                 const int           d) const
+  {
+    if (pressure.is_held(node, d))
+      return 0;
+    const double *const record = this->parts.nodes.record(node);
+    return record[Layout::mass] *
+             (record[Layout::increment + d] -
+              this->step * this->parts.problem.loads.gravity[d]) -
+           this->step * (pressure.force_on(node, d) +
+                         hourglass[std::size_t(node) * dim + d]);
+  }
+
+
+
   template <int dim>
   double
   SemiImplicitIntegrator<dim>::energy_to_points() const

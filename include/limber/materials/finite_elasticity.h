@@ -137,6 +137,30 @@ namespace limber
              (1. / density);
     }
 
+    /** Of the deviatoric part alone, likewise. */
+    template <int dim, class Number>
+    Number
+    deviatoric_wave_speed_squared(const State<dim, Number> &state) const
+    {
+      return 4. / 3. * shear_modulus / density *
+             isochoric::largest_eigenvalue(
+               isochoric::strain<dim>(state.history));
+    }
+
+    /** J p, Pa. */
+    double
+    kirchhoff_pressure(const double J) const
+    {
+      return pressure_at(J);
+    }
+
+    /** -J d(J p)/dJ, Pa. */
+    double
+    kirchhoff_stiffness(const double J) const
+    {
+      return bulk_modulus * J * J;
+    }
+
     const double density;       // rho_0, kg/m^3
     const double bulk_modulus;  // K, Pa
     const double shear_modulus; // G, Pa
@@ -151,7 +175,10 @@ namespace limber
       const auto   f         = motion.deformation();
       const Number J_of_step = determinant<dim>(f);
       isochoric::deform<dim>(state.history, f, J_of_step);
-      state.history[0] *= J_of_step + (motion.volumetric - motion.trace());
+      if (rarely(motion.mean_volume))
+        state.history[0] *= 1. + motion.volumetric;
+      else
+        state.history[0] *= J_of_step + (motion.volumetric - motion.trace());
     }
 
     /** J p */

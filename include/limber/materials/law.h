@@ -229,12 +229,18 @@ namespace limber
    *  - is_plastic, whether it flows plastically: elastic coefficients then say
    *    nothing about its strain, and update() returns plastic work.
    *
+   *
+   * A law that takes pressure or is elastic has besides kirchhoff_pressure(),
+   * J p, and kirchhoff_stiffness(), -J d(J p)/dJ, at a value of its volumetric
+   * variable (implicit pressure).
+   *
    * An elastic law has besides
    *  - finite_strain: whether the measure of volume is J = det F and forces
    *    act on the deformed body; otherwise J = 1 + tr(F - 1) and the geometry
    *    is that at the start;
    *  - at_deformation(F, J): the state that F leads to from rest, with the
    *    volume ratio J in its volumetric part;
+   *  - deviatoric_wave_speed_squared() of a state, without its volumetric part;
    *  - volumetric_stiffness(J) = d^2 U / dJ^2 of the volumetric energy U;
    *  - deviatoric_tangent(state, e): by how much the Kirchhoff deviator grows
    *    in a frame that moves with the material (its Oldroyd rate), for the

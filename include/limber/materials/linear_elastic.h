@@ -188,6 +188,28 @@ namespace limber
                                density);
     }
 
+    /** Of the deviatoric part alone. */
+    template <int dim, class Number>
+    Number
+    deviatoric_wave_speed_squared(const State<dim, Number> &) const
+    {
+      return broadcast<Number>(4. / 3. * shear_modulus / density);
+    }
+
+    /** The volumetric variable is the pressure itself. */
+    double
+    kirchhoff_pressure(const double pressure) const
+    {
+      return pressure;
+    }
+
+    /** By how much it grows with what the volume loses, Pa. */
+    double
+    kirchhoff_stiffness(const double) const
+    {
+      return bulk_modulus;
+    }
+
     const double density;       // rho_0, kg/m^3
     const double bulk_modulus;  // K, Pa
     const double shear_modulus; // G, Pa

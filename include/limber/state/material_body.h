@@ -23,13 +23,16 @@ namespace limber
     {}
 
     CellPressures
-    view() const
+    view(const bool is_liquid) const
     {
-      return {pressure.data(), dilation.data()};
+      return {is_liquid ? pressure.data() : nullptr,
+              dilation.data(),
+              !is_liquid};
     }
 
     LazyArray<double> pressure; // J p, Pa
-    LazyArray<double> dilation; // of the step, without dimension
+    // Of the step, without dimension; of liquids less than the mean divergence
+    LazyArray<double> dilation;
   };
 
 

@@ -70,11 +70,24 @@ namespace limber
       return result;
     }
 
-    VolumetricResponse
-    volumetric_response(const double J) const override
+    double
+    deviatoric_wave_speed_squared(const PointView<dim> &points) const override
     {
-      if constexpr (Law::takes_pressure)
-        return {law.kirchhoff_pressure(J), law.kirchhoff_stiffness(J)};
+      double result = 0;
+      if constexpr (Law::is_elastic)
+        for (std::size_t p = 0; p < points.size; ++p)
+          result = std::max(result,
+                            law.template deviatoric_wave_speed_squared<dim>(
+                              state_of(points, p)));
+      return result;
+    }
+
+    VolumetricResponse
+    volumetric_response(const double variable) const override
+    {
+      if constexpr (Law::takes_pressure || Law::is_elastic)
+        return {law.kirchhoff_pressure(variable),
+                law.kirchhoff_stiffness(variable)};
       else
         throw std::logic_error("no implicit pressure");
     }

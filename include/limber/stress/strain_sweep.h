@@ -107,8 +107,12 @@ namespace limber
         batch.strain.template evaluate<Number, uses_spin>(xi, motion);
         if (rarely(batch.implicit != nullptr))
           {
-            motion.mean_volume = true;
-            motion.volumetric += batch.implicit->dilation[batch.cell_number];
+            motion.mean_volume    = true;
+            const double dilation = batch.implicit->dilation[batch.cell_number];
+            if (batch.implicit->is_whole)
+              motion.volumetric = broadcast<Number>(dilation);
+            else
+              motion.volumetric += dilation;
           }
 
         // towards the mean of the cell, or by what the cell gets
@@ -121,7 +125,7 @@ namespace limber
                       batch.shift};
         const Number volumetric = strain(points, lanes, motion, change, found);
 
-        if (rarely(batch.implicit != nullptr))
+        if (rarely(batch.implicit != nullptr && batch.implicit->pressure))
           lanes.store(broadcast<Number>(
                         batch.implicit->pressure[batch.cell_number]),
                       points.pressure);

@@ -16,13 +16,16 @@ namespace limber
 {
   /**
    * What an implicit pressure has found for the cells of a body that is
-   * averaged over them. Points take the pressure; their J takes the mean
-   * divergence, with nothing of second order in the step, and this dilation.
+   * averaged over them. Points of liquids take the pressure; their J takes the
+   * mean divergence, with nothing of second order in the step, and this
+   * dilation. Those of solids have the pressure of their own volume, and the
+   * dilation is all that they take.
    */
   struct CellPressures
   {
-    const double *pressure = nullptr; // J p, Pa
+    const double *pressure = nullptr; // J p, Pa; null: that of the law
     const double *dilation = nullptr; // over the step, without dimension
+    bool          is_whole = false;   // with the divergence
   };
 
 
@@ -159,9 +162,13 @@ namespace limber
     virtual double
     wave_speed_squared(const PointView<dim> &points) const = 0;
 
-    /** Of the volumetric part of the law, which must have J as history. */
+    /**
+     * Of the volumetric part of the law, at a value of its volumetric variable
+     * (J or, where that is the history, the pressure itself); for liquids and
+     * elastic solids.
+     */
     virtual VolumetricResponse
-    volumetric_response(double J) const = 0;
+    volumetric_response(double variable) const = 0;
 
     /** J at rest under a Cauchy pressure (Pa). */
     virtual double
@@ -191,6 +198,11 @@ namespace limber
     density() const = 0; // kg/m^3
     virtual double
     viscosity() const = 0; // Pa s, 0 for solids
+
+    /** The largest wave speed squared without volumetric stiffness, m^2/s^2;
+     * 0 for liquids. */
+    virtual double
+    deviatoric_wave_speed_squared(const PointView<dim> &points) const = 0;
   };
 
 

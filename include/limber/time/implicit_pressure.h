@@ -65,6 +65,20 @@ namespace limber
     double
     time_of_sound() const;
 
+    /** Of the pressures of this step on a component of a node, N. */
+    double
+    force_on(const std::uint32_t node, const int d) const
+    {
+      return force[std::size_t(node) * dim + d];
+    }
+
+    /** Whether a side has held it. */
+    bool
+    is_held(const std::uint32_t node, const int d) const
+    {
+      return !(system.mobility_of(node, d) > 0);
+    }
+
     /** What the solver has been asked to do so far. */
     struct Effort
     {

@@ -47,6 +47,10 @@ namespace limber
     void
     update_all();
     void
+    strain_by_heavy_nodes();
+    double
+    impulse_of_stress(std::uint32_t node, int d) const;
+    void
     solve_pressure();
     void
     account(unsigned int velocity_after);
@@ -57,7 +61,9 @@ namespace limber
 
     ImplicitPressure<dim> pressure;
     LazyArray<double>     hourglass; // forces by node and component, N
-    const bool            remaps;    // for bodies that are not implicit
+    const bool            remaps;    // for solids
+    // Its density, kg/m^3; 0 where the pressure of some solid is explicit
+    const double lightest_solid;
   };
 } // namespace limber
 

@@ -51,9 +51,10 @@ namespace
 // half of it at the bottom of cells that are filled in part.
 TEST(ImplicitPressure, IsHydrostaticAfterOneStep)
 {
-  for (const double height : {2.05, 2.2, 2.37, 2.5, 2.77, 2.885, 2.95, 3.})
+  for (unsigned int cut = 1; cut <= 20; ++cut)
     for (const std::string modulus : {"1e15", "2e9"})
       {
+        const double height = 2 + 0.05 * cut;
         SCOPED_TRACE(modulus + ", " + std::to_string(height));
         SceneRun<2>         run(vessel,
                         {gravity,
@@ -64,7 +65,7 @@ TEST(ImplicitPressure, IsHydrostaticAfterOneStep)
           places.push_back(place[1]);
         run.advance(0.05);
         // sound: the liquid gives way by rho g z / K in the step
-        const double tolerance = modulus == "1e15" ? 1e-7 : 1e-3;
+        const double tolerance = modulus == "1e15" ? 1e-8 : 1e-3;
         // The placement counts what the surface cuts off by samples.
         const auto   points = run.points();
         const double top    = std::ceil(height) - 1;
