@@ -16,7 +16,7 @@ namespace limber
     constexpr double growth = 1.5; // of steps, from one to the next
 
     // Of the mass of a full node: less is light
-    constexpr double light = 0.6;
+    constexpr double light = 0.3;
 
 
 

@@ -220,3 +220,38 @@ TEST(ImplicitPressure, LetsAVortexTurn)
   run.advance(0.04, 40);
   EXPECT_NEAR(radius_squared() / before, 1, 0.02);
 }
+
+
+
+// The same for nearly incompressible solids: the pressure that holds their
+// weight is there after one step, however long sound would take, and stays.
+TEST(ImplicitPressure, HoldsSolidsAsItHoldsLiquids)
+{
+  for (const std::string law : {"Linear elastic", "Neo hookean"})
+    {
+      SCOPED_TRACE(law);
+      SceneRun<2> run(vessel,
+                      {gravity,
+                       "Body water/Box/Upper corner=4, 3",
+                       "Body water/Material=" +
+                         std::string(law == "Neo hookean" ? "neo hookean" :
+                                                            "linear elastic"),
+                       "Body water/" + law + "/Density=1000",
+                       "Body water/" + law + "/Young's modulus=1e5",
+                       "Body water/" + law + "/Poisson's ratio=0.4999999"});
+      ASSERT_TRUE(run.problem.bodies[0].implicit_pressure);
+      std::vector<double> depths;
+      for (const auto &place : run.positions())
+        depths.push_back(2.5 - std::floor(place[1]));
+      const auto expect_hydrostatic = [&](const double tolerance) {
+        for (std::size_t p = 0; p < run.points().size; ++p)
+          ASSERT_NEAR(run.points().pressure[p],
+                      1e4 * depths[run.bodies[0]->points.id(p)],
+                      tolerance * 3e4);
+      };
+      run.advance(0.03);
+      expect_hydrostatic(1e-4);
+      run.advance(0.03, 20); // shear waves cross three cells
+      expect_hydrostatic(1e-3);
+    }
+}
