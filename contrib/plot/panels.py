@@ -271,7 +271,8 @@ def _draw_floor(axis, camera, look, state, radius):
     shade.set_clip_path(plane)
 
     factor, unit = (1e3, "mm") if max(upper - lower) < 0.2 else (1, "m")
-    centre = seen((lower + upper) / 2)
+    centre = np.mean([seen(corner) for corner in corners], axis=0)
+    shortest = 0.04 * (camera.high[0] - camera.low[0])  # of a scale that is seen
     nearest = min(corners, key=lambda c: seen(c)[1])  # has a number of one scale
     for one, other in ((a, b), (b, a)):
         # the one of the two edges that is lower in the picture
@@ -279,12 +280,15 @@ def _draw_floor(axis, camera, look, state, radius):
             **{one: np.mean(ends[one]), other: e}))[1])
         values = [value for value in _marks(*ends[one], edge) if one == a or
                   abs(value - nearest["xyz".index(one)]) > edge / 2]
-        _scale(axis, [seen(point(**{one: value, other: end}))
-                      for value in values],
-               np.array(values) * factor, f"{one} [{unit}]", centre)
+        places = [seen(point(**{one: value, other: end})) for value in values]
+        if places and np.hypot(*(places[-1] - places[0])) > shortest:
+            _scale(axis, places, np.array(values) * factor, f"{one} [{unit}]",
+                   centre)
     corner = min(corners, key=lambda c: seen(c)[0])
     top = corner.copy()
     top[up] = upper[up]
+    if np.hypot(*(seen(top) - seen(corner))) <= shortest:
+        return  # seen from above
     axis.plot(*seen([corner, top]).T, color="0.5", linewidth=0.7, zorder=1)
     rise = _round((upper[up] - lower[up]) / 4)
     values = _marks(*ends["xyz"[up]], rise)
@@ -324,8 +328,8 @@ def _scale(axis, places, values, name, centre):
                       rotation=90, **style)
         return
     along = places[-1] - places[0]
-    outward = np.array([along[1], -along[0]]) / max(np.hypot(*along), 1e-300)
-    if outward[1] > 0 or (outward[1] == 0 and outward[0] < 0):
+    outward = np.array([along[1], -along[0]]) / np.hypot(*along)
+    if outward @ (middle - centre) < 0:
         outward = -outward
     for place, value in numbered:
         axis.annotate(f"{value:.4g}", place, xytext=9 * outward, ha="center",

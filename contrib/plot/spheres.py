@@ -108,7 +108,7 @@ def shadow(camera, places, radius, floor, up):
     dark[y[inside], x[inside]] = 1
     r = max(int(np.ceil(radius * camera.scale)), 1)
     dark = np.minimum(_blurred(dark, r) * 4 * r, 1)  # joins the dots
-    return _blurred(_blurred(dark, 3 * r), 2 * r)
+    return np.clip(_blurred(_blurred(dark, 3 * r), 2 * r), 0, 1)
 
 
 def _blurred(values, r):

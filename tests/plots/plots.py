@@ -232,6 +232,12 @@ class Scripts(unittest.TestCase):
     def test_gaps_between_points_that_were_pulled_apart(self):
         self.run_python(GAPS)
 
+    def test_a_shadow_lies_beside_what_throws_it(self):
+        self.run_python(SHADOW)
+
+    def test_kernels_without_and_with_a_treatment(self):
+        self.run_python(RIVALS)
+
     def test_lines_and_panels_that_coincide(self):
         self.run_python(COINCIDE)
 
@@ -252,6 +258,56 @@ for wanted, kept in ((1, slot | True), (0, slot)):
     middle = picture[40:-40, 184:196, 3] if not wanted else picture[
         20:-40, 20:-20, 3]
     assert (middle == wanted).all(), (wanted, middle.mean())
+"""
+
+# A ball at the height of 2 over the floor, seen from above: lit disc of its own size,
+# shadow to the right of it by 0.35 of the height, nothing far away.
+SHADOW = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import spheres
+place = np.array([[5., 2., 5.]])
+camera = spheres.Camera(np.zeros(3), np.array([10, 4, 10.]), 0, 90, 1, 400)
+picture = spheres.render(camera, place, np.array([[1., 1, 0]]), 0.5)
+disc = np.argwhere(picture[..., 3] > 0)
+assert abs(len(disc) / (np.pi * 20**2) - 1) < 0.1, len(disc)
+assert abs(disc.mean(axis=0) - 200).max() < 2
+lit = picture[picture[..., 3] > 0][:, :3].mean(axis=0)
+assert lit[0] > 0.7 and lit[1] > 0.7 and lit[2] < 0.2, lit
+dark = spheres.shadow(camera, place, 0.5, 0., 1)
+row, column = np.unravel_index(dark.argmax(), dark.shape)
+assert abs(row - 200) < 3 and abs(column - 228) < 3, (row, column)
+assert dark.max() <= 1 and dark[:79].max() < 1e-9  # six radii off
+"""
+
+# Two panels, the same colour for a kernel in both, finite elements in both; a chart
+# with fewer kernels stays one.
+RIVALS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import charts, plot_study
+meta = {"title": "t", "caption": "c", "measures": ["tip"], "variations": ["cells"],
+        "horizontal": "CPU seconds", "horizontal label": "CPU seconds",
+        "vertical label": "", "against cost": True, "logarithmic": "both",
+        "error levels": [], "closed forms": {}}
+methods = ["linear none", "linear cell", "GIMP none", "GIMP node", "CPDI none",
+           "CPDI node", "FEM Q1"]
+rows = [{"method": m, "cells": str(n), "outcome": "finished", "beyond": "",
+         "tip value": str(k + n), "tip error": str(k + n), "tip Pareto": "0",
+         "CPU seconds": str(n * (k + 1))}
+        for k, m in enumerate(methods) for n in (1, 2)]
+figure = plot_study.draw(rows, meta)
+bare, cured = figure.axes
+assert [len(axis.lines) for axis in (bare, cured)] == [4, 4]
+colours = [{line.get_color() for line in axis.lines} for axis in (bare, cured)]
+assert colours[0] == colours[1] and len(colours[0]) == 4, colours
+assert bare.get_xlim() == cured.get_xlim() and bare.get_ylim() == cured.get_ylim()
+few = [row for row in rows if not row["method"].startswith("CPDI")]
+assert len(plot_study.draw(few, meta).axes) == 1
+assert charts.kernel_and_treatment("initial assumed strain") == ("initial",
+                                                                 "assumed strain")
+assert charts.kernel_and_treatment("CPDI node with USL") is None
 """
 
 # What repeats a measure has no panel; of lines that coincide the first is wider.
