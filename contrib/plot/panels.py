@@ -347,7 +347,7 @@ def figure_of(states, look, labels, width=None):
     aspect = look.aspect
     if dimension == 3:
         camera = _camera_of(look, _upwards(states[0][0].source), 100)
-        look.pixels = 1500 if columns == 1 else 1100
+        look.pixels = 1000 if width else 1500 if columns == 1 else 1100
         aspect = camera.shape[0] / camera.shape[1]
     panel = (width or (6.5 if columns == 1 else min(4.2, 13 / columns)))
     height = min(panel * aspect, 6) + (0.75 if rows == 1 else 0.45)
