@@ -164,8 +164,9 @@ namespace limber
     std::ostringstream text;
     text << "Newton's method of the finite element reference ends with " << rest
          << " of the forces unbalanced at time " << time
-         << " s. Usually the step is too long, the body buckles, or the "
-            "tolerance is finer than round-off. Set 'Reference/"
+         << " s. Usually the step is too long, the body buckles or its flow "
+            "bears no more load, or the tolerance is finer than round-off. "
+            "Set 'Reference/"
          << entry << "' finer, or 'Reference/Tolerance' above that number.";
     throw ComputationError(text.str());
   }
@@ -223,6 +224,8 @@ namespace limber
         follow_held(former);
         if (solve(end, 0, false))
           {
+            state.displacement.update_ghost_values();
+            state.plastic_work += model.accept(state.displacement);
             time += part;
             part *= 2;
             continue;
@@ -244,7 +247,11 @@ namespace limber
   {
     const SolidMotion<dim> start = state;
     if (try_newmark_step(step))
-      return close_step(start.displacement, step);
+      {
+        state.displacement.update_ghost_values();
+        state.plastic_work += model.accept(state.displacement);
+        return close_step(start.displacement, step);
+      }
     const auto newton_steps = state.newton_steps,
                tangents     = state.factorisations;
     state                   = start;

@@ -56,7 +56,7 @@ namespace limber
 
 
   template <int dim>
-  ReferenceSolver<dim>::ReferenceSolver(const SolidModel<dim> &model)
+  ReferenceSolver<dim>::ReferenceSolver(SolidModel<dim> &model)
     : model(model)
     , method(model.problem.reference.method)
     , linear_solver(is_small(model), dim, model.rigid_motions())
@@ -70,7 +70,17 @@ namespace limber
                                      model.make_vector() :
                                      model.initial_velocity();
     if (method != ReferenceMethod::explicit_steps)
-      model.reinit(*matrix);
+      {
+        if (!model.element->has_symmetric_tangent() && !is_small(model))
+          throw InputError(
+            "The material '" + model.problem.bodies.front().law +
+            "' makes unsymmetric equations, which the finite element "
+            "reference solves by factors alone, and " +
+            std::to_string(model.dof_handler.n_dofs()) +
+            " of them are too many for that. Set 'Reference/Elements over "
+            "depth' smaller.");
+        model.reinit(*matrix);
+      }
     start();
   }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
-#include <limber/fem/solid_element.h>
+#include <limber/fem/element_fields.h>
+#include <limber/fem/flowing_element.h>
 #include <limber/materials/law_list.h>
 
 #include <cmath>
@@ -10,137 +11,6 @@ namespace limber
 {
   namespace
   {
-    /** Deformation at one point, and what the variation of J needs. */
-    template <int dim>
-    struct Deformation
-    {
-      SquareMatrix<dim>      gradient{}; // F
-      dealii::Tensor<2, dim> inverse;    // F^-1, or 1 where the strain is small
-      double                 J = 1;
-    };
-
-
-
-    template <int dim>
-    Deformation<dim>
-    deformation(const dealii::FEValues<dim> &values,
-                const unsigned int           q,
-                const std::vector<double>   &u,
-                const bool                   finite_strain)
-    {
-      dealii::Tensor<2, dim> F  = dealii::unit_symmetric_tensor<dim>();
-      const auto            &fe = values.get_fe();
-      for (unsigned int i = 0; i < u.size(); ++i)
-        F[fe.system_to_component_index(i).first] +=
-          u[i] * values.shape_grad(i, q);
-
-      Deformation<dim> result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          result.gradient[i][j] = F[i][j];
-      if (finite_strain)
-        {
-          result.J = determinant(F);
-          if (result.J > 0)
-            result.inverse = invert(F);
-        }
-      else
-        {
-          result.J       = 1 + trace(F) - dim;
-          result.inverse = dealii::unit_symmetric_tensor<dim>();
-        }
-      return result;
-    }
-
-
-
-    /**
-     * L2 projection within an element onto 1 or 1, X, Y (, Z); with no modes
-     * the identity on the quadrature points.
-     */
-    template <int dim>
-    class FieldProjection
-    {
-    public:
-      FieldProjection(const dealii::FEValues<dim> &values,
-                      const unsigned int           n_modes)
-        : n_modes(n_modes)
-        , weights(values.get_JxW_values())
-      {
-        if (n_modes == 0)
-          return;
-        double volume = 0;
-        for (unsigned int q = 0; q < weights.size(); ++q)
-          {
-            centre += weights[q] * values.quadrature_point(q);
-            volume += weights[q];
-          }
-        centre /= volume;
-        scale = std::pow(volume, -1. / dim);
-        modes = modes_at(values);
-        inverse_mass.reinit(n_modes, n_modes);
-        for (unsigned int q = 0; q < weights.size(); ++q)
-          for (unsigned int m = 0; m < n_modes; ++m)
-            for (unsigned int n = 0; n < n_modes; ++n)
-              inverse_mass(m, n) += weights[q] * modes(q, m) * modes(q, n);
-        inverse_mass.gauss_jordan();
-      }
-
-      dealii::FullMatrix<double>
-      modes_at(const dealii::FEValues<dim> &places) const
-      {
-        dealii::FullMatrix<double> result(places.n_quadrature_points, n_modes);
-        for (const unsigned int q : places.quadrature_point_indices())
-          for (unsigned int m = 0; m < n_modes; ++m)
-            result(q, m) =
-              m == 0 ?
-                1 :
-                scale * (places.quadrature_point(q)[m - 1] - centre[m - 1]);
-        return result;
-      }
-
-      /** Coefficients of a field given at the quadrature points. */
-      std::vector<double>
-      coefficients(const std::vector<double> &field) const
-      {
-        std::vector<double> moments(n_modes), result(n_modes);
-        for (unsigned int q = 0; q < weights.size(); ++q)
-          for (unsigned int m = 0; m < n_modes; ++m)
-            moments[m] += weights[q] * modes(q, m) * field[q];
-        for (unsigned int m = 0; m < n_modes; ++m)
-          for (unsigned int n = 0; n < n_modes; ++n)
-            result[m] += inverse_mass(m, n) * moments[n];
-        return result;
-      }
-
-      static std::vector<double>
-      evaluate(const dealii::FullMatrix<double> &modes,
-               const std::vector<double>        &coefficients)
-      {
-        std::vector<double> result(modes.m());
-        for (unsigned int q = 0; q < modes.m(); ++q)
-          for (unsigned int m = 0; m < modes.n(); ++m)
-            result[q] += modes(q, m) * coefficients[m];
-        return result;
-      }
-
-      std::vector<double>
-      project(const std::vector<double> &field) const
-      {
-        return n_modes == 0 ? field : evaluate(modes, coefficients(field));
-      }
-
-      const unsigned int         n_modes;
-      const std::vector<double> &weights;
-      dealii::FullMatrix<double> modes, inverse_mass;
-
-    private:
-      dealii::Point<dim> centre;
-      double             scale = 1;
-    };
-
-
-
     MaterialState
     unknown_state()
     {
@@ -177,7 +47,8 @@ namespace limber
               const std::vector<double>  &u,
               dealii::Vector<double>     &forces,
               dealii::FullMatrix<double> *tangent,
-              const std::vector<double>  *former) const override
+              const std::vector<double>  *former,
+              const double *) const override
       {
         const unsigned int            n = u.size();
         const FieldProjection<dim>    projection(values, n_modes);
@@ -214,7 +85,7 @@ namespace limber
             for (unsigned int i = 0; i < n; ++i)
               gradient[i] = values.shape_grad(i, q) * deformations[q].inverse;
 
-            const auto   s    = deviator(states[q]);
+            const auto   s    = tensor_of<dim>(states[q].deviator);
             const double J    = Law::finite_strain ? deformations[q].J : 1;
             const double mean = conjugate[q] * J; // -J p
             for (unsigned int i = 0; i < n; ++i)
@@ -252,7 +123,8 @@ namespace limber
       std::vector<MaterialState>
       states(const Values              &values,
              const Values              &places,
-             const std::vector<double> &u) const override
+             const std::vector<double> &u,
+             const double *) const override
       {
         const FieldProjection<dim>    projection(values, n_modes);
         std::vector<Deformation<dim>> own, there;
@@ -276,29 +148,12 @@ namespace limber
               }
             const auto state =
               law.template at_deformation<dim>(there[q].gradient, ratio[q]);
-            MaterialState &r = result[q];
-            r.volume_ratio   = law.template volume_ratio<dim>(state);
-            r.pressure       = state.pressure / r.volume_ratio;
-            r.strain_energy  = law.template strain_energy<dim>(state);
-            const auto s     = deviator(state);
-            for (int i = 0; i < dim; ++i)
-              for (int j = 0; j <= i; ++j)
-                r.stress[i][j] = s[i][j] / r.volume_ratio;
-            if (dim == 2)
-              r.stress[2][2] = -(s[0][0] + s[1][1]) / r.volume_ratio;
-            for (int d = 0; d < 3; ++d)
-              r.stress[d][d] -= r.pressure;
+            result[q] = material_state<dim>(law, state);
           }
         return result;
       }
 
     private:
-      static unsigned int
-      component(const Values &values, const unsigned int i)
-      {
-        return values.get_fe().system_to_component_index(i).first;
-      }
-
       /** All, and false if the material is turned inside out anywhere. */
       static bool
       deform(const Values                  &values,
@@ -359,24 +214,6 @@ namespace limber
                       const double                                     J)
       {
         return -state.pressure / (Law::finite_strain ? J : 1);
-      }
-
-      /** The part within the dimensions. */
-      static dealii::Tensor<2, dim>
-      deviator(const typename Law::template State<dim, double> &state)
-      {
-        const auto            &s = state.deviator;
-        dealii::Tensor<2, dim> result;
-        result[0][0] = s[0];
-        result[1][1] = s[1];
-        result[0][1] = result[1][0] = s[2];
-        if constexpr (dim == 3)
-          {
-            result[2][2] = -s[0] - s[1];
-            result[1][2] = result[2][1] = s[3];
-            result[2][0] = result[0][2] = s[4];
-          }
-        return result;
       }
 
       void
@@ -467,29 +304,31 @@ namespace limber
   make_solid_element(const Body<dim> &body, const ReferenceElement kind)
   {
     std::unique_ptr<const SolidElement<dim>> result;
-    for_each_law([&](auto *const law) {
+    const auto                               find = [&](auto *const law) {
       using Law = std::remove_pointer_t<decltype(law)>;
+      if (body.law != Law::name || result != nullptr)
+        return;
+      std::array<double, Law::parameters.size()> values;
+      if (body.material.size() != values.size())
+        return;
+      std::copy(body.material.begin(), body.material.end(), values.begin());
+      if (!Law::accepts(values))
+        return;
       if constexpr (Law::is_elastic)
-        if (body.law == Law::name && result == nullptr)
-          {
-            std::array<double, Law::parameters.size()> values;
-            std::copy(body.material.begin(),
-                      body.material.end(),
-                      values.begin());
-            if (Law::accepts(values))
-              result =
-                std::make_unique<LawElement<dim, Law>>(Law(values),
-                                                       n_modes_of<dim>(kind));
-          }
-    });
+        result = std::make_unique<LawElement<dim, Law>>(Law(values),
+                                                        n_modes_of<dim>(kind));
+      else if constexpr (Law::is_plastic)
+        result =
+          std::make_unique<FlowingElement<dim, Law>>(Law(values),
+                                                     body,
+                                                     n_modes_of<dim>(kind));
+    };
+    for_each_law(find);
     if (result == nullptr)
       throw InputError(
         "The material '" + body.law + "' in section 'Body " + body.name +
-        "' has no finite element reference: " +
-        (body.is_plastic ?
-           "its elements know elastic materials alone" :
-           "elements that move with the material do not last in a liquid") +
-        ". Compare with a finer run, or set 'Material = neo hookean'.");
+        "' has no finite element reference: elements that move with the "
+        "material do not last in a liquid. Compare with a finer run, or set 'Material = neo hookean'.");
     return result;
   }
 

@@ -60,6 +60,7 @@ namespace limber
     number();
     held_nodes = std::make_unique<const HeldNodes<dim>>(problem, dof_handler);
     assemble_masses();
+    begin_memory();
   }
 
 
@@ -83,6 +84,12 @@ namespace limber
       throw InputError("The scene has obstacles ('Obstacles'), which the "
                        "finite element reference does not know. Make a scene "
                        "without them, or compare with a finer run.");
+    if (element->n_memory() > 0 &&
+        problem.reference.method == ReferenceMethod::explicit_steps)
+      throw InputError("The material of body '" + problem.bodies.front().name +
+                       "' flows, which the explicit finite element reference "
+                       "does not know. Set 'Reference/Method = implicit' or "
+                       "'quasi-static'.");
     if (problem.method.damping_rate > 0 &&
         problem.reference.method != ReferenceMethod::quasi_static)
       throw InputError("The scene damps all motion ('Method/Damping rate'), "
@@ -210,6 +217,73 @@ namespace limber
 
 
   template <int dim>
+  std::size_t
+  SolidModel<dim>::memory_of(
+    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell) const
+  {
+    return std::size_t(cell->active_cell_index()) * quadrature.size() *
+           element->n_memory();
+  }
+
+
+
+  template <int dim>
+  void
+  SolidModel<dim>::begin_memory()
+  {
+    memory.resize(std::size_t(mesh->n_active_cells()) * quadrature.size() *
+                  element->n_memory());
+    if (memory.empty())
+      return;
+    dealii::FEValues<dim> values(shape_values(quadrature));
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          element->begin(values, memory.data() + memory_of(cell));
+        }
+  }
+
+
+
+  template <int dim>
+  double
+  SolidModel<dim>::accept(const NodalVector &displacement)
+  {
+    if (element->n_memory() == 0)
+      return 0;
+    double                work = 0;
+    dealii::FEValues<dim> values(shape_values(quadrature));
+    for (const auto &cell : dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          work += element->accept(values,
+                                  values_of(cell, displacement),
+                                  memory.data() + memory_of(cell));
+        }
+    return dealii::Utilities::MPI::sum(work, communicator);
+  }
+
+
+
+  template <int dim>
+  std::vector<MaterialState>
+  SolidModel<dim>::states(
+    const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+    const dealii::FEValues<dim>                                  &values,
+    const dealii::FEValues<dim>                                  &places,
+    const NodalVector &displacement) const
+  {
+    return element->states(values,
+                           places,
+                           values_of(cell, displacement),
+                           memory.data() + memory_of(cell));
+  }
+
+
+
+  template <int dim>
   NodalVector
   SolidModel<dim>::initial_velocity() const
   {
@@ -271,7 +345,9 @@ namespace limber
           good = good && element->compute(values,
                                           values_of(cell, displacement),
                                           on_cell,
-                                          nullptr);
+                                          nullptr,
+                                          nullptr,
+                                          memory.data() + memory_of(cell));
           if (!good)
             break;
           cell->get_dof_indices(dofs);
@@ -309,7 +385,8 @@ namespace limber
                                   values_of(cell, displacement),
                                   on_cell,
                                   &tangent,
-                                  former != nullptr ? &former_values : nullptr);
+                                  former != nullptr ? &former_values : nullptr,
+                                  memory.data() + memory_of(cell));
           if (!good)
             break;
           if (mass_factor != 0)

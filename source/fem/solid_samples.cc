@@ -53,7 +53,7 @@ namespace limber
       places.reinit(cell);
       const auto u      = model.values_of(cell, displacement);
       const auto v      = model.values_of(cell, velocity);
-      const auto states = model.element->states(values, places, u);
+      const auto states = model.states(cell, values, places, displacement);
       samples.assign(unit_places.size(), PlaceSample<dim>());
       for (unsigned int q = 0; q < unit_places.size(); ++q)
         {
@@ -80,8 +80,8 @@ namespace limber
             const NodalVector        &velocity)
   {
     constexpr unsigned int n_stress = 9;
-    // count, displacement, velocity, volume ratio, pressure, stress
-    std::vector<double>           sums(1 + 2 * dim + 2 + n_stress);
+    // count, displacement, velocity, volume ratio, pressure, stress, variables
+    std::vector<double> sums(1 + 2 * dim + 2 + n_stress + max_variables);
     const dealii::MappingQ1<dim>  mapping;
     std::vector<PlaceSample<dim>> here;
     for (const auto &cell : model.dof_handler.active_cell_iterators())
@@ -103,6 +103,8 @@ namespace limber
           sums[2 + 2 * dim] += found.material.pressure;
           for (unsigned int k = 0; k < n_stress; ++k)
             sums[3 + 2 * dim + k] += found.material.stress[k / 3][k % 3];
+          for (unsigned int k = 0; k < max_variables; ++k)
+            sums[3 + 2 * dim + n_stress + k] += found.material.variables[k];
         }
     dealii::Utilities::MPI::sum(sums, model.communicator, sums);
 
@@ -120,8 +122,59 @@ namespace limber
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j <= i; ++j)
         result.material.stress[i][j] = sums[3 + 2 * dim + 3 * i + j] / sums[0];
+    for (unsigned int k = 0; k < max_variables; ++k)
+      result.material.variables[k] = sums[3 + 2 * dim + n_stress + k] / sums[0];
     return result;
   }
+
+
+
+  namespace
+  {
+    /**
+     * Call with each cell that holds some of the places, their unit
+     * coordinates there and their numbers; every place with one cell.
+     */
+    template <int dim, class Function>
+    void
+    for_each_cell_with(const SolidModel<dim>                 &model,
+                       const std::vector<dealii::Point<dim>> &places,
+                       const Function                        &function)
+    {
+      // Places by what they lie in: the box of every cell asks for its own.
+      std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
+      for (std::size_t p = 0; p < places.size(); ++p)
+        entries.emplace_back(places[p], p);
+      const auto tree = dealii::pack_rtree(entries);
+
+      const dealii::MappingQ1<dim>    mapping;
+      std::vector<bool>               found(places.size(), false);
+      std::vector<dealii::Point<dim>> unit_places;
+      std::vector<std::size_t>        indices;
+      for (const auto &cell : model.dof_handler.active_cell_iterators())
+        {
+          unit_places.clear();
+          indices.clear();
+          dealii::BoundingBox<dim> box = cell->bounding_box();
+          box.extend(1e-6 * model.smallest_edge);
+          for (auto it = tree.qbegin(boost::geometry::index::intersects(box));
+               it != tree.qend();
+               ++it)
+            {
+              dealii::Point<dim> unit;
+              if (!found[it->second] &&
+                  find_in_cell<dim>(mapping, cell, it->first, unit))
+                {
+                  found[it->second] = true;
+                  unit_places.push_back(unit);
+                  indices.push_back(it->second);
+                }
+            }
+          if (!indices.empty())
+            function(cell, unit_places, indices);
+        }
+    }
+  } // namespace
 
 
 
@@ -132,40 +185,51 @@ namespace limber
             const NodalVector                     &displacement,
             const NodalVector                     &velocity)
   {
-    // Places by what they lie in: the box of every cell asks for its own.
-    std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
-    for (std::size_t p = 0; p < places.size(); ++p)
-      entries.emplace_back(places[p], p);
-    const auto tree = dealii::pack_rtree(entries);
-
-    std::vector<PlaceSample<dim>>   result(places.size()), here;
-    const dealii::MappingQ1<dim>    mapping;
-    std::vector<dealii::Point<dim>> unit_places;
-    std::vector<std::size_t>        indices;
-    for (const auto &cell : model.dof_handler.active_cell_iterators())
-      {
-        unit_places.clear();
-        indices.clear();
-        dealii::BoundingBox<dim> box = cell->bounding_box();
-        box.extend(1e-6 * model.smallest_edge);
-        for (auto it = tree.qbegin(boost::geometry::index::intersects(box));
-             it != tree.qend();
-             ++it)
-          {
-            dealii::Point<dim> unit;
-            if (!result[it->second].inside &&
-                find_in_cell<dim>(mapping, cell, it->first, unit))
-              {
-                unit_places.push_back(unit);
-                indices.push_back(it->second);
-              }
-          }
-        if (indices.empty())
-          continue;
+    std::vector<PlaceSample<dim>> result(places.size()), here;
+    for_each_cell_with(
+      model,
+      places,
+      [&](const auto &cell, const auto &unit_places, const auto &indices) {
         fill_samples(model, cell, unit_places, displacement, velocity, here);
         for (std::size_t k = 0; k < indices.size(); ++k)
           result[indices[k]] = here[k];
-      }
+      });
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<NodalStress>
+  interpolate_at(const SolidModel<dim>                 &model,
+                 const std::vector<dealii::Point<dim>> &places,
+                 const std::vector<NodalStress>        &nodal)
+  {
+    std::vector<std::size_t> node_of(model.dof_handler.n_dofs());
+    std::size_t              n_nodes = 0;
+    model.for_each_owned_node([&](const auto &, const auto &dofs) {
+      for (const auto dof : dofs)
+        node_of[dof] = n_nodes;
+      ++n_nodes;
+    });
+    std::vector<NodalStress>                     result(places.size());
+    const auto                                  &fe = model.fe.base_element(0);
+    std::vector<dealii::types::global_dof_index> dofs(model.fe.dofs_per_cell);
+    for_each_cell_with(
+      model,
+      places,
+      [&](const auto &cell, const auto &unit_places, const auto &indices) {
+        cell->get_dof_indices(dofs);
+        for (std::size_t k = 0; k < indices.size(); ++k)
+          for (unsigned int i = 0; i < fe.dofs_per_cell; ++i)
+            {
+              const NodalStress &node =
+                nodal[node_of[dofs[model.fe.component_to_system_index(0, i)]]];
+              for (unsigned int c = 0; c < node.size(); ++c)
+                result[indices[k]][c] +=
+                  fe.shape_value(i, unit_places[k]) * node[c];
+            }
+      });
     return result;
   }
 
@@ -188,10 +252,7 @@ namespace limber
         {
           values.reinit(cell);
           places.reinit(cell);
-          const auto states =
-            model.element->states(values,
-                                  places,
-                                  model.values_of(cell, displacement));
+          const auto states = model.states(cell, values, places, displacement);
           cell->get_dof_indices(dofs);
           for (unsigned int n = 0; n < states.size(); ++n)
             {
@@ -246,6 +307,14 @@ namespace limber
             const NodalVector &);
   template std::vector<MaterialState>
   nodal_states(const SolidModel<2> &, const NodalVector &);
+  template std::vector<NodalStress>
+  interpolate_at(const SolidModel<2> &,
+                 const std::vector<dealii::Point<2>> &,
+                 const std::vector<NodalStress> &);
+  template std::vector<NodalStress>
+  interpolate_at(const SolidModel<3> &,
+                 const std::vector<dealii::Point<3>> &,
+                 const std::vector<NodalStress> &);
   template PlaceSample<3>
   sample_at(const SolidModel<3> &,
             const dealii::Point<3> &,

@@ -18,10 +18,7 @@ namespace limber
       if (cell->is_locally_owned())
         {
           values.reinit(cell);
-          const auto states =
-            model.element->states(values,
-                                  values,
-                                  model.values_of(cell, displacement));
+          const auto states = model.states(cell, values, values, displacement);
           for (const unsigned int q : values.quadrature_point_indices())
             {
               result.strain_energy += values.JxW(q) * states[q].strain_energy;
@@ -29,6 +26,9 @@ namespace limber
                 std::min(result.smallest_volume, states[q].volume_ratio);
               result.largest_volume =
                 std::max(result.largest_volume, states[q].volume_ratio);
+              for (unsigned int k = 0; k < max_variables; ++k)
+                result.largest_variable[k] =
+                  std::max(result.largest_variable[k], states[q].variables[k]);
             }
         }
     namespace MPI        = dealii::Utilities::MPI;
@@ -36,6 +36,8 @@ namespace limber
     result.smallest_volume =
       MPI::min(result.smallest_volume, model.communicator);
     result.largest_volume = MPI::max(result.largest_volume, model.communicator);
+    for (double &value : result.largest_variable)
+      value = MPI::max(value, model.communicator);
     return result;
   }
 

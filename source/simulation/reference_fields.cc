@@ -4,6 +4,7 @@
 #include <limber/output/point_arrays.h>
 #include <limber/simulation/reference_fields.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -52,7 +53,7 @@ namespace limber
 
 
   template <int dim>
-  void
+  std::vector<NodalStress>
   read_reference_fields(const std::string     &path,
                         const SolidModel<dim> &model,
                         NodalVector           &displacement,
@@ -72,6 +73,7 @@ namespace limber
     for (std::size_t i = 0; i < arrays.size(); ++i)
       index[key(arrays.place[i])] = i;
 
+    std::vector<NodalStress> stresses;
     model.for_each_owned_node([&](const auto &place, const auto &dofs) {
       const auto found = index.find(key(place));
       if (found == index.end())
@@ -84,9 +86,13 @@ namespace limber
           displacement[dofs[d]] = arrays.displacement[found->second][d];
           velocity[dofs[d]]     = arrays.velocity[found->second][d];
         }
+      NodalStress &stress = stresses.emplace_back();
+      stress[0]           = arrays.pressure[found->second];
+      std::copy_n(arrays.stress[found->second].begin(), 6, stress.begin() + 1);
     });
     displacement.update_ghost_values();
     velocity.update_ghost_values();
+    return stresses;
   }
 
 
@@ -101,12 +107,12 @@ namespace limber
                          const unsigned int,
                          const SolidModel<3> &,
                          const SolidMotion<3> &);
-  template void
+  template std::vector<NodalStress>
   read_reference_fields(const std::string &,
                         const SolidModel<2> &,
                         NodalVector &,
                         NodalVector &);
-  template void
+  template std::vector<NodalStress>
   read_reference_fields(const std::string &,
                         const SolidModel<3> &,
                         NodalVector &,

@@ -74,6 +74,15 @@ namespace limber
 
 
   template <int dim>
+  bool
+  ReferenceObservables<dim>::flows() const
+  {
+    return model.element->n_memory() > 0;
+  }
+
+
+
+  template <int dim>
   std::vector<Column>
   ReferenceObservables<dim>::columns() const
   {
@@ -91,6 +100,8 @@ namespace limber
                                    "boundary work",
                                    "load work"})
       result.push_back({name, "J"});
+    if (flows())
+      result.push_back({"plastic work", "J"});
     result.push_back({"energy drift", ""});
     result.push_back({"largest velocity", "m/s"});
     result.push_back({"smallest volume ratio", ""});
@@ -117,8 +128,8 @@ namespace limber
     result.largest_speed        = largest_speed(model, motion.velocity);
 
     const double balance = result.kinetic_energy + result.strain.strain_energy +
-                           result.gravitational_energy - motion.boundary_work -
-                           motion.load_work;
+                           result.gravitational_energy + motion.plastic_work -
+                           motion.boundary_work - motion.load_work;
     if (!has_start)
       {
         has_start        = true;
@@ -129,6 +140,7 @@ namespace limber
     energy_scale =
       std::max(energy_scale,
                result.kinetic_energy + result.strain.strain_energy +
+                 motion.plastic_work +
                  std::abs(result.gravitational_energy - gravity_at_start) +
                  std::abs(motion.boundary_work) + std::abs(motion.load_work));
     // Gravity that grows with the load steps has no potential.
@@ -192,6 +204,8 @@ namespace limber
             seen.stress                 = here.material.stress;
             seen.pressure               = here.material.pressure;
             seen.volume_ratio           = here.material.volume_ratio;
+            if (flows())
+              seen.variable = here.material.variables[observable.variable];
             return seen;
           }
         case ObservedPart::body:
@@ -202,7 +216,8 @@ namespace limber
           seen.strain_energy    = totals.strain.strain_energy;
           seen.potential_energy = totals.gravitational_energy;
           return seen;
-        case ObservedPart::largest: // elastic materials keep no variables
+        case ObservedPart::largest:
+          seen.variable = totals.strain.largest_variable[observable.variable];
           return seen;
         case ObservedPart::extent:
           seen.extent = extreme(observable);
@@ -250,8 +265,11 @@ namespace limber
                    totals.strain.strain_energy,
                    totals.gravitational_energy,
                    motion.boundary_work,
-                   motion.load_work,
-                   totals.energy_drift,
+                   motion.load_work});
+    if (flows())
+      result.push_back(motion.plastic_work);
+    result.insert(result.end(),
+                  {totals.energy_drift,
                    totals.largest_speed,
                    totals.strain.smallest_volume,
                    totals.strain.largest_volume});

@@ -331,7 +331,7 @@ namespace limber
 
       const Problem<dim>       &problem;
       Console                  &console;
-      const SolidModel<dim>     model;
+      SolidModel<dim>           model;
       ReferenceSolver<dim>      solver;
       ReferenceObservables<dim> observables;
       Checks                    checks;

@@ -117,9 +117,14 @@ namespace limber
                const std::vector<dealii::Point<dim>> &places) override
       {
         NodalVector u = model.make_vector(), v = model.make_vector();
-        read_reference_fields(file_at(this->files, time), model, u, v);
+        const auto  nodal =
+          read_reference_fields(file_at(this->files, time), model, u, v);
         const auto samples = sample_at(model, places, u, v);
-        auto       result  = unknown_fields(time, places);
+        // what has flowed is known to the nodes alone
+        const auto stresses = model.element->n_memory() > 0 ?
+                                interpolate_at(model, places, nodal) :
+                                std::vector<NodalStress>();
+        auto       result   = unknown_fields(time, places);
         for (std::size_t p = 0; p < places.size(); ++p)
           if (samples[p].inside)
             {
@@ -130,6 +135,10 @@ namespace limber
               result.pressure[p]         = state.pressure;
               result.stress[p]           = {
                           {s[0][0], s[1][1], s[2][2], s[0][1], s[1][2], s[2][0]}};
+              if (stresses.empty())
+                continue;
+              result.pressure[p] = stresses[p][0];
+              std::copy_n(stresses[p].begin() + 1, 6, result.stress[p].begin());
             }
         return result;
       }

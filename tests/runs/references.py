@@ -17,6 +17,8 @@ SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 CANTILEVER = TOP / "prm/cantilever.prm"
 FREE_BEAM = TOP / "prm/verification/free_soft_beam.prm"
+TUBE = TOP / "prm/verification/plastic_tube.prm"
+STRIP = TOP / "prm/verification/strip_load.prm"
 MANUFACTURED = TOP / "prm/verification/manufactured_solution.prm"
 FAILED = []
 
@@ -173,6 +175,52 @@ end
         expect(len(found) < 30, f"explicit, {step} s: after {len(found)} steps")
     found = drifts("run", (), load, "Method/Courant number=2.5", code=2)
     expect(len(found) < 60, f"run, unstable: after {len(found)} steps")
+
+
+def flow(folder):
+    """Limit loads of a tube and of a strip, and points against elements."""
+    where = ("--output-directory", folder / "run")
+
+    def limit(words, entry, below, above, *changes):
+        """The body bears one load, which its check does not expect, no more."""
+        for load, code in ((below, 4), (above, 2)):
+            limber(*words, *where, code=code,
+                   changes=("Output/Replace=true", f"{entry}={load}", *changes))
+        expect(True, f"{entry} between {below} and {above} {changes}")
+
+    # 2 k ln(b / a) = 1.3863 k
+    pressure = "Loads/Face load pressure/Constants=p"
+    for words, changes in ((("reference", TUBE), ()),
+                           (("reference", TUBE), ("Reference/Element=Q1-P0-P0",)),
+                           ((TUBE,), ())):
+        limber(*words, *where, changes=("Output/Replace=true", *changes))
+        limit(words, pressure, 1.372, 1.400, *changes)
+    limber("reference", TUBE, *where, code=4,
+           changes=("Output/Replace=true", pressure + "=2",
+                    "Reference/Element=Q1"))
+    expect(True, "Q1 locks and bears 2 k")
+
+    # (2 + pi) c = 5.14 c
+    limit(("reference", STRIP), "Loads/Face load strip/Constants=q", 5.1, 5.3)
+
+    reference = folder / "fem"
+    limber("reference", STRIP, "--output-directory", reference,
+           changes=("Reference/Elements=40, 40",))
+    errors = []
+    for cells in ("20, 22", "40, 44"):
+        limber(STRIP, *where, changes=("Output/Replace=true", "Grid/Cells=" + cells,
+                                       "Output/Time interval=1",
+                                       "Output/Point arrays=true"))
+        limber("compare", folder / "run", reference)
+        found = json.loads((folder / "run/comparison.json").read_text())
+        errors.append({field: found["fields"][field]["relative_l2"]
+                       for field in ("displacement", "pressure", "stress")})
+        print(cells, json.dumps(errors[-1]))
+    expect(errors[0]["displacement"] < 0.13, "cells of 1/4 m: 13 %")
+    expect(errors[1]["displacement"] < 0.6 * errors[0]["displacement"],
+           "half the cells: half the error")
+    expect(max(errors[1]["pressure"], errors[1]["stress"]) < 0.06,
+           "pressure and stress: 6 %")
 
 
 def refusals(folder):

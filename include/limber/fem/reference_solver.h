@@ -23,6 +23,7 @@ namespace limber
 
     double                                      load_work     = 0; // J
     double                                      boundary_work = 0; // J
+    double                                      plastic_work  = 0; // J
     double                                      outer_power   = 0; // W, now
     dealii::Tensor<1, dim>                      load_impulse;      // kg m/s
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_force;   // on the body, N
@@ -45,7 +46,8 @@ namespace limber
   class ReferenceSolver
   {
   public:
-    explicit ReferenceSolver(const SolidModel<dim> &model);
+    /** The material of @p model follows accepted steps. */
+    explicit ReferenceSolver(SolidModel<dim> &model);
 
     ~ReferenceSolver();
 
@@ -108,7 +110,7 @@ namespace limber
     void
     account(const NodalVector &former, const double step);
 
-    const SolidModel<dim>                            &model;
+    SolidModel<dim>                                  &model;
     const ReferenceMethod                             method;
     SolidMotion<dim>                                  state;
     double                                            step_limit = 0;

@@ -9,6 +9,7 @@
 #include <deal.II/lac/full_matrix.h>
 #include <deal.II/lac/vector.h>
 
+#include <limber/base/law_parameter.h>
 #include <limber/problem/problem.h>
 
 #include <memory>
@@ -23,17 +24,22 @@ namespace limber
     double                        pressure     = 0;  // Cauchy, Pa
     dealii::SymmetricTensor<2, 3> stress;            // Cauchy, Pa
     double                        strain_energy = 0; // per start volume, J/m^3
+    // those of the law that the scene may name
+    std::array<double, max_variables> variables{};
   };
 
 
 
   /**
-   * A total Lagrangian element of an elastic solid, of one field (Q1, Q2) or
+   * A total Lagrangian element of a solid, of one field (Q1, Q2) or
    * three: displacement u, volume ratio j and its conjugate p, the latter two
    * polynomials within the element and eliminated there (Simo, Taylor and
    * Pister 1985),
    *
    *   Pi = int W_dev(F) + U(j) + p (J(F) - j) dV.
+   *
+   * A law that flows has no such energy, but the same stationarity in each
+   * step; its points remember where the one before has left them.
    *
    * Stationarity makes j the L2 projection of J(F), and p that of U'(j). So
    * the element without the two fields is the one whose projection is the
@@ -65,16 +71,51 @@ namespace limber
             const std::vector<double>  &u,
             dealii::Vector<double>     &forces,
             dealii::FullMatrix<double> *tangent,
-            const std::vector<double>  *former = nullptr) const = 0;
+            const std::vector<double>  *former = nullptr,
+            const double               *memory = nullptr) const = 0;
 
     /**
      * The states at the points of @p places, given the fields of the element,
-     * which follow from the points of @p values. Both may be the same.
+     * which follow from the points of @p values. Both may be the same. Of a
+     * law that flows they are those that the @p memory holds, between the
+     * points by the polynomial through them.
      */
     virtual std::vector<MaterialState>
     states(const Values              &values,
            const Values              &places,
-           const std::vector<double> &u) const = 0;
+           const std::vector<double> &u,
+           const double              *memory = nullptr) const = 0;
+
+    /** Numbers that a quadrature point remembers of its past; elastic: none. */
+    virtual unsigned int
+    n_memory() const
+    {
+      return 0;
+    }
+
+    /** Memory of the points of @p values before anything has moved. */
+    virtual void
+    begin(const Values & /*values*/, double * /*memory*/) const
+    {}
+
+    /**
+     * Let the @p memory of the points follow to the displacements @p u, at
+     * which compute() has succeeded. Returns the work on plastic strain, J.
+     */
+    virtual double
+    accept(const Values & /*values*/,
+           const std::vector<double> & /*u*/,
+           double * /*memory*/) const
+    {
+      return 0;
+    }
+
+    /** Whether the derivative of the forces is symmetric. */
+    virtual bool
+    has_symmetric_tangent() const
+    {
+      return true;
+    }
 
     /** Whether forces act on the deformed body. */
     bool finite_strain = true;
@@ -86,8 +127,8 @@ namespace limber
 
 
   /**
-   * The element of a scene. Throws InputError where the law of the body has
-   * no stress that follows from the deformation alone, as liquids.
+   * The element of a scene. Throws InputError where the law of the body is
+   * that of a liquid, or flows at a rate.
    */
   template <int dim>
   std::unique_ptr<const SolidElement<dim>>

@@ -92,6 +92,21 @@ namespace limber
              Matrix            &matrix,
              const NodalVector *former = nullptr) const;
 
+    /**
+     * Let what the material remembers follow to @p displacement, at which the
+     * internal forces have been computed; nothing where it is elastic. Returns
+     * the work on plastic strain, J.
+     */
+    double
+    accept(const NodalVector &displacement);
+
+    /** The states of the material at @p places of a cell, see SolidElement. */
+    std::vector<MaterialState>
+    states(const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
+           const dealii::FEValues<dim>                                  &values,
+           const dealii::FEValues<dim>                                  &places,
+           const NodalVector &displacement) const;
+
     /** A matrix with the right pattern. */
     void
     reinit(Matrix &matrix) const;
@@ -154,6 +169,11 @@ namespace limber
     number();
     void
     assemble_masses();
+    void
+    begin_memory();
+    std::size_t
+    memory_of(
+      const typename dealii::DoFHandler<dim>::active_cell_iterator &cell) const;
     dealii::Tensor<1, dim>
     face_traction(const FaceLoad<dim>             &load,
                   const dealii::FEFaceValues<dim> &faces,
@@ -167,6 +187,8 @@ namespace limber
     std::vector<std::pair<dealii::Point<dim>, NodeDofs>> nodes; // owned
     std::unique_ptr<Matrix>                              masses;
     NodalVector                                          lumped, weight;
+    // of the quadrature points, cell by cell
+    std::vector<double> memory;
   };
 
 

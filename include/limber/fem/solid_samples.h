@@ -43,6 +43,20 @@ namespace limber
             const NodalVector                     &displacement,
             const NodalVector                     &velocity);
 
+  /** Pressure and stress (xx yy zz xy yz zx) of a node, Cauchy, Pa. */
+  using NodalStress = std::array<double, 7>;
+
+  /**
+   * What nodes say at many places, by the shape functions; zero outside of the
+   * body. Nodes in the order of SolidModel::for_each_owned_node(). For one
+   * rank.
+   */
+  template <int dim>
+  std::vector<NodalStress>
+  interpolate_at(const SolidModel<dim>                 &model,
+                 const std::vector<dealii::Point<dim>> &places,
+                 const std::vector<NodalStress>        &nodal);
+
   /**
    * States of the nodes of this rank, in the order of
    * SolidModel::for_each_owned_node(): means over the elements that meet

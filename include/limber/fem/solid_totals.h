@@ -10,12 +10,14 @@
  */
 namespace limber
 {
-  /** Energy of the strain and extremes of the volume ratio. */
+  /** Energy of the strain and extremes over the quadrature points. */
   struct StrainTotals
   {
     double strain_energy   = 0; // J
-    double smallest_volume = 1; // of all J at quadrature points
+    double smallest_volume = 1; // of all J
     double largest_volume  = 1;
+    // of the variables of a law that flows
+    std::array<double, max_variables> largest_variable{};
   };
 
   template <int dim>

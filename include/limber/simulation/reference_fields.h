@@ -3,6 +3,7 @@
 #define limber_simulation_reference_fields_h
 
 #include <limber/fem/reference_solver.h>
+#include <limber/fem/solid_samples.h>
 
 #include <string>
 
@@ -24,9 +25,11 @@ namespace limber
   /**
    * Displacement and velocity of the nodes of @p model, whose mesh has to be
    * that of the reference. Throws FileError where it is not. Every rank reads.
+   * Returns pressure and stress of the nodes of this rank, in the order of
+   * SolidModel::for_each_owned_node().
    */
   template <int dim>
-  void
+  std::vector<NodalStress>
   read_reference_fields(const std::string     &path,
                         const SolidModel<dim> &model,
                         NodalVector           &displacement,

@@ -67,6 +67,8 @@ namespace limber
         const std::vector<double>  &observed) const;
 
   private:
+    bool
+    flows() const;
     dealii::Point<dim>
     place_in_body(const dealii::Point<dim> &place) const;
     Seen<dim>

@@ -64,15 +64,15 @@ namespace
         const std::string &method,
         const double       step)
   {
-    const auto          problem = problem_from<2>(block,
+    const auto         problem = problem_from<2>(block,
                                          {"Reference/Element=" + element,
-                                                   "Reference/Method=" + method,
-                                                   "Reference/Tolerance=1e-10",
-                                                   "Reference/Elements over depth=4"});
-    const SolidModel<2> model(problem, MPI_COMM_WORLD);
-    ReferenceSolver<2>  solver(model);
-    const unsigned int  n      = std::lround(1 / step);
-    const auto          energy = [&]() {
+                                                  "Reference/Method=" + method,
+                                                  "Reference/Tolerance=1e-10",
+                                                  "Reference/Elements over depth=4"});
+    SolidModel<2>      model(problem, MPI_COMM_WORLD);
+    ReferenceSolver<2> solver(model);
+    const unsigned int n      = std::lround(1 / step);
+    const auto         energy = [&]() {
       const auto &m = solver.motion();
       return kinetic_energy(model, m.velocity) +
              strain_totals(model, m.displacement).strain_energy -
@@ -150,11 +150,11 @@ TEST(NaturalModes, AFreeBodyHasItsRigidMotions)
   for (const std::string &element : reference_elements)
     {
       SCOPED_TRACE(element);
-      const auto          problem = problem_from<2>(block,
+      const auto    problem = problem_from<2>(block,
                                            {"Reference/Element=" + element,
-                                                     "Boundaries/left=free"});
-      const SolidModel<2> model(problem, MPI_COMM_WORLD);
-      const auto          found = natural_frequencies(model, 3);
+                                               "Boundaries/left=free"});
+      SolidModel<2> model(problem, MPI_COMM_WORLD);
+      const auto    found = natural_frequencies(model, 3);
       EXPECT_EQ(found.n_rigid_motions, 3u);
       ASSERT_EQ(found.frequencies.size(), 3u);
       // a bar of this length has its first axial mode near c / 2 L

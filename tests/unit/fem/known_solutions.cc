@@ -78,8 +78,8 @@ namespace
               "Loads/Constants=A = 1e-6, mu = " + digits(mu) + ", s = " + digits(s),
               "Loads/Body force=A*pi^2*(2*mu + 1.5*s)*sin(pi*x)*cos(pi*y); "
                      "A*pi^2*(mu + 1.5*s)*cos(pi*x)*sin(pi*y)"});
-    const SolidModel<2> model(problem, MPI_COMM_WORLD);
-    ReferenceSolver<2>  solver(model);
+    SolidModel<2>      model(problem, MPI_COMM_WORLD);
+    ReferenceSolver<2> solver(model);
     solver.advance(1);
 
     // somewhere in the elements, on a lattice that does not fit them
@@ -174,9 +174,9 @@ namespace
                                       dealii::Point<2>(48, 44),
                                       dealii::Point<2>(0, 44),
                                       dealii::Point<2>(48, 60)}};
-    const SolidModel<2>   model(
-      problem, make_block_mesh<2>(corners, {{n, n}}, MPI_COMM_WORLD));
-    ReferenceSolver<2> solver(model);
+    SolidModel<2>         model(problem,
+                        make_block_mesh<2>(corners, {{n, n}}, MPI_COMM_WORLD));
+    ReferenceSolver<2>    solver(model);
     for (unsigned int k = 0; k < problem.reference.load_steps; ++k)
       solver.advance(solver.longest_step());
     const auto &u = solver.motion().displacement;
@@ -307,8 +307,8 @@ TEST(MeshFile, GivesWhatTheBlockGives)
     {
       auto all = changes;
       all.push_back("Reference/Method=quasi-static");
-      const auto          problem = problem_from<2>(scene, all);
-      const SolidModel<2> model(problem, MPI_COMM_WORLD);
+      const auto    problem = problem_from<2>(scene, all);
+      SolidModel<2> model(problem, MPI_COMM_WORLD);
       EXPECT_EQ(model.mesh->n_global_active_cells(), 64u);
       ReferenceSolver<2> solver(model);
       solver.advance(solver.longest_step());
@@ -342,7 +342,7 @@ TEST(MeshFile, ABallTwistsAtItsExactFrequency)
       dealii::GridOut().write_vtk(mesh, file);
       file.close();
 
-      const auto          problem = problem_from<3>(R"(
+      const auto    problem = problem_from<3>(R"(
         set Dimension = 3
         set Bodies = ball
         subsection Body ball
@@ -362,8 +362,8 @@ TEST(MeshFile, ABallTwistsAtItsExactFrequency)
           set Upper corner = 4, 4, 4
         end)",
                                            {"Reference/Mesh file=" + path,
-                                                     "Reference/Element=Q2"});
-      const SolidModel<3> model(problem, MPI_COMM_WORLD);
+                                               "Reference/Element=Q2"});
+      SolidModel<3> model(problem, MPI_COMM_WORLD);
       EXPECT_EQ(model.mesh->n_global_active_cells(), mesh.n_active_cells());
       const auto found = natural_frequencies(model, 5);
       EXPECT_EQ(found.n_rigid_motions, 6u);

@@ -79,9 +79,9 @@ namespace
         changes.push_back("Boundaries/" + side + "=velocity");
         changes.push_back("Boundaries/Side " + side + "/Velocity=" + field);
       }
-    const auto problem = problem_from<dim>(unit_body<dim>(), changes);
-    const SolidModel<dim> model(problem, distorted_mesh<dim>());
-    ReferenceSolver<dim>  solver(model);
+    const auto           problem = problem_from<dim>(unit_body<dim>(), changes);
+    SolidModel<dim>      model(problem, distorted_mesh<dim>());
+    ReferenceSolver<dim> solver(model);
     solver.advance(solver.longest_step());
 
     const Formula<dim> exact(field, {}, dim, "test");
@@ -111,14 +111,14 @@ namespace
   compare_tangent(const std::string &element, const std::string &law)
   {
     SCOPED_TRACE(element + ", " + law + ", " + std::to_string(dim) + "d");
-    const auto            problem = problem_from<dim>(unit_body<dim>(),
+    const auto      problem = problem_from<dim>(unit_body<dim>(),
                                            {"Reference/Element=" + element,
-                                                       "Body block/Material=" + law,
-                                                       "Boundaries/left=free",
-                                                       "Boundaries/right=free",
-                                                       "Boundaries/bottom=free",
-                                                       "Boundaries/top=free"});
-    const SolidModel<dim> model(problem, distorted_mesh<dim>());
+                                                 "Body block/Material=" + law,
+                                                 "Boundaries/left=free",
+                                                 "Boundaries/right=free",
+                                                 "Boundaries/bottom=free",
+                                                 "Boundaries/top=free"});
+    SolidModel<dim> model(problem, distorted_mesh<dim>());
 
     NodalVector u = model.make_vector(), direction = model.make_vector();
     double      seed = 1;
