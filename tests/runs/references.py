@@ -17,6 +17,7 @@ SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 CANTILEVER = TOP / "prm/cantilever.prm"
 FREE_BEAM = TOP / "prm/verification/free_soft_beam.prm"
+SLOPE = TOP / "prm/benchmarks/slope_stability.prm"
 TUBE = TOP / "prm/verification/plastic_tube.prm"
 STRIP = TOP / "prm/verification/strip_load.prm"
 MANUFACTURED = TOP / "prm/verification/manufactured_solution.prm"
@@ -203,14 +204,22 @@ def flow(folder):
     # (2 + pi) c = 5.14 c
     limit(("reference", STRIP), "Loads/Face load strip/Constants=q", 5.1, 5.3)
 
+    # strength over F: the slope stands at 1.35, not at 1.4
+    soil = "Body soil/Drucker prager/"
+    for c, phi, code in ((7407.4, 15.0886, 4), (7142.9, 14.5731, 2)):
+        limber("reference", SLOPE, *where, code=code,
+               changes=("Output/Replace=true", f"{soil}Cohesion={c}",
+                        f"{soil}Friction angle={phi}"))
+    expect(True, "a slope stands at F = 1.35 and fails at 1.4")
+
     reference = folder / "fem"
     limber("reference", STRIP, "--output-directory", reference,
-           changes=("Reference/Elements=40, 40",))
+           changes=("Reference/Elements=40, 40", "Reference/Load steps=10"))
     errors = []
     for cells in ("20, 22", "40, 44"):
         limber(STRIP, *where, changes=("Output/Replace=true", "Grid/Cells=" + cells,
-                                       "Output/Time interval=1",
-                                       "Output/Point arrays=true"))
+                               "Method/Time step=0.1", "Output/Time interval=1",
+                               "Output/Point arrays=true"))
         limber("compare", folder / "run", reference)
         found = json.loads((folder / "run/comparison.json").read_text())
         errors.append({field: found["fields"][field]["relative_l2"]
