@@ -91,8 +91,9 @@ namespace limber
       {"explicit", TimeIntegration::explicit_steps, "symplectic Euler"},
       {"semi-implicit",
        TimeIntegration::semi_implicit,
-       "the pressure of liquids is that of the end of the step, so that sound "
-       "in them does not limit it"},
+       "the pressure of liquids, and of elastic solids with 'Locking treatment "
+       "= cell', is that of the end of the step, so that sound in them does not "
+       "limit it"},
       {"auto",
        TimeIntegration::explicit_steps,
        "'semi-implicit' where sound in a liquid is thirty times as fast as all "
