@@ -13,9 +13,14 @@ namespace limber
 {
   namespace
   {
-    // Fine cells reach two of their edges beyond what has to be fine, and
-    // points may go most of that way before criteria are asked again.
-    constexpr double longest_way = 1.5;
+    // Points may go so much of the rim, in fine cells, before criteria are
+    // asked again: all but half a cell.
+    template <int dim>
+    double
+    way_within_rim(const Problem<dim> &problem)
+    {
+      return 2 * rim_pairs(problem) - 0.5;
+    }
 
     // What formulas of the time and fields want may change while points rest.
     constexpr std::uint64_t steps_at_rest = 50;
@@ -30,6 +35,7 @@ namespace limber
     : problem(problem)
     , grid(grid)
     , bodies(bodies)
+    , longest_way(way_within_rim(problem))
   {
     if (!grid.has_levels())
       return;
@@ -67,7 +73,7 @@ namespace limber
     ++memory.times_asked;
 
     // A cell is joined again only when nothing has wanted it twice in a row.
-    RefinedCells<dim>       mesh    = wanted_mesh(grid, bodies, time);
+    RefinedCells<dim>       mesh    = wanted_mesh(problem, grid, bodies, time);
     const RefinedCells<dim> present = grid.divided_cells();
     RefinedCells<dim>       held    = grid.no_divided_cells();
     held.set(memory.wanted);

@@ -7,6 +7,7 @@
 #include <limber/problem/read_parts.h>
 
 #include <algorithm>
+#include <set>
 
 namespace limber
 {
@@ -223,8 +224,31 @@ namespace limber
 
 
   template <int dim>
+  unsigned int
+  rim_pairs(const Problem<dim> &problem)
+  {
+    const GridDescription<dim> &grid = problem.grid;
+    std::set<std::string>       fine;
+    for (const Refinement<dim> &refinement : grid.refinements)
+      {
+        if (refinement.criterion != RefinementCriterion::body ||
+            refinement.level != grid.levels || !refinement.where.empty() ||
+            refinement.box != corners(grid))
+          return 1;
+        fine.insert(refinement.bodies.begin(), refinement.bodies.end());
+      }
+    for (const Body<dim> &body : problem.bodies)
+      if (fine.count(body.name) == 0)
+        return 1;
+    return 3;
+  }
+
+
+
+  template <int dim>
   RefinedCells<dim>
-  wanted_mesh(const BackgroundGrid<dim>                             &grid,
+  wanted_mesh(const Problem<dim>                                    &problem,
+              const BackgroundGrid<dim>                             &grid,
               const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
               const double                                           time)
   {
@@ -254,7 +278,7 @@ namespace limber
                                     [](const auto &refinement) {
                                       return refinement.is_moving();
                                     });
-    result.grade(moving ? 1 : 0);
+    result.grade(moving ? rim_pairs(problem) : 0);
     // No rim around these: points in it would be split in their turn, and so
     // on.
     result.join(for_points);
@@ -264,12 +288,18 @@ namespace limber
 
 
 
+  template unsigned int
+  rim_pairs(const Problem<2> &);
+  template unsigned int
+  rim_pairs(const Problem<3> &);
   template RefinedCells<2>
-  wanted_mesh(const BackgroundGrid<2> &,
+  wanted_mesh(const Problem<2> &,
+              const BackgroundGrid<2> &,
               const std::vector<std::unique_ptr<MaterialBody<2>>> &,
               double);
   template RefinedCells<3>
-  wanted_mesh(const BackgroundGrid<3> &,
+  wanted_mesh(const Problem<3> &,
+              const BackgroundGrid<3> &,
               const std::vector<std::unique_ptr<MaterialBody<3>>> &,
               double);
 } // namespace limber

@@ -374,9 +374,6 @@ namespace limber
     for_each_field([&]() {
       for (const std::uint32_t node : active)
         std::fill_n(record(node), Layout::stride, 0.);
-      // Their masters have given to them whether they are active or not.
-      for (const HangingNode &hanging : table.hanging)
-        std::fill_n(record(hanging.node), Layout::stride, 0.);
     });
   }
 
@@ -386,8 +383,17 @@ namespace limber
   void
   NodalFields<dim>::start_sum(const unsigned int first, const unsigned int last)
   {
-    // Linear, so every rank condenses its own contributions.
-    table.give_to_masters(values.data(), Layout::stride, first, last);
+    // Linear, so every rank condenses its own contributions. Most hanging nodes
+    // lie in room without points, and have none.
+    for (const HangingNode &hanging : table.hanging)
+      if (is_active[hanging.node])
+        {
+          double *const from = record(hanging.node);
+          for (const auto &[master, weight] : hanging.masters)
+            for (unsigned int k = first; k < last; ++k)
+              record(master)[k] += weight * from[k];
+          std::fill(from + first, from + last, 0.);
+        }
     exchange.start(nodes_to_share, values.data(), first, last);
   }
 
@@ -406,7 +412,15 @@ namespace limber
   void
   NodalFields<dim>::interpolate_hanging()
   {
-    table.take_from_masters(values.data(), Layout::stride, 1, Layout::stride);
+    for (const HangingNode &hanging : table.hanging)
+      if (is_active[hanging.node])
+        {
+          double *const to = record(hanging.node);
+          std::fill(to + 1, to + Layout::stride, 0.);
+          for (const auto &[master, weight] : hanging.masters)
+            for (unsigned int k = 1; k < Layout::stride; ++k)
+              to[k] += weight * record(master)[k];
+        }
   }
 
 

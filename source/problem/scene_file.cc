@@ -100,7 +100,7 @@ namespace limber
         SectionPath path = around;
         path.push_back(name);
         // An empty name is refused later, by the range of the list.
-        if (name.back() == ' ' || scan.has_section(path))
+        if (name.back() == ' ' || scan.has_section(path) || is_set(path))
           return;
 
         std::vector<std::string> present;
@@ -115,6 +115,18 @@ namespace limber
           (meant ?
              "Did you mean " + in_quotes(*meant) + "?" :
              "Write 'subsection " + printable(name) + "', entries, 'end'."));
+      }
+
+      /** Whether the command line changes an entry of the section. */
+      bool
+      is_set(const SectionPath &path) const
+      {
+        const std::string start = to_text(path) + "/";
+        return std::any_of(overrides.begin(),
+                           overrides.end(),
+                           [&](const std::string &text) {
+                             return text.compare(0, start.size(), start) == 0;
+                           });
       }
 
       const Scan                     &scan;

@@ -219,6 +219,7 @@ namespace limber
       found.changes  = "nothing but the length of the steps";
       found.settings = {setting};
       found.factor   = std::max(1., 2 * first_step / interval);
+      found.ground   = "the length of steps; no run needed";
       advice.push_back(found);
     }
 
@@ -277,17 +278,29 @@ namespace limber
               const double        first_step)
   {
     std::vector<Advice> advice;
-    if (const auto found = advise_dimension(problem))
-      advice.push_back(*found);
+    const auto          note = [&](const std::optional<Advice> &found) {
+      if (found)
+        advice.push_back(*found);
+    };
+    // How many cells there are, and over a body, is not known with levels.
+    const bool has_levels = problem.grid.levels > 0;
+    if (!has_levels)
+      note(advise_dimension(problem));
     for (const Body<dim> &body : problem.bodies)
       {
         advise_bulk_modulus(scene, body, advice);
         advise_points(body, error, advice);
-        advise_treatment(problem.grid, body, error, advice);
+        if (!has_levels)
+          advise_treatment(problem.grid, body, error, advice);
       }
     advise_step(problem.method, advice);
-    if (const auto found = advise_box(problem))
-      advice.push_back(*found);
+    if (has_levels)
+      note(advise_unused_levels(problem));
+    else
+      {
+        note(advise_box(problem));
+        note(advise_levels(scene, problem));
+      }
     advise_pictures(problem, first_step, advice);
     advise_rows(problem, first_step, advice);
     return advice;

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/size_estimate.h>
 #include <limber/study/advice.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 /** @file Advice on the grid: an axis that nothing needs, and empty cells. */
 namespace limber
@@ -196,6 +199,203 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Of an empty cell, with its nodes. */
+    template <int dim>
+    constexpr double bytes_per_cell = dim == 2 ? 346 : 587;
+
+
+
+    /**
+     * How often the lattice can be made coarser by a factor of two: as often as
+     * all counts are even, and no cell becomes wider than a body.
+     */
+    template <int dim>
+    unsigned int
+    possible_levels(const Problem<dim> &problem)
+    {
+      constexpr unsigned int most   = 4;
+      unsigned int           levels = 0;
+      const auto             fits   = [&](const unsigned int n) {
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (problem.grid.cells[d] % (1u << n) != 0)
+              return false;
+            for (const Body<dim> &body : problem.bodies)
+              {
+                const auto box = body.shape->bounding_box();
+                if (box.second[d] - box.first[d] <
+                    problem.grid.edge(d) * (1u << n))
+                  return false;
+              }
+          }
+        return true;
+      };
+      while (levels < most && fits(levels + 1))
+        ++levels;
+      return levels;
+    }
+
+
+
+    /** Cells with so many levels and all bodies in the finest: an estimate. */
+    template <int dim>
+    double
+    cells_with_levels(const Problem<dim> &problem, const unsigned int levels)
+    {
+      // the rim on both sides, and what has not been joined yet
+      constexpr double around = 18;
+      double           cells  = number_of_cells(problem.grid);
+      for (unsigned int n = 0; n < levels; ++n)
+        cells /= 1 << dim;
+      for (const Body<dim> &body : problem.bodies)
+        {
+          const auto box  = body.shape->bounding_box();
+          double     fine = 1;
+          for (unsigned int d = 0; d < dim; ++d)
+            fine *=
+              (box.second[d] - box.first[d]) / problem.grid.edge(d) + around;
+          cells += fine / (1 - 1. / (1 << dim)); // and the levels between
+        }
+      return cells;
+    }
+
+
+
+    /** The scene with other entries, where it is one. */
+    template <int dim>
+    std::optional<Problem<dim>>
+    problem_with(const SceneFile                &scene,
+                 const std::vector<std::string> &settings)
+    {
+      std::ostringstream entries;
+      scene.parameters().print(entries, PrintStyle::prm);
+      try
+        {
+          return read_problem<dim>(SceneFile(
+            ParameterText{entries.str(), FileFormat::prm, "the scene"},
+            settings));
+        }
+      catch (const InputError &)
+        {
+          return {};
+        }
+    }
+
+
+
+    /** Whether another grid leaves the discrete equations what they are. */
+    template <int dim>
+    bool
+    solve_alike(const Problem<dim> &one, const Problem<dim> &other)
+    {
+      if (one.grid.kernel != other.grid.kernel ||
+          one.method.order != other.method.order ||
+          one.method.integration != other.method.integration)
+        return false;
+      for (std::size_t b = 0; b < one.bodies.size(); ++b)
+        if (one.bodies[b].frame != other.bodies[b].frame ||
+            one.bodies[b].treatment != other.bodies[b].treatment)
+          return false;
+      return true;
+    }
+
+
+
+    /** Whether a body may get into the box of a refinement, by an upper bound.
+     */
+    template <int dim>
+    bool
+    may_be_reached(const Corners<dim> &part, const Problem<dim> &problem)
+    {
+      if (is_moved_from_outside(problem))
+        return true;
+      const double way = reach(problem);
+      return std::any_of(problem.bodies.begin(),
+                         problem.bodies.end(),
+                         [&](const Body<dim> &body) {
+                           const auto box = body.shape->bounding_box();
+                           for (unsigned int d = 0; d < dim; ++d)
+                             if (box.first[d] - way > part.second[d] ||
+                                 box.second[d] + way < part.first[d])
+                               return false;
+                           return true;
+                         });
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  std::optional<Advice>
+  advise_levels(const SceneFile &scene, const Problem<dim> &problem)
+  {
+    const unsigned int levels = possible_levels(problem);
+    if (levels == 0)
+      return {};
+    const double cells = number_of_cells(problem.grid);
+    const double left  = cells_with_levels(problem, levels);
+    Advice       advice;
+    advice.memory = bytes_per_cell<dim> * (cells - left);
+    if (advice.memory < 0.1 * estimate_size(problem, Task::run, 1).bytes())
+      return {};
+
+    std::vector<double> coarse;
+    for (const unsigned int n : problem.grid.cells)
+      coarse.push_back(n >> levels);
+    std::vector<std::string> names;
+    for (const Body<dim> &body : problem.bodies)
+      names.push_back(body.name);
+    advice.settings  = {"Grid/Cells=" + entry_of(coarse),
+                        "Grid/Levels=" + std::to_string(levels),
+                        "Grid/Refine=bodies",
+                        "Grid/Refine bodies/Criterion=body",
+                        "Grid/Refine bodies/Bodies=" + join(names, ", ")};
+    const auto other = problem_with<dim>(scene, advice.settings);
+    if (!other || !solve_alike(problem, *other))
+      return {};
+    advice.what = "Levels";
+    advice.text = "Most of the box is empty: with cells of " +
+                  brief(problem.grid.edge(0) * (1u << levels)) +
+                  " m there and the present ones going along with the bodies, "
+                  "some " +
+                  brief(left) + " cells do for " + brief(cells);
+    advice.changes  = "nothing but the time that the mesh takes to go along";
+    advice.is_exact = true;
+    return advice;
+  }
+
+
+
+  template <int dim>
+  std::optional<Advice>
+  advise_unused_levels(const Problem<dim> &problem)
+  {
+    const GridDescription<dim> &grid = problem.grid;
+    unsigned int                used = 0;
+    for (const Refinement<dim> &refinement : grid.refinements)
+      if (may_be_reached(refinement.box, problem))
+        used = std::max(used, refinement.level);
+    if (used == grid.levels)
+      return {};
+    Advice advice;
+    advice.what = "Levels";
+    advice.text = "The grid has " + std::to_string(grid.levels) +
+                  " levels, but where anything can get within the end time no "
+                  "refinement asks for more than " +
+                  std::to_string(used);
+    advice.changes  = "nothing";
+    advice.settings = {"Grid/Levels=" + std::to_string(used)};
+    if (used == 0)
+      advice.settings.emplace_back("Grid/Refine=");
+    advice.factor = 1;
+    advice.ground = "no point gets into cells of a finer level; no run needed";
+    return advice;
+  }
+
+
+
   std::string
   entry_of(const std::vector<double> &numbers)
   {
@@ -257,8 +457,7 @@ namespace limber
     const double kept = number_of_cells(grid) / number_of_cells(problem.grid);
     if (kept > 0.5)
       return {};
-    constexpr double bytes_per_cell = dim == 2 ? 346 : 587;
-    Advice           advice;
+    Advice advice;
     advice.what = "Grid";
     advice.text = "Nothing gets farther than " + brief(way) +
                   " m within the end time, so " + brief(100 * kept) +
@@ -274,7 +473,8 @@ namespace limber
                        "Grid/Upper corner=" + corner(grid.upper),
                        "Grid/Cells=" +
                          entry_of({grid.cells.begin(), grid.cells.end()})};
-    advice.memory = bytes_per_cell * (1 - kept) * number_of_cells(problem.grid);
+    advice.memory =
+      bytes_per_cell<dim> * (1 - kept) * number_of_cells(problem.grid);
     advice.is_exact = true;
     return advice;
   }
@@ -289,4 +489,12 @@ namespace limber
   advise_box(const Problem<2> &);
   template std::optional<Advice>
   advise_box(const Problem<3> &);
+  template std::optional<Advice>
+  advise_levels(const SceneFile &, const Problem<2> &);
+  template std::optional<Advice>
+  advise_levels(const SceneFile &, const Problem<3> &);
+  template std::optional<Advice>
+  advise_unused_levels(const Problem<2> &);
+  template std::optional<Advice>
+  advise_unused_levels(const Problem<3> &);
 } // namespace limber

@@ -185,12 +185,6 @@ stopped by signal n.
                 const AdviseOptions            &options)
     {
       const Problem<dim> problem = read_problem<dim>(scene);
-      if (problem.grid.levels > 0)
-        throw InputError("'limber advise' looks for a coarser lattice and "
-                         "does not know cells of several sizes, which " +
-                         in_quotes(path) +
-                         " has ('Grid/Levels'). Ask about the scene with "
-                         "'--set Grid/Levels=0 --set Grid/Refine='.");
       check_size(problem, Task::run, this_machine());
       const auto           found = find_advice<dim>(scene,
                                           problem,
@@ -203,7 +197,7 @@ stopped by signal n.
           if (advice.factor > 0)
             {
               tell(advice,
-                   {Judgement::advised, "the length of steps; no run needed"},
+                   {Judgement::advised, advice.ground},
                    advice.factor,
                    {});
               continue;
@@ -213,9 +207,9 @@ stopped by signal n.
               base = try_scene(path, overrides, options.seconds);
               stop_if_asked();
               refuse_failed(*base, path);
-              double edge = problem.grid.edge(0);
+              double edge = problem.grid.finest_edge(0);
               for (unsigned int d = 1; d < dim; ++d)
-                edge = std::min(edge, problem.grid.edge(d));
+                edge = std::min(edge, problem.grid.finest_edge(d));
               way = longest_way(base->table, edge);
             }
           auto all = overrides;

@@ -112,6 +112,34 @@ class Advice(unittest.TestCase):
         self.assertLess(piece.change, 1e-6, piece.line)
         self.hold("cantilever.prm", piece, *settings)
 
+    def test_empty_room_is_coarse(self):
+        settings = ("Grid/Upper corner=16, 16", "Grid/Cells=320, 320",
+                    "End time=0.1")
+        scene = "verification/bouncing_ball.prm"
+        piece = self.advise(scene, *settings)["Levels"]
+        self.assertEqual(piece.judgement, "Advised", piece.line)
+        self.assertIn("Grid/Levels=4", piece.settings)
+        self.assertIn("Grid/Cells=20, 20", piece.settings)
+        self.assertIn("MB", piece.line)
+        self.assertLess(piece.change, 1e-6, piece.line)
+        # a box that is full, and functions that levels do not have
+        self.assertNotIn("Levels", self.advise(scene, "End time=0.1"))
+        self.assertNotIn("Levels", self.advise(scene, *settings,
+                                               "Method/Kernel=quadratic"))
+
+    def test_levels_that_no_point_sees(self):
+        scene = "adaptive_throw.prm"
+        self.assertNotIn("Levels", self.advise(scene))
+        piece = self.advise(scene, "Grid/Refine ball/Level=3")["Levels"]
+        self.assertEqual(piece.settings, ["Grid/Levels=3"])
+        # 2.6 m/s for 0.3 s do not lead there
+        away = ("Grid/Upper corner=16, 16", "Grid/Cells=320, 320",
+                "Grid/Refine ball/Criterion=region",
+                "Grid/Refine ball/Bodies=", "Grid/Levels=1",
+                "Grid/Refine ball/Lower corner=14, 14")
+        piece = self.advise(scene, *away)["Levels"]
+        self.assertEqual(piece.settings, ["Grid/Levels=0", "Grid/Refine="])
+
     def test_pictures_finer_than_steps(self):
         found = self.advise("cantilever.prm", "Output/Time interval=1e-4",
                             "End time=1")

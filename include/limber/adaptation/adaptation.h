@@ -102,6 +102,7 @@ namespace limber
     const Problem<dim>  &problem;
     BackgroundGrid<dim> &grid;
     Bodies              &bodies;
+    const double         longest_way; // until criteria are asked, in fine cells
     AdaptationState      memory;
     double               seconds_spent = 0;
     double               removed       = 0;

@@ -23,7 +23,8 @@ namespace limber
     // Entries to set
     std::vector<std::string> settings;
     double                   memory = 0; // bytes saved, by estimate
-    double factor = 0; // CPU time saved, where it needs no run
+    double      factor = 0; // CPU time saved, where it needs no run, and why:
+    std::string ground;
     // Where the discrete equations and their unknowns stay the same; a part of
     // the run is enough to see that.
     bool is_exact = false;
@@ -54,6 +55,20 @@ namespace limber
   template <int dim>
   std::optional<Advice>
   advise_box(const Problem<dim> &problem);
+
+  /**
+   * Coarse cells where the box is empty, with fine ones that go along with all
+   * bodies: where that spares a tenth of the memory at least and leaves
+   * functions, frames and schemes as they are.
+   */
+  template <int dim>
+  std::optional<Advice>
+  advise_levels(const SceneFile &scene, const Problem<dim> &problem);
+
+  /** That for levels which no refinement asks for where a point can get. */
+  template <int dim>
+  std::optional<Advice>
+  advise_unused_levels(const Problem<dim> &problem);
 
   /** "0.5; 1" and the like, as the numbers of an entry. */
   std::string
