@@ -124,8 +124,9 @@ namespace limber
               const Motion &motion = trial.motions[p - batch.begin];
               keep(motion, points, p);
               if (initial)
-                keep_deformation(assumes ? trial.assumed.points[p - batch.begin].F :
-                                           motion.f,
+                keep_deformation(assumes ?
+                                   trial.assumed.points[p - batch.begin].F :
+                                   motion.f,
                                  points,
                                  p);
               result.plastic_work += motion.volume * motion.plastic_work;
@@ -161,16 +162,16 @@ namespace limber
       /** Of a point in a trial. */
       struct Motion
       {
-        Gradients gradient;     // of the functions where forces act, 1/m
-        Matrix    f;            // of the step, or F in the initial frame;
-                                // where strain is assumed, as it is assumed
-        double    growth;       // of the volume by it, the point's own
-        double    volume;       // at the start, m^dim
-        double    former_ratio; // volume ratio that the growth belongs to
-        State     state;
-        State     start;            // where the law flows, before the step
-        double    acting       = 1; // growth that the state has followed
-        double    plastic_work = 0; // per volume at the start, Pa
+        Gradients gradient;  // of the functions where forces act, 1/m
+        Matrix    f;         // of the step, or F in the initial frame;
+                             // where strain is assumed, as it is assumed
+        double growth;       // of the volume by it, the point's own
+        double volume;       // at the start, m^dim
+        double former_ratio; // volume ratio that the growth belongs to
+        State  state;
+        State  start;            // where the law flows, before the step
+        double acting       = 1; // growth that the state has followed
+        double plastic_work = 0; // per volume at the start, Pa
         // In the tangent: rows of the deviator, and derivative of the energy by
         // the growth that acts, per volume at the start, Pa
         Matrix stress;
@@ -182,7 +183,7 @@ namespace limber
       {
         std::array<std::array<double, dim>, n_nodes> u; // of the nodes, m
         std::vector<Motion>                          motions;
-        AssumedTrial<dim, finite> assumed;
+        AssumedTrial<dim, finite>                    assumed;
         double volume = 0;               // of all at the start, m^dim
         double slope = 0, curvature = 0; // of the energy, by mean growth, J
       };
@@ -250,9 +251,7 @@ namespace limber
         assumed.points.resize(trial.motions.size());
         for (std::size_t k = 0; k < trial.motions.size(); ++k)
           {
-            const LinearFunctions<dim> functions(points,
-                                                 cell,
-                                                 batch.begin + k);
+            const LinearFunctions<dim> functions(points, cell, batch.begin + k);
             assumed.points[k] = {trial.motions[k].f,
                                  functions.xi,
                                  trial.motions[k].volume,

@@ -208,7 +208,8 @@ namespace limber
       back.resize(points.size());
       for (std::size_t p = 0; p < points.size(); ++p)
         turned[p] = operation->turned_back(stress[p]);
-      const Means means = means_of([&](const std::size_t p) { return turned[p]; });
+      const Means means =
+        means_of([&](const std::size_t p) { return turned[p]; });
       for (std::size_t p = 0; p < points.size(); ++p)
         back[p] = assume(turned[p], means, p);
       if constexpr (finite_strain)
@@ -239,7 +240,7 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
               H[d][e] = (d == e ? U[0][0] + U[1][1] + U[2][2] : 0.) - U[d][e];
-          inverse              = cofactor<dim>(H);
+          inverse                             = cofactor<dim>(H);
           const double inverse_of_determinant = 1 / determinant<dim>(H);
           for (auto &row : inverse)
             for (double &entry : row)
@@ -288,8 +289,8 @@ namespace limber
             }
           for (std::size_t p = 0; p < points.size(); ++p)
             {
-              Matrix &total = varied[k * points.size() + p];
-              total         = assume(turned_back(p, k), means, p);
+              Matrix &total              = varied[k * points.size() + p];
+              total                      = assume(turned_back(p, k), means, p);
               own[k * points.size() + p] = total;
               for (int a = 0; a < n_spins; ++a)
                 {
@@ -379,11 +380,11 @@ namespace limber
               {
                 by_spins[a][b] += V * contract(stress, change_by_spin(a, p));
                 by_spins[b][a] +=
-                  V * (contract(given,
-                                times<dim>(spin(a),
-                                           operation->turned_back(
-                                             points[p].F))) -
-                       contract(stress, turning[a * points.size() + p]));
+                  V *
+                  (contract(given,
+                            times<dim>(spin(a),
+                                       operation->turned_back(points[p].F))) -
+                   contract(stress, turning[a * points.size() + p]));
               }
           }
 
@@ -446,15 +447,15 @@ namespace limber
 
     std::optional<AssumedDeformation<dim, finite_strain, double>> operation;
     double                                                        volume = 0;
-    std::vector<Matrix> turned, back; // P^ and Q of the points
-    SmallMatrix<3, double>           inverse{}; // of H
-    Axis      pull{};    // H^-1 t
+    std::vector<Matrix>    turned, back; // P^ and Q of the points
+    SmallMatrix<3, double> inverse{};    // of H
+    Axis                   pull{};       // H^-1 t
     // By degree of freedom: mean of g, axis of the spin; of each point A(g) and
     // the change of A G
-    std::array<Matrix, n_dofs>                      mean;
-    std::array<Axis, n_dofs> axes{};
-    std::vector<Matrix>                             own, varied;
-    std::vector<Matrix>                             turning; // A(S_a G)
+    std::array<Matrix, n_dofs> mean;
+    std::array<Axis, n_dofs>   axes{};
+    std::vector<Matrix>        own, varied;
+    std::vector<Matrix>        turning; // A(S_a G)
   };
 } // namespace limber
 

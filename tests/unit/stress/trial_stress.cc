@@ -182,13 +182,13 @@ namespace
 
 
   template <class Law, int dim>
-  using TrialCasesOf =
-    testing::Types<TrialCase<Law, dim, Projection::none, Frame::current>,
-                   TrialCase<Law, dim, Projection::cell, Frame::current>,
-                   TrialCase<Law, dim, Projection::assumed_strain, Frame::current>,
-                   TrialCase<Law, dim, Projection::none, Frame::initial>,
-                   TrialCase<Law, dim, Projection::cell, Frame::initial>,
-                   TrialCase<Law, dim, Projection::assumed_strain, Frame::initial>>;
+  using TrialCasesOf = testing::Types<
+    TrialCase<Law, dim, Projection::none, Frame::current>,
+    TrialCase<Law, dim, Projection::cell, Frame::current>,
+    TrialCase<Law, dim, Projection::assumed_strain, Frame::current>,
+    TrialCase<Law, dim, Projection::none, Frame::initial>,
+    TrialCase<Law, dim, Projection::cell, Frame::initial>,
+    TrialCase<Law, dim, Projection::assumed_strain, Frame::initial>>;
 
   TYPED_TEST_SUITE_P(TrialStresses);
 
@@ -400,10 +400,10 @@ namespace
                               FlowTakesWork);
 
   template <class Law, int dim>
-  using PlasticCasesOf =
-    testing::Types<TrialCase<Law, dim, Projection::none, Frame::current>,
-                   TrialCase<Law, dim, Projection::cell, Frame::current>,
-                   TrialCase<Law, dim, Projection::assumed_strain, Frame::current>>;
+  using PlasticCasesOf = testing::Types<
+    TrialCase<Law, dim, Projection::none, Frame::current>,
+    TrialCase<Law, dim, Projection::cell, Frame::current>,
+    TrialCase<Law, dim, Projection::assumed_strain, Frame::current>>;
   using J2Plane    = PlasticCasesOf<J2, 2>;
   using J2Space    = PlasticCasesOf<J2, 3>;
   using SandPlane  = PlasticCasesOf<DruckerPrager<false>, 2>;
