@@ -277,7 +277,7 @@ namespace limber
             return;
           // What has been divided stays, so that this comes to an end.
           const RefinedCells<dim> present = grid.divided_cells();
-          RefinedCells<dim>       wanted  = wanted_mesh(problem, grid, bodies, 0);
+          RefinedCells<dim> wanted = wanted_mesh(problem, grid, bodies, 0);
           wanted.join(present);
           if (wanted == present)
             break;

@@ -244,9 +244,10 @@ TEST(PressureSystem, ControlMakesTheLaplacianCompact)
 TEST(PressureSystem, DivergencesSumUpToTheFluxThroughTheSurface)
 {
   using Layout = NodeLayout<2>;
-  EquationsOfStep<2> step(block<2>("6, 5"),
-                          {"Body water/Initial velocity=0.02*x*y; 0.02*sin(x)*y*y"});
-  double             volume = 0, change = 0;
+  EquationsOfStep<2> step(
+    block<2>("6, 5"),
+    {"Body water/Initial velocity=0.02*x*y; 0.02*sin(x)*y*y"});
+  double volume = 0, change = 0;
   for (std::size_t p = 0; p < step.run.points().size; ++p)
     {
       const double of_point = step.run.points().mass[p] / 1000;
