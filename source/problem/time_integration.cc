@@ -301,11 +301,8 @@ namespace limber
                      problem.bodies.end(),
                      [](const auto &body) { return body.implicit_pressure; }))
       refuse(where("Time integration") +
-               ", as the scene has no liquid, and no elastic solid in the "
-               "current frame with one pressure for each cell",
-             "the material of a body to 'newtonian fluid', or that of a solid "
-             "to an elastic one with 'Locking treatment = cell', 'Frame = "
-             "current' and 'History = keep'");
+               ", as there is no liquid and no elastic solid with 'cell'",
+             "'newtonian fluid' or 'Locking treatment = cell'");
     if (problem.grid.kernel != KernelKind::linear)
       refuse("the kernel " + where("Kernel"), "'Kernel = linear'");
     if (problem.method.order != StressUpdateOrder::automatic &&

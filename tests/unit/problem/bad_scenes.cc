@@ -379,6 +379,7 @@ namespace
     {"SemiImplicitWithPlasticSolid",
      {"Method/Time integration=semi-implicit",
       "Body water/Material=j2",
+      "Body water/J2/Yield stress=1e5",
       "Body water/Locking treatment=cell"},
      {"'semi-implicit'", "no elastic solid", "'newtonian fluid'"}},
     {"SemiImplicitWithSplines",
