@@ -128,7 +128,7 @@ namespace limber
     dealii::TrilinosWrappers::PreconditionAMG::AdditionalData settings;
     settings.elliptic              = true;
     settings.smoother_type         = "Chebyshev";
-    settings.smoother_sweeps       = 2;
+    settings.smoother_sweeps       = 4;
     settings.aggregation_threshold = 0.02;
     settings.coarse_type           = "Amesos-KLU";
     multigrid.initialize(matrix, settings);
