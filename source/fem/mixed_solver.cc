@@ -16,9 +16,9 @@ namespace limber
     // of the residual, in the norm of the preconditioner
     constexpr double       accuracy         = 1e-8;
     constexpr unsigned int smoother_sweeps  = 3;
-    constexpr unsigned int chebyshev_degree = 10;
+    constexpr unsigned int chebyshev_degree = 20;
     // largest over smallest eigenvalue that the polynomial cares for
-    constexpr double chebyshev_range = 60;
+    constexpr double chebyshev_range = 300;
 
     using Vector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 

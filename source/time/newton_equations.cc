@@ -25,7 +25,7 @@ namespace limber
     // Of what an unbounded body gives in to a pressure that alternates: the
     // share that cells know of. The rest is for surfaces and sides. Both were
     // found by counting iterations.
-    constexpr double alternating_share = 0.95;
+    constexpr double alternating_share = 0.99;
   } // namespace
 
 
