@@ -243,8 +243,11 @@ namespace limber
                            parts,
                            with_pi,
                            /*time_dependent=*/true);
-        // The parser looks at the text only when a value is asked for.
-        is_finite(dealii::Point<dim>(), 0.);
+        // The parser looks at the text of a component only when its value is
+        // asked for.
+        const HeldFloatingPointTraps held;
+        for (unsigned int c = 0; c < components; ++c)
+          value(dealii::Point<dim>(), 0., c);
       }
     catch (const dealii::ExceptionBase &exception)
       {
