@@ -382,8 +382,7 @@ namespace limber
     parts.nodes.for_each_field([&]() {
       for (const std::uint32_t node : parts.nodes.active_nodes())
         std::fill_n(parts.nodes.record(node) + Layout::force, dim, 0.);
-      // These have taken from their masters whether they are active or not,
-      // and will give to them.
+      // What these have taken from their masters is not given back to them.
       for (const HangingNode &hanging : parts.nodes.table.hanging)
         std::fill_n(parts.nodes.record(hanging.node) + Layout::force, dim, 0.);
     });
