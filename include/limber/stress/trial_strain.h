@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_trial_strain_h
+#define limber_stress_trial_strain_h
+
+#include <limber/interpolation/linear_functions.h>
+#include <limber/points/cell_batch.h>
+#include <limber/stress/cell_trial.h>
+#include <limber/stress/strain_projection.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  /**
+   * Strains the points of a cell by the displacements of its nodes and finds
+   * their states, those of points left as they are (TrialStress). What is by
+   * growth is by that of the mean volume where this acts, else by the own.
+   */
+  template <int dim, class Law>
+  class TrialStrain
+  {
+    static constexpr int  n_nodes = 1 << dim;
+    static constexpr bool finite  = Law::finite_strain;
+    static constexpr bool flows   = Law::is_plastic;
+    using Matrix                  = SquareMatrix<dim>;
+    using Motion                  = TrialMotion<dim, Law>;
+    using Trial                   = CellTrial<dim, Law>;
+
+  public:
+    TrialStrain(const Law              &law,
+                const StrainProjection &projection,
+                const Frame             frame)
+      : law(law)
+      , mean_volume(projection.kind == Projection::cell)
+      , assumes(projection.kind == Projection::assumed_strain)
+      , initial(frame == Frame::initial)
+      , projection(projection)
+    {}
+
+    /** Kinematics and states; false where a point is turned inside out. */
+    bool
+    operator()(const PointView<dim> &points,
+               const GridView<dim>  &grid,
+               const double *const   displacement,
+               const CellBatch      &batch,
+               Trial                &trial) const
+    {
+      const CellGeometry<dim> &cell = grid.cells[batch.cell];
+      for (int i = 0; i < n_nodes; ++i)
+        std::copy_n(displacement +
+                      std::size_t(cell.node[i]) / NodeLayout<dim>::stride * dim,
+                    dim,
+                    trial.u[i].begin());
+
+      trial.motions.resize(batch.end - batch.begin);
+      trial.volume       = 0;
+      double mean_growth = 0;
+      for (std::size_t p = batch.begin; p < batch.end; ++p)
+        {
+          Motion &motion = trial.motions[p - batch.begin];
+          if (!deform(points, cell, p, trial.u, motion))
+            return false;
+          trial.volume += motion.volume;
+          mean_growth += motion.volume * motion.growth;
+        }
+      mean_growth /= trial.volume;
+      if (assumes && !assume(points, cell, batch, trial))
+        return false;
+
+      trial.slope = trial.curvature = 0;
+      for (std::size_t p = batch.begin; p < batch.end; ++p)
+        {
+          Motion      &motion = trial.motions[p - batch.begin];
+          const double growth = mean_volume ? mean_growth : motion.growth;
+          set_state(points, p, growth, motion);
+          motion.slope  = slope(motion, growth);
+          motion.stress = rows_of<dim>(motion.state.deviator);
+          if (mean_volume)
+            {
+              trial.slope += motion.volume * motion.slope;
+              trial.curvature += motion.volume * curvature(motion, growth);
+            }
+        }
+      if (mean_volume)
+        for (Motion &motion : trial.motions)
+          motion.slope = trial.slope / trial.volume;
+      return true;
+    }
+
+    /**
+     * Of the volumetric energy, by the growth that acts, per volume at the
+     * start, Pa: J p = - J dU/dJ.
+     */
+    static double
+    slope(const Motion &motion, const double growth)
+    {
+      return finite ? -motion.state.pressure / growth : -motion.state.pressure;
+    }
+
+    /** Its derivative, Pa; zero where a law flows, whose rates tell it. */
+    double
+    curvature(const Motion &motion, const double growth) const
+    {
+      if constexpr (flows)
+        return 0;
+      else
+        {
+          const double J = motion.former_ratio;
+          return finite ? J * J * law.volumetric_stiffness(J * growth) :
+                          law.volumetric_stiffness(1.);
+        }
+    }
+
+    const FurtherDeformation<Law> law;
+    const bool                    mean_volume, assumes, initial;
+
+  private:
+    // Each point is deformed as its cell lets it; false as above.
+    bool
+    assume(const PointView<dim>    &points,
+           const CellGeometry<dim> &cell,
+           const CellBatch         &batch,
+           Trial                   &trial) const
+    {
+      auto &assumed = trial.assumed;
+      assumed.points.resize(trial.motions.size());
+      for (std::size_t k = 0; k < trial.motions.size(); ++k)
+        {
+          const LinearFunctions<dim> functions(
+            natural_place(points, cell, batch.begin + k), cell);
+          assumed.points[k] = {trial.motions[k].f,
+                               functions.xi,
+                               trial.motions[k].volume,
+                               functions.gradient};
+        }
+      if (!assumed.finish(projection))
+        return false;
+      for (std::size_t k = 0; k < trial.motions.size(); ++k)
+        {
+          Motion &motion = trial.motions[k];
+          motion.f       = assumed.deformation(k);
+          motion.growth  = volume_ratio(motion.f);
+          if (finite && !(motion.growth > 0))
+            return false;
+        }
+      return true;
+    }
+
+    static double
+    volume_ratio(const Matrix &f)
+    {
+      if constexpr (finite)
+        return determinant<dim>(f);
+      double result = 1;
+      for (int d = 0; d < dim; ++d)
+        result += f[d][d] - 1;
+      return result;
+    }
+
+    bool
+    deform(const PointView<dim>                               &points,
+           const CellGeometry<dim>                            &cell,
+           const std::size_t                                   p,
+           const std::array<std::array<double, dim>, n_nodes> &u,
+           Motion                                             &motion) const
+    {
+      const LinearFunctions<dim> functions(natural_place(points, cell, p),
+                                           cell);
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            double &entry = motion.f[d][e];
+            entry = initial ? points.deformation[d * dim + e][p] : d == e;
+            for (int i = 0; i < n_nodes; ++i)
+              entry += u[i][d] * functions.gradient[i][e];
+          }
+      motion.volume   = points.mass[p] / law.density;
+      motion.gradient = functions.gradient;
+      motion.growth   = volume_ratio(motion.f);
+      if constexpr (!finite)
+        return true;
+      if (!(motion.growth > 0))
+        return false;
+      const Matrix cof = cofactor<dim>(motion.f); // det(f) f^-T
+      for (int i = 0; i < n_nodes; ++i)
+        for (int d = 0; d < dim; ++d)
+          {
+            double &entry = motion.gradient[i][d];
+            entry         = 0;
+            for (int e = 0; e < dim; ++e)
+              entry += cof[d][e] * functions.gradient[i][e];
+            entry /= motion.growth;
+          }
+      return true;
+    }
+
+    void
+    set_state(const PointView<dim> &points,
+              const std::size_t     p,
+              const double          growth,
+              Motion               &motion) const
+    {
+      auto &state = motion.state;
+      if constexpr (!flows)
+        if (initial)
+          {
+            motion.former_ratio = 1;
+            state = law.template at_deformation<dim>(motion.f, growth);
+            return;
+          }
+      state.pressure = points.pressure[p];
+      for (unsigned int k = 0; k < state.deviator.size(); ++k)
+        state.deviator[k] = points.deviator[k][p];
+      for (unsigned int k = 0; k < state.history.size(); ++k)
+        state.history[k] = points.history[k][p];
+      motion.former_ratio = law.template volume_ratio<dim>(state);
+      if constexpr (flows)
+        {
+          motion.start  = state;
+          motion.acting = growth;
+        }
+      motion.plastic_work = law.template deform<dim>(motion.f, growth, state);
+    }
+
+    const StrainProjection projection;
+  };
+} // namespace limber
+
+#endif

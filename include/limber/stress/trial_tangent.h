@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_stress_trial_tangent_h
+#define limber_stress_trial_tangent_h
+
+#include <limber/materials/flow_rates.h>
+#include <limber/stress/trial_strain.h>
+#include <limber/stress/trial_stress.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * The second derivative of the energy of a cell (Simo and Hughes,
+   * Computational Inelasticity, 7.1 and 9.2): material part, stress on the
+   * change of the gradients, and the curvature of the volumetric energy. Where
+   * flow couples pressure and shear, the deviator follows the mean volume, and
+   * the pressure of the cell the strains of its points.
+   */
+  template <int dim, class Law>
+  class TrialTangent
+  {
+    static constexpr int  n_nodes = 1 << dim;
+    static constexpr int  n_dofs  = dim * n_nodes;
+    static constexpr bool finite  = Law::finite_strain;
+    static constexpr bool flows   = Law::is_plastic;
+    using Motion                  = TrialMotion<dim, Law>;
+    using Trial                   = CellTrial<dim, Law>;
+    using Rates                   = FlowRates<dim>;
+    // [d, e][k, l]: what the force along d by the gradient along e grows by
+    // with the displacement along k by the gradient along l
+    using Moduli = decltype(Rates::deviator);
+
+  public:
+    explicit TrialTangent(const TrialStrain<dim, Law> &strain)
+      : law(strain.law)
+      , strain(strain)
+    {}
+
+    void
+    add(Trial &trial, CellResponse<dim> &response) const
+    {
+      if (strain.assumes)
+        add_assumed(trial, response);
+      else
+        add_own(trial, response);
+    }
+
+  private:
+    void
+    add_assumed(Trial &trial, CellResponse<dim> &response) const
+    {
+      std::vector<Moduli> moduli;
+      for (const Motion &motion : trial.motions)
+        moduli.push_back(moduli_of(motion, rates_of(motion)));
+      trial.assumed.add_tangent(
+        trial.piola(),
+        [&](const std::size_t p, int d, int e, int f, int g) {
+          return moduli[p][d * dim + e][f * dim + g];
+        },
+        response.tangent);
+    }
+
+    void
+    add_own(const Trial &trial, CellResponse<dim> &response) const
+    {
+      // derivatives of mean growth and, times the volume, of the slope
+      std::array<double, n_dofs> &mean_growth = response.volume_row;
+      std::array<double, n_dofs>  slope_of_cell{};
+      std::array<double, n_dofs>  by_growth{}; // of the force
+      double                      curvature_of_cell = trial.curvature;
+      for (const Motion &motion : trial.motions)
+        {
+          const Rates rates = rates_of(motion);
+          add_point(motion, rates, response);
+          const double weight =
+            motion.volume / trial.volume * (finite ? motion.growth : 1.);
+          for (int i = 0; i < n_nodes; ++i)
+            for (int d = 0; d < dim; ++d)
+              {
+                const int k = i * dim + d;
+                mean_growth[k] += weight * motion.gradient[i][d];
+                if constexpr (flows)
+                  for (int e = 0; e < dim; ++e)
+                    {
+                      slope_of_cell[k] += motion.volume * rates.slope[d][e] *
+                                          motion.gradient[i][e];
+                      by_growth[k] += motion.volume * rates.by_growth[d][e] *
+                                      motion.gradient[i][e];
+                    }
+              }
+          if constexpr (flows)
+            curvature_of_cell += motion.volume * rates.curvature;
+        }
+      if (!strain.mean_volume)
+        return;
+      response.volume_stiffness = curvature_of_cell;
+      if constexpr (flows)
+        for (int k = 0; k < n_dofs; ++k)
+          for (int l = 0; l < n_dofs; ++l)
+            response.tangent[k * n_dofs + l] +=
+              mean_growth[k] * slope_of_cell[l] + by_growth[k] * mean_growth[l];
+    }
+
+    // What the stress of a point grows by; an elastic law has no part of the
+    // deviator by growth and none of the slope by strain.
+    Rates
+    rates_of(const Motion &motion) const
+    {
+      if constexpr (flows)
+        return flow_rates<dim>(law, motion.start, motion.f, motion.acting);
+      else
+        {
+          Rates result;
+          for (int k = 0; k < dim; ++k)
+            for (int l = 0; l <= k; ++l)
+              {
+                SquareMatrix<dim> e{};
+                e[k][l] += 0.5;
+                e[l][k] += 0.5;
+                const auto rate =
+                  law.template deviatoric_tangent<dim>(motion.state, e);
+                for (int c = 0; c < dim * dim; ++c)
+                  result.deviator[c][k * dim + l] =
+                    result.deviator[c][l * dim + k] = rate[c / dim][c % dim];
+              }
+          result.curvature = strain.curvature(motion, motion.growth);
+          return result;
+        }
+    }
+
+    Moduli
+    moduli_of(const Motion &motion, const Rates &rates) const
+    {
+      Moduli       a      = rates.deviator;
+      const auto  &s      = motion.stress;
+      const double mean   = motion.mean_stress();
+      const double growth = finite ? motion.growth : 1.;
+      const double volumetric =
+        strain.mean_volume ? 0 : rates.curvature * growth * growth;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            a[d * dim + d][e * dim + e] += volumetric;
+            if constexpr (finite)
+              {
+                a[d * dim + d][e * dim + e] += mean;
+                a[d * dim + e][e * dim + d] -= mean;
+                for (int k = 0; k < dim; ++k)
+                  a[k * dim + d][k * dim + e] += s[d][e];
+              }
+            if constexpr (flows)
+              if (!strain.mean_volume)
+                for (int k = 0; k < dim; ++k)
+                  {
+                    a[k * dim + k][d * dim + e] += growth * rates.slope[d][e];
+                    a[d * dim + e][k * dim + k] +=
+                      growth * rates.by_growth[d][e];
+                  }
+          }
+      return a;
+    }
+
+    void
+    add_point(const Motion      &motion,
+              const Rates       &rates,
+              CellResponse<dim> &response) const
+    {
+      constexpr int n = dim * dim;
+      const Moduli  a = moduli_of(motion, rates);
+      const auto   &g = motion.gradient;
+      for (int i = 0; i < n_nodes; ++i)
+        for (int d = 0; d < dim; ++d)
+          {
+            std::array<double, n> row{};
+            for (int e = 0; e < dim; ++e)
+              for (int c = 0; c < n; ++c)
+                row[c] += motion.volume * g[i][e] * a[d * dim + e][c];
+            double *const out =
+              &response.tangent[std::size_t(i * dim + d) * n_dofs];
+            for (int j = 0; j < n_nodes; ++j)
+              for (int k = 0; k < dim; ++k)
+                for (int l = 0; l < dim; ++l)
+                  out[j * dim + k] += row[k * dim + l] * g[j][l];
+          }
+    }
+
+    const FurtherDeformation<Law> &law;
+    const TrialStrain<dim, Law>   &strain;
+  };
+} // namespace limber
+
+#endif
