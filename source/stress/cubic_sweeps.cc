@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/spline.h>
 #include <limber/stress/make_sweep.h>
-#include <limber/stress/strain_by_splines.h>
+#include <limber/stress/strain_packs.h>
 
 namespace limber
 {
@@ -15,7 +15,7 @@ namespace limber
       [&](const auto &law) {
         return frame == Frame::initial ?
                  make_initial_frame_sweep<Cubic<dim>>(law, projection) :
-                 make_spline_sweep<Cubic<dim>>(law, projection);
+                 make_pack_sweep<Cubic<dim>>(law, projection);
       },
       any);
   }

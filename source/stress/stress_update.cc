@@ -49,14 +49,12 @@ namespace limber
         result = make_quadratic_sweep<dim>(law, projection, frame);
       else if (kernel == KernelKind::cubic)
         result = make_cubic_sweep<dim>(law, projection, frame);
-      else if (frame == Frame::initial)
-        result = make_initial_frame_sweep<Linear<dim>>(law, projection);
+      else if (frame == Frame::initial || kernel == KernelKind::linear)
+        result = make_linear_sweep<dim>(law, projection, frame);
       else if (kernel == KernelKind::ddmp)
         result = make_dual_domain_sweep<dim>(law, projection);
-      else if (has_domains(kernel))
-        result = make_convected_sweep<dim>(law, projection);
       else
-        result = make_sweep<Linear<dim>>(law, projection);
+        result = make_convected_sweep<dim>(law, projection);
     });
     if (!result)
       throw std::logic_error("no law " + name);

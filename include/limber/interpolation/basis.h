@@ -22,6 +22,12 @@
  */
 namespace limber
 {
+  /** Whether a cell has the modes that assumed strain treats apart. */
+  template <class Basis>
+  inline constexpr bool has_bending_modes = Basis::n_nodes == 1 << Basis::dim;
+
+
+
   /** Call @p work with a (stateless) object of the type of the grid's basis. */
   template <int dim, class Work>
   auto

@@ -2,10 +2,11 @@
 #ifndef limber_stress_make_sweep_h
 #define limber_stress_make_sweep_h
 
+#include <limber/interpolation/basis.h>
 #include <limber/materials/law_list.h>
 #include <limber/stress/initial_frame_sweep.h>
 #include <limber/stress/law_sweep.h>
-#include <limber/stress/spline_sweep.h>
+#include <limber/stress/pack_sweep.h>
 
 #include <memory>
 #include <stdexcept>
@@ -13,54 +14,46 @@
 /** @file The sweeps of a law, for each basis. */
 namespace limber
 {
+  /** That of any law and projection: the law is called once per pack. */
+  template <class Basis, class Law>
+  std::unique_ptr<const StressUpdate<Basis::dim>>
+  make_pack_sweep(const Law &law, const StrainProjection &projection)
+  {
+    return std::make_unique<PackSweep<Basis, Law>>(law, projection);
+  }
+
+
+
+  /**
+   * The fastest there is. The treatments that most scenes have are compiled for
+   * each law; so are none of those of a law that flows, whose return map takes
+   * longer than the call per pack.
+   */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
   make_sweep(const Law &law, const StrainProjection &projection)
   {
-    const auto with = [&](const auto kind) {
+    [[maybe_unused]] const auto with = [&](const auto kind) {
       using Sweep = LawSweep<Basis, Law, decltype(kind)::value>;
       return std::unique_ptr<const StressUpdate<Basis::dim>>(
         std::make_unique<Sweep>(law, projection));
     };
     using P = Projection;
-    switch (projection.kind)
-      {
-        case P::automatic:
-          throw std::logic_error("no projection chosen");
-        case P::none:
-          return with(std::integral_constant<P, P::none>());
-        case P::cell:
-          return with(std::integral_constant<P, P::cell>());
-        case P::node:
-          return with(std::integral_constant<P, P::node>());
-        default:
-          break;
-      }
-    if constexpr (Law::has_deviator)
+    if constexpr (!Law::is_plastic)
       switch (projection.kind)
         {
-          case P::cell_shear:
-            return with(std::integral_constant<P, P::cell_shear>());
-          case P::cell_full:
-            return with(std::integral_constant<P, P::cell_full>());
-          case P::hybrid:
-            return with(std::integral_constant<P, P::hybrid>());
+          case P::none:
+            return with(std::integral_constant<P, P::none>());
+          case P::cell:
+            return with(std::integral_constant<P, P::cell>());
           case P::assumed_strain:
-            return with(std::integral_constant<P, P::assumed_strain>());
+            if constexpr (Law::has_deviator)
+              return with(std::integral_constant<P, P::assumed_strain>());
+            break;
           default:
             break;
         }
-    throw std::logic_error("no such projection");
-  }
-
-
-
-  /** Those of splines, of any law. */
-  template <class Basis, class Law>
-  std::unique_ptr<const StressUpdate<Basis::dim>>
-  make_spline_sweep(const Law &law, const StrainProjection &projection)
-  {
-    return std::make_unique<SplineSweep<Basis, Law>>(law, projection);
+    return make_pack_sweep<Basis>(law, projection);
   }
 
 
@@ -85,7 +78,7 @@ namespace limber
           case P::cell:
             return with(std::integral_constant<P, P::cell>());
           case P::assumed_strain:
-            if constexpr (Basis::n_nodes == 1 << Basis::dim)
+            if constexpr (has_bending_modes<Basis>)
               return with(std::integral_constant<P, P::assumed_strain>());
             break;
           default:
@@ -96,7 +89,12 @@ namespace limber
 
 
 
-  /** All with splines, of any law, each in a translation unit of its own. */
+  /** All of any law, each basis in a translation unit of its own. */
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_linear_sweep(const AnyLaw           &law,
+                    const StrainProjection &projection,
+                    Frame                   frame);
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_quadratic_sweep(const AnyLaw           &law,

@@ -28,29 +28,35 @@ namespace limber
 
     /**
      * Stress at the points of a body for forces on nodes: B^T of the
-     * projection (strain_operator.h). What a projection averages acts on the
-     * means of the gradients, and is summed up over a batch first.
+     * projection (strain_operator.h). What a projection @p averages over a cell
+     * acts on the means of the gradients, and is summed up over a batch first.
+     * What that is is asked once per pack, which is nothing beside the
+     * functions of so many nodes: the sweeps, long to compile, are there once
+     * for all projections.
      */
-    template <Projection kind, bool has_deviator>
+    template <bool averages>
     struct StressForce
     {
-      static constexpr bool any           = true;
-      static constexpr bool mean_pressure = averages_volume_in_cells(kind);
-      static constexpr bool mean_shear =
-        has_deviator && averages_shear_in_cells(kind);
-      static constexpr bool mean_normals =
-        has_deviator && kind == Projection::cell_full;
-      static constexpr bool has_means = mean_pressure || mean_shear;
+      static constexpr bool any       = true;
+      static constexpr bool has_means = averages;
+
+      StressForce(const Projection kind, const bool has_deviator)
+        : has_deviator(has_deviator)
+        , mean_pressure(averages_volume_in_cells(kind))
+        , mean_shear(averages_shear_in_cells(kind))
+        , mean_normals(kind == Projection::cell_full)
+        , around_nodes(averages_around_nodes(kind))
+      {}
 
       /** V times stress of a pack, J: what acts at points, and on means. */
       template <int dim, class Lanes>
-      __attribute__((always_inline)) static SmallMatrix<dim, PointPack<dim>>
+      __attribute__((always_inline)) SmallMatrix<dim, PointPack<dim>>
       at_points(const PointView<dim>                  &points,
                 const CellGeometry<dim>               &cell,
                 const Lanes                           &lanes,
                 const std::array<PointPack<dim>, dim> &xi,
                 const GiveToGrid                      &what,
-                StressSums<dim>                       &on_means)
+                StressSums<dim>                       &on_means) const
       {
         using Number = PointPack<dim>;
         const Number V =
@@ -59,26 +65,33 @@ namespace limber
         for (auto &row : result)
           set_zero(row);
 
-        if constexpr (has_deviator)
+        if (has_deviator)
           {
             const auto s = stress_deviator<dim>(points, lanes);
             for (int d = 0; d < dim; ++d)
               for (int e = 0; e < dim; ++e)
-                if (d == e ? mean_normals : mean_shear)
+                if (averages && (d == e ? mean_normals : mean_shear))
                   on_means[d][e] += V * s[d][e];
                 else
                   result[d][e] = V * s[d][e];
           }
         Number p;
-        if constexpr (averages_around_nodes(kind))
-          p = V * NodalMean<dim, kind>(what.projected_pressure, cell)
-                    .template value<Number>(xi);
+        if (around_nodes)
+          p =
+            V * NodalMean<dim, Projection::node>(what.projected_pressure, cell)
+                  .template value<Number>(xi);
         else
           p = V * lanes.load(points.pressure);
         for (int d = 0; d < dim; ++d)
-          (mean_pressure ? on_means : result)[d][d] -= p;
+          if (averages && mean_pressure)
+            on_means[d][d] -= p;
+          else
+            result[d][d] -= p;
         return result;
       }
+
+      const bool has_deviator;
+      const bool mean_pressure, mean_shear, mean_normals, around_nodes;
     };
 
 
@@ -116,10 +129,11 @@ namespace limber
 
     template <class Basis, bool momentum, bool affine, class Force, int dim>
     std::size_t
-    sweep(const PointView<dim> &points,
-          const GridView<dim>  &grid,
-          const GiveToGrid     &what,
-          const CellSums<dim>  *sums)
+    sweep(const PointView<dim>         &points,
+          const GridView<dim>          &grid,
+          const GiveToGrid             &what,
+          const CellSums<dim>          *sums,
+          [[maybe_unused]] const Force &force)
     {
       using Layout = NodeLayout<dim>;
       using Number = PointPack<dim>;
@@ -143,7 +157,7 @@ namespace limber
               const auto               xi = lanes.natural(points, cell);
               SmallMatrix<dim, Number> Vt;
               if constexpr (Force::any)
-                Vt = Force::template at_points<dim>(
+                Vt = force.template at_points<dim>(
                   points, cell, lanes, xi, what, on_means);
               give_pack<Basis, Given<momentum, affine, Force::any>>(
                 points,
@@ -175,49 +189,15 @@ namespace limber
     choose_sums(const PointView<dim> &points,
                 const GridView<dim>  &grid,
                 const GiveToGrid     &what,
-                const CellSums<dim>  *sums)
+                const CellSums<dim>  *sums,
+                const Force          &force)
     {
       if constexpr (Force::any)
         if (!what.momentum)
-          return sweep<Basis, false, false, Force>(points, grid, what, sums);
+          return sweep<Basis, false, false>(points, grid, what, sums, force);
       return what.affine ?
-               sweep<Basis, true, true, Force>(points, grid, what, sums) :
-               sweep<Basis, true, false, Force>(points, grid, what, sums);
-    }
-
-
-
-    template <class Basis, bool deviator, int dim>
-    std::size_t
-    choose_projection(const PointView<dim> &points,
-                      const GridView<dim>  &grid,
-                      const GiveToGrid     &what,
-                      const CellSums<dim>  *sums)
-    {
-      const auto with = [&](const auto kind) {
-        return choose_sums<Basis, StressForce<decltype(kind)::value, deviator>>(
-          points, grid, what, sums);
-      };
-      using P = Projection;
-      switch (what.projection.kind)
-        {
-          case P::automatic:      // has been chosen long before
-          case P::assumed_strain: // has no modes here
-            break;
-          case P::none:
-            return with(std::integral_constant<P, P::none>());
-          case P::cell:
-            return with(std::integral_constant<P, P::cell>());
-          case P::cell_shear:
-            return with(std::integral_constant<P, P::cell_shear>());
-          case P::cell_full:
-            return with(std::integral_constant<P, P::cell_full>());
-          case P::node:
-            return with(std::integral_constant<P, P::node>());
-          case P::hybrid:
-            return with(std::integral_constant<P, P::hybrid>());
-        }
-      throw std::logic_error("no such projection with splines");
+               sweep<Basis, true, true>(points, grid, what, sums, force) :
+               sweep<Basis, true, false>(points, grid, what, sums, force);
     }
   } // namespace internal
 
@@ -230,19 +210,26 @@ namespace limber
                     const GiveToGrid            &what,
                     const CellSums<Basis::dim>  *sums)
   {
+    using namespace internal;
     if (!what.force)
-      return what.momentum ? internal::choose_sums<Basis, internal::NoForce>(
-                               points, grid, what, sums) :
-                             0;
-    return points.deviator[0] != nullptr ?
-             internal::choose_projection<Basis, true>(points,
-                                                      grid,
-                                                      what,
-                                                      sums) :
-             internal::choose_projection<Basis, false>(points,
-                                                       grid,
-                                                       what,
-                                                       sums);
+      return what.momentum ?
+               choose_sums<Basis>(points, grid, what, sums, NoForce()) :
+               0;
+    const Projection kind = what.projection.kind;
+    if (kind == Projection::automatic || kind == Projection::assumed_strain)
+      throw std::logic_error("no such projection with splines");
+    const bool has_deviator = points.deviator[0] != nullptr;
+    return averages_volume_in_cells(kind) || averages_shear_in_cells(kind) ?
+             choose_sums<Basis>(points,
+                                grid,
+                                what,
+                                sums,
+                                StressForce<true>(kind, has_deviator)) :
+             choose_sums<Basis>(points,
+                                grid,
+                                what,
+                                sums,
+                                StressForce<false>(kind, has_deviator));
   }
 } // namespace limber
 

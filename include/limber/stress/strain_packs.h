@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_stress_strain_by_splines_h
-#define limber_stress_strain_by_splines_h
+#ifndef limber_stress_strain_packs_h
+#define limber_stress_strain_packs_h
 
+#include <limber/interpolation/basis.h>
 #include <limber/stress/pack_strain.h>
 #include <limber/stress/strain_sweep.h>
 
 #include <stdexcept>
 
-/** @file What strain_by_splines() does, for the unit of each basis. */
+/** @file What strain_packs() does, for the unit of each basis. */
 namespace limber
 {
   namespace internal
@@ -34,13 +35,13 @@ namespace limber
 
   template <class Basis>
   StressSummary
-  strain_by_splines(const PointView<Basis::dim>  &points,
-                    const GridView<Basis::dim>   &grid,
-                    const CellSums<Basis::dim>   *sums,
-                    const StressSweep            &what,
-                    const StrainProjection       &projection,
-                    const PackStrain<Basis::dim> &law,
-                    PackFindings<Basis::dim>     &found)
+  strain_packs(const PointView<Basis::dim>  &points,
+               const GridView<Basis::dim>   &grid,
+               const CellSums<Basis::dim>   *sums,
+               const StressSweep            &what,
+               const StrainProjection       &projection,
+               const PackStrain<Basis::dim> &law,
+               PackFindings<Basis::dim>     &found)
   {
     using Call      = internal::CallOnPacks<Basis::dim>;
     using P         = Projection;
@@ -62,9 +63,14 @@ namespace limber
           return with(std::integral_constant<P, P::cell_full>());
         case P::hybrid:
           return with(std::integral_constant<P, P::hybrid>());
-        default:
-          throw std::logic_error("no such projection with splines");
+        case P::assumed_strain:
+          if constexpr (has_bending_modes<Basis>)
+            return with(std::integral_constant<P, P::assumed_strain>());
+          break;
+        case P::automatic:
+          break;
       }
+    throw std::logic_error("no such projection with this basis");
   }
 } // namespace limber
 
