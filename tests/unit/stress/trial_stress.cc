@@ -312,8 +312,10 @@ namespace
     const auto after = this->respond();
     EXPECT_NEAR(after.energy, before.energy, 1e-12 * before.energy);
     if (TypeParam::frame == Frame::initial)
-      for (std::size_t k = 0; k < before.force.size(); ++k)
-        EXPECT_NEAR(after.force[k], before.force[k], 1e-7);
+      {
+        for (std::size_t k = 0; k < before.force.size(); ++k)
+          EXPECT_NEAR(after.force[k], before.force[k], 1e-7);
+      }
   }
 
 
