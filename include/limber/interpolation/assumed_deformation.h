@@ -269,14 +269,14 @@ namespace limber
     finish_means()
     {
       const auto total = all_sums(sums);
-      volume           = total[0];
+      inverse_volume   = 1 / total[0];
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           {
-            mean[d][e] = total[1 + d * dim + e] / volume;
+            mean[d][e] = total[1 + d * dim + e] * inverse_volume;
             if constexpr (dim == 3)
               if (d != e)
-                torsion[d][e] = total[moment_sum(d, e)] / volume *
+                torsion[d][e] = total[moment_sum(d, e)] * inverse_volume *
                                 assumed.inverse_variance[3 - d - e];
           }
     }
@@ -356,7 +356,7 @@ namespace limber
       auto result = times<dim>(assumed.rotation, S);
       for (auto &row : result)
         for (double &entry : row)
-          entry *= -1 / volume;
+          entry *= -inverse_volume;
       return result;
     }
 
@@ -370,7 +370,7 @@ namespace limber
 
     // of V, V P^ and, in 3d, the moments of V P^_de along the third axis
     std::array<Number, dim == 2 ? 5 : 16> sums;
-    double                                volume = 0;
+    double                                inverse_volume = 0;
     Mean                                  mean, torsion;
     std::array<Number, dim == 2 ? 1 : 3>  torque;
     StressOnNodes<dim>                    stress;

@@ -7,6 +7,8 @@
 #include <limber/stress/law_on_points.h>
 #include <limber/transfer/pulled_back_force.h>
 
+#include <optional>
+
 namespace limber
 {
   /**
@@ -96,7 +98,7 @@ namespace limber
       const InitialFrameSweep &owner;
       const PointView<dim>    &points;
       const GridView<dim>     &grid;
-      const CellBatch         &batch;
+      const CellBatch          batch;
       const CellGeometry<dim> &cell;
       const Velocity           velocity;
       const StressSweep       &what;
@@ -147,72 +149,6 @@ namespace limber
         });
         if constexpr (give_force)
           force.add_to_nodes();
-      }
-
-      /** At the F_a of the assumed strain. */
-      void
-      with_assumed_strain() const
-      {
-        AssumedDeformation<dim, finite> assumed(owner.assumption);
-        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
-          const Places xi = lanes.natural(points, cell);
-          const Matrix F  = deform(lanes, xi);
-          assumed.add(F, xi, lanes.only_active(lanes.load(points.mass)));
-        });
-        assumed.finish();
-
-        // What is met again: the first packs, mostly all there are, are kept.
-        struct KeptPack
-        {
-          Matrix F, P;
-          Places xi;
-          Number V;
-        };
-        constexpr std::size_t        n_kept = 4;
-        std::array<KeptPack, n_kept> kept;
-        KeptPack                     other;
-        const auto stressed = [&](const auto &lanes, KeptPack &pack)
-          __attribute__((always_inline))
-        {
-          pack.xi            = lanes.natural(points, cell);
-          pack.F             = deformation_gradient<dim>(points, lanes);
-          const Matrix F     = assumed.evaluate(pack.F, pack.xi);
-          const Number J     = volume_ratio_of(F);
-          const State  state = stress_at(F, J, lanes);
-          if constexpr (give_force)
-            {
-              pack.P = assumed.turned_back(piola_kirchhoff_stress<dim, finite>(
-                state.deviator, state.pressure, F, J));
-              pack.V = volume_of(lanes);
-            }
-        };
-
-        AssumedDeformationStress<dim, finite> stress(cell, assumed);
-        std::size_t                           n = 0;
-        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
-          KeptPack &pack = n < n_kept ? kept[n] : other;
-          ++n;
-          stressed(lanes, pack);
-          if constexpr (give_force)
-            stress.add_to_means(pack.P, pack.xi, pack.V);
-        });
-        if constexpr (give_force)
-          {
-            stress.finish_means();
-            n = 0;
-            for_each_pack([&](const auto &lanes)
-                            __attribute__((always_inline)) {
-                              const bool is_kept = n < n_kept;
-                              KeptPack  &pack    = is_kept ? kept[n] : other;
-                              ++n;
-                              if (rarely(!is_kept))
-                                stressed(lanes, pack);
-                              stress.add(pack.P, pack.F, pack.xi, pack.V);
-                            });
-            add_to_nodes<dim, NodeLayout<dim>::force>(cell,
-                                                      stress.forces(),
-                                                      grid.nodes);
-          }
       }
 
       /** F + dt grad_X v, which is stored, and the points move with v. */
@@ -296,13 +232,150 @@ namespace limber
 
 
 
+    /**
+     * A cell at the F_a of the assumed strain. What it does is one long chain:
+     * the mean of its points turns the frame in which each of them is
+     * stretched, and the mean of their stress comes back to all. So its stages
+     * are taken by a few cells in turn: the processor works on one while
+     * another waits.
+     */
+    template <bool give_force>
+    class AssumedCell
+    {
+    public:
+      __attribute__((always_inline)) explicit AssumedCell(
+        const Batch<give_force> &batch)
+        : points(batch)
+        , assumed(batch.owner.assumption)
+        , stress(batch.cell, assumed)
+      {}
+
+      AssumedCell(const AssumedCell &) = delete; // stress refers to assumed
+
+      __attribute__((always_inline)) void
+      deform()
+      {
+        points.for_each_pack([&](
+          const auto &lanes) __attribute__((always_inline)) {
+          const Places xi = lanes.natural(points.points, points.cell);
+          const Matrix F  = points.deform(lanes, xi);
+          assumed.add(F, xi, lanes.only_active(lanes.load(points.points.mass)));
+        });
+        assumed.finish();
+      }
+
+      __attribute__((always_inline)) void
+      find_stress()
+      {
+        std::size_t n = 0;
+        points.for_each_pack([&](const auto &lanes)
+                               __attribute__((always_inline)) {
+                                 KeptPack &pack = n < n_kept ? kept[n] : other;
+                                 ++n;
+                                 stress_of(lanes, pack);
+                                 if constexpr (give_force)
+                                   stress.add_to_means(pack.P, pack.xi, pack.V);
+                               });
+        if constexpr (give_force)
+          stress.finish_means();
+      }
+
+      __attribute__((always_inline)) void
+      add_force()
+      {
+        std::size_t n = 0;
+        points.for_each_pack([&](const auto &lanes)
+                               __attribute__((always_inline)) {
+                                 const bool is_kept = n < n_kept;
+                                 KeptPack  &pack    = is_kept ? kept[n] : other;
+                                 ++n;
+                                 if (rarely(!is_kept))
+                                   stress_of(lanes, pack);
+                                 stress.add(pack.P, pack.F, pack.xi, pack.V);
+                               });
+        add_to_nodes<dim, NodeLayout<dim>::force>(points.cell,
+                                                  stress.forces(),
+                                                  points.grid.nodes);
+      }
+
+    private:
+      // What is met again: the first packs, mostly all there are, are kept.
+      struct KeptPack
+      {
+        Matrix F, P;
+        Places xi;
+        Number V;
+      };
+
+      template <class Lanes>
+      __attribute__((always_inline)) void
+      stress_of(const Lanes &lanes, KeptPack &pack) const
+      {
+        pack.xi            = lanes.natural(points.points, points.cell);
+        pack.F             = deformation_gradient<dim>(points.points, lanes);
+        const Matrix F     = assumed.evaluate(pack.F, pack.xi);
+        const Number J     = volume_ratio_of(F);
+        const auto   state = points.stress_at(F, J, lanes);
+        if constexpr (give_force)
+          {
+            pack.P = assumed.turned_back(piola_kirchhoff_stress<dim, finite>(
+              state.deviator, state.pressure, F, J));
+            pack.V = points.volume_of(lanes);
+          }
+      }
+
+      const Batch<give_force>               points;
+      AssumedDeformation<dim, finite>       assumed;
+      AssumedDeformationStress<dim, finite> stress;
+      static constexpr std::size_t          n_kept = 4;
+      std::array<KeptPack, n_kept>          kept;
+      KeptPack                              other;
+    };
+
+
+
+    /** A few cells at the F_a of the assumed strain. */
+    template <bool give_force>
+    class AssumedCells
+    {
+    public:
+      __attribute__((always_inline)) void
+      add(const Batch<give_force> &batch)
+      {
+        cells[n].emplace(batch);
+        if (++n == cells.size())
+          work();
+      }
+
+      __attribute__((always_inline)) void
+      work()
+      {
+        for (std::size_t k = 0; k < n; ++k)
+          cells[k]->deform();
+        for (std::size_t k = 0; k < n; ++k)
+          cells[k]->find_stress();
+        if constexpr (give_force)
+          for (std::size_t k = 0; k < n; ++k)
+            cells[k]->add_force();
+        n = 0;
+      }
+
+    private:
+      static constexpr std::size_t together = dim == 2 ? 4 : 1;
+      std::array<std::optional<AssumedCell<give_force>>, together> cells;
+      std::size_t                                                  n = 0;
+    };
+
+
+
     template <bool give_force>
     Number
     sweep(const PointView<dim> &points,
           const GridView<dim>  &grid,
           const StressSweep    &what) const
     {
-      Number waves{};
+      Number                                    waves{};
+      [[maybe_unused]] AssumedCells<give_force> assumed;
       for_each_batch(
         points,
         [&](const CellBatch &cell_batch) __attribute__((always_inline)) {
@@ -319,8 +392,10 @@ namespace limber
           else if constexpr (kind == Projection::cell)
             batch.with_mean_volume();
           else
-            batch.with_assumed_strain();
+            assumed.add(batch);
         });
+      if constexpr (kind == Projection::assumed_strain)
+        assumed.work();
       return waves;
     }
 
