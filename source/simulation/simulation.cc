@@ -229,7 +229,7 @@ namespace limber
     if (statistics)
       statistics->add(statistics_row(state, totals, observed));
 
-    check_passed_sides(state);
+    check_passed_sides(state, console);
     if (totals.smallest_volume <= 0)
       {
         throw ComputationError(

@@ -2,6 +2,7 @@
 #ifndef limber_simulation_passed_sides_h
 #define limber_simulation_passed_sides_h
 
+#include <limber/base/console.h>
 #include <limber/state/material_body.h>
 
 namespace limber
@@ -9,12 +10,13 @@ namespace limber
   /**
    * A body that is computed in its initial frame feels a side of the box only
    * where it touched it at the start. Throws ComputationError where a point
-   * has passed a side that is not free; collective, a pass over the points of
-   * such bodies.
+   * has passed a side that is not free. What was next to that side at the start
+   * may bulge by half a cell, with a warning.
+   * Collective, a pass over the points of such bodies.
    */
   template <int dim>
   void
-  check_passed_sides(const State<dim> &state);
+  check_passed_sides(const State<dim> &state, Console &console);
 } // namespace limber
 
 #endif
