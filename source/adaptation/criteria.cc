@@ -7,6 +7,7 @@
 #include <limber/problem/read_parts.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace limber
@@ -82,13 +83,24 @@ namespace limber
       using Place  = typename RefinedCells<dim>::Place;
       using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
 
-      Criteria(const BackgroundGrid<dim> &grid,
+      Criteria(const Problem<dim>        &problem,
+               const BackgroundGrid<dim> &grid,
                const Bodies              &bodies,
                const double               time)
-        : grid(grid)
+        : problem(problem)
+        , grid(grid)
         , time(time)
         , occupancy(grid, bodies)
       {
+        for (const Obstacle<dim> &obstacle : problem.obstacles)
+          obstacles.emplace_back(obstacle, time);
+        if (std::any_of(grid.description.refinements.begin(),
+                        grid.description.refinements.end(),
+                        [](const auto &refinement) {
+                          return refinement.criterion ==
+                                 RefinementCriterion::contact;
+                        }))
+          find_fields(bodies);
         double most = 1;
         for (const auto &body : bodies)
           {
@@ -138,7 +150,24 @@ namespace limber
                       0;
                   break;
                 case RefinementCriterion::surface:
-                  level = level_by_surface(refinement, cell);
+                  if (occupancy.points_in(own, grid.place_of(cell)) > 0)
+                    level = level_of_wish(
+                      refinement,
+                      cell,
+                      [&](const auto at, const Place &place, const int far) {
+                        return occupancy.is_near_empty(at, place, far);
+                      });
+                  break;
+                case RefinementCriterion::contact:
+                  level = level_of_wish(
+                    refinement,
+                    cell,
+                    [&](const auto at, const Place &place, const int far) {
+                      return is_near_another(at, place, far);
+                    });
+                  break;
+                case RefinementCriterion::obstacle:
+                  level = level_by_obstacle(refinement, cell);
                   break;
                 case RefinementCriterion::stress:
                 case RefinementCriterion::rate:
@@ -174,27 +203,85 @@ namespace limber
       }
 
     private:
-      // A cell that is near an empty one, of its size, is to be divided; its
-      // ancestors have asked in the same way, and one cell more keeps those
-      // divided that are.
+      // Bodies that share their nodes are one.
+      void
+      find_fields(const Bodies &bodies)
+      {
+        std::map<unsigned int, std::vector<std::string>> names;
+        for (const auto &body : bodies)
+          names[body->description.nodal_field].push_back(
+            body->description.name);
+        for (const auto &[field, of_field] : names)
+          fields.push_back(
+            std::make_unique<Occupancy<dim>>(grid, bodies, of_field));
+      }
+
+      bool
+      is_near_another(const unsigned int level,
+                      const Place       &place,
+                      const int          distance) const
+      {
+        for (const auto &one : fields)
+          if (one->points_in(level, place) > 0)
+            for (const auto &other : fields)
+              if (other != one && other->is_near_filled(level, place, distance))
+                return true;
+        return false;
+      }
+
+      // A cell that wishes it, is_near(level, place, distance), is to be
+      // divided; its ancestors have wished so as well, and one cell more keeps
+      // those divided that are.
+      template <class IsNear>
       unsigned int
-      level_by_surface(const Refinement<dim> &refinement,
-                       const Cell            &cell) const
+      level_of_wish(const Refinement<dim> &refinement,
+                    const Cell            &cell,
+                    const IsNear          &is_near) const
       {
         const unsigned int own   = grid.level_of(cell);
         const Place        place = grid.place_of(cell);
-        if (occupancy.points_in(own, place) == 0)
-          return 0;
-        unsigned int level = 0;
+        unsigned int       level = 0;
         for (; level < refinement.level && level <= own; ++level)
           {
             Place ancestor = place;
             for (auto &step : ancestor)
               step >>= own - level;
-            if (!occupancy.is_near_empty(
-                  level, ancestor, refinement.distance + (level < own ? 1 : 0)))
+            if (!is_near(level,
+                         ancestor,
+                         refinement.distance + (level < own ? 1 : 0)))
               break;
           }
+        return level;
+      }
+
+      // By the distance of its middle, less half its diagonal; so a cell is as
+      // near as its parts at least. What is within an obstacle holds nothing.
+      unsigned int
+      level_by_obstacle(const Refinement<dim> &refinement,
+                        const Cell            &cell) const
+      {
+        unsigned int level = 0;
+        for (std::size_t o = 0; o < obstacles.size(); ++o)
+          if (refinement.looks_at(problem.obstacles[o].name))
+            level = std::max(
+              level,
+              level_of_wish(
+                refinement, cell, [&](const auto at, const Place &place, int) {
+                  dealii::Point<dim> middle;
+                  double             square = 0, longest = 0;
+                  for (int d = 0; d < dim; ++d)
+                    {
+                      const double edge = grid.description.edge(d) / (1u << at);
+                      middle[d] =
+                        grid.description.lower[d] + (place[d] + 0.5) * edge;
+                      square += 0.25 * edge * edge;
+                      longest = std::max(longest, edge);
+                    }
+                  const double distance = obstacles[o].distance(middle).value,
+                               half     = std::sqrt(square);
+                  return distance <= half + refinement.distance * longest &&
+                         distance >= -half;
+                }));
         return level;
       }
 
@@ -210,9 +297,13 @@ namespace limber
                                        0;
       }
 
-      const BackgroundGrid<dim> &grid;
-      const double               time;
-      const Occupancy<dim>       occupancy; // by all bodies
+      const Problem<dim>             &problem;
+      const BackgroundGrid<dim>      &grid;
+      const double                    time;
+      const Occupancy<dim>            occupancy; // by all bodies
+      std::vector<ObstaclePlace<dim>> obstacles;
+      // By bodies that share their nodes, for the criterion 'contact'
+      std::vector<std::unique_ptr<Occupancy<dim>>> fields;
       // By refinement, where it asks for some
       std::vector<std::unique_ptr<Occupancy<dim>>> of_bodies;
       // Likewise by cell, where it has a scale
@@ -252,7 +343,7 @@ namespace limber
               const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
               const double                                           time)
   {
-    const Criteria<dim> criteria(grid, bodies, time);
+    const Criteria<dim> criteria(problem, grid, bodies, time);
     RefinedCells<dim>   result = grid.no_divided_cells(), for_points = result;
     const auto          wish = [&](const auto        &cell,
                           const unsigned int wanted,

@@ -126,9 +126,10 @@ namespace limber
 
   template <int dim>
   bool
-  Occupancy<dim>::is_near_empty(const unsigned int level,
-                                const Place       &place,
-                                const int          distance) const
+  Occupancy<dim>::any_near(const unsigned int level,
+                           const Place       &place,
+                           const int          distance,
+                           const bool         filled) const
   {
     const int    width = 2 * distance + 1;
     unsigned int n     = 1;
@@ -140,10 +141,33 @@ namespace limber
         unsigned int rest  = k;
         for (int d = 0; d < dim; ++d, rest /= width)
           other[d] += rest % width - distance; // below zero: beyond, too
-        if (numbering.is_inside(level, other) && !is_filled(level, other))
+        if (numbering.is_inside(level, other) &&
+            is_filled(level, other) == filled)
           return true;
       }
     return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  Occupancy<dim>::is_near_empty(const unsigned int level,
+                                const Place       &place,
+                                const int          distance) const
+  {
+    return any_near(level, place, distance, false);
+  }
+
+
+
+  template <int dim>
+  bool
+  Occupancy<dim>::is_near_filled(const unsigned int level,
+                                 const Place       &place,
+                                 const int          distance) const
+  {
+    return any_near(level, place, distance, true);
   }
 
 

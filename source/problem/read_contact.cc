@@ -203,8 +203,6 @@ namespace limber
       if (problem.method.transfer != Transfer::flip &&
           problem.method.transfer != Transfer::pic)
         refuse(method, "Transfer", "'Transfer = flip'");
-      if (problem.grid.levels > 0)
-        refuse(root.subsection("Grid"), "Levels", "'Levels = 0'");
       if (problem.loads.body_force)
         refuse(loads, "Body force", "'Gravity' instead");
       if (!problem.loads.faces.empty())

@@ -89,6 +89,11 @@ namespace limber
                            "Names of bodies that are asked: for the criterion "
                            "'body', and those with a scale; empty: all, with "
                            "'plastic strain' those that have one.");
+        parameters.declare("Obstacles",
+                           "",
+                           admissible::names("step"),
+                           "Names of obstacles for the criterion 'obstacle'; "
+                           "empty: all.");
         parameters.declare("Scale",
                            "",
                            admissible::positive_number("0.01").or_empty(),
@@ -99,9 +104,10 @@ namespace limber
         parameters.declare("Distance",
                            "1",
                            admissible::integer_from_to(1, 8, "2"),
-                           "For the criterion 'surface': how many cells away, "
-                           "of the size of the one that asks, an empty one "
-                           "counts.");
+                           "For the criteria 'surface', 'obstacle' and "
+                           "'contact': how many cells away, of the size of the "
+                           "one that asks, an empty one, the obstacle or the "
+                           "other body counts.");
         declare_constants(parameters);
         parameters.leave_subsection();
       }
@@ -188,8 +194,9 @@ namespace limber
       static const std::regex time("(^|[^A-Za-z_0-9.])t($|[^A-Za-z_0-9])");
       result.depends_on_time = std::regex_search(section.text("Where"), time);
 
-      result.bodies   = split(section.text("Bodies"), ',');
-      result.distance = static_cast<int>(section.number("Distance"));
+      result.bodies    = split(section.text("Bodies"), ',');
+      result.obstacles = split(section.text("Obstacles"), ',');
+      result.distance  = static_cast<int>(section.number("Distance"));
       read_scale(section, result);
       const bool by_body = result.criterion == RefinementCriterion::body;
       if (by_body ? result.bodies.empty() :
@@ -203,6 +210,13 @@ namespace limber
                        in_quotes(section.text("Criterion")) +
                        ". Usually that was not changed along with them. Set "
                        "'Criterion = body'."));
+      if (result.criterion != RefinementCriterion::obstacle &&
+          !result.obstacles.empty())
+        throw InputError("The obstacles in " + section.where("Obstacles") +
+                         " have no effect with the criterion " +
+                         in_quotes(section.text("Criterion")) +
+                         ". Usually that was not changed along with them. Set "
+                         "'Criterion = obstacle'.");
       for (const std::string &body : result.bodies)
         check_name("body", body, bodies, section.where("Bodies"));
       return result;
@@ -330,6 +344,30 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** The criterion 'contact' needs bodies that may part. */
+    template <int dim>
+    void
+    check_contacts(const Section &grid, const Problem<dim> &problem)
+    {
+      if (std::any_of(problem.bodies.begin(),
+                      problem.bodies.end(),
+                      [](const auto &body) { return body.nodal_field > 0; }))
+        return;
+      for (const Refinement<dim> &refinement : problem.grid.refinements)
+        if (refinement.criterion == RefinementCriterion::contact)
+          throw InputError(
+            "The criterion 'contact' in " +
+            grid.subsection("Refine " + refinement.name).where("Criterion") +
+            " has nothing to look at: no bodies may part. Usually the list "
+            "'Contact/Pairs' was forgotten. Write it, or set 'Criterion = "
+            "surface'.");
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   check_levels(const Section &root, const Problem<dim> &problem)
@@ -337,6 +375,7 @@ namespace limber
     if (problem.grid.levels == 0)
       return;
     check_plastic_strains(root.subsection("Grid"), problem);
+    check_contacts(root.subsection("Grid"), problem);
     const Section method = root.subsection("Method");
     if (problem.grid.kernel != KernelKind::linear)
       refuse(method,

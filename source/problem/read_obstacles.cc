@@ -240,6 +240,22 @@ namespace limber
 
 
 
+    /** That which the criterion 'obstacle' makes all cells around it have. */
+    template <int dim>
+    unsigned int
+    level_around(const Obstacle<dim>        &obstacle,
+                 const GridDescription<dim> &grid)
+    {
+      unsigned int result = 0;
+      for (const Refinement<dim> &refinement : grid.refinements)
+        if (refinement.looks_at(obstacle.name) && refinement.where.empty() &&
+            refinement.box == corners(grid))
+          result = std::max(result, refinement.level);
+      return result;
+    }
+
+
+
     /**
      * Nodes know no side of what is thinner than two cells: the same one would
      * hold what is left and right of it.
@@ -250,9 +266,10 @@ namespace limber
                     const Obstacle<dim>        &obstacle,
                     const GridDescription<dim> &grid)
     {
-      double longest_edge = 0;
+      const unsigned int level        = level_around(obstacle, grid);
+      double             longest_edge = 0;
       for (unsigned int d = 0; d < dim; ++d)
-        longest_edge = std::max(longest_edge, grid.edge(d));
+        longest_edge = std::max(longest_edge, grid.edge(d) / (1u << level));
       const Corners<dim> box = obstacle.shape->bounding_box();
       for (unsigned int d = 0; d < dim; ++d)
         if (!std::isfinite(box.first[d]) || !std::isfinite(box.second[d]))
@@ -271,12 +288,15 @@ namespace limber
             deepest = std::max(deepest, -value);
         }
       if (deepest < 0.99 * longest_edge)
-        throw InputError("Obstacle " + in_quotes(obstacle.name) + " is " +
-                         brief(2 * deepest) + " m thick (" +
-                         section.where("Shape") + "), less than two cells, " +
-                         brief(2 * longest_edge) +
-                         " m. The same nodes would hold what is on either "
-                         "side. Make it thicker, or use more cells.");
+        throw InputError(
+          "Obstacle " + in_quotes(obstacle.name) + " is " + brief(2 * deepest) +
+          " m thick (" + section.where("Shape") + "), less than two cells, " +
+          brief(2 * longest_edge) +
+          " m. The same nodes would hold what is on either "
+          "side. Make it thicker, or use more cells" +
+          (grid.levels > level ? ", as with a refinement whose criterion is "
+                                 "'obstacle'." :
+                                 "."));
     }
 
 
@@ -346,10 +366,34 @@ namespace limber
                               "'Time integration = explicit'");
       if (filters_velocity(problem.method.transfer))
         refuse_with_obstacles(method, "Transfer", "'Transfer = flip'");
-      if (problem.grid.levels > 0)
-        refuse_with_obstacles(root.subsection("Grid"),
-                              "Levels",
-                              "'Levels = 0'");
+    }
+
+
+
+    /** What the criterion 'obstacle' has to know of those that there are. */
+    template <int dim>
+    void
+    complete_refinements(const Section &root, Problem<dim> &problem)
+    {
+      const std::vector<std::string> names = root.list("Obstacles");
+      for (Refinement<dim> &refinement : problem.grid.refinements)
+        if (refinement.criterion == RefinementCriterion::obstacle)
+          {
+            const Section section =
+              root.subsection("Grid").subsection("Refine " + refinement.name);
+            if (names.empty())
+              throw InputError("The criterion 'obstacle' in " +
+                               section.where("Criterion") +
+                               " has nothing to look at, as the list "
+                               "'Obstacles' is empty. Write 'set Obstacles = "
+                               "step' at the top, or set 'Criterion = "
+                               "surface'.");
+            for (const std::string &name : refinement.obstacles)
+              check_name("obstacle", name, names, section.where("Obstacles"));
+            for (const Obstacle<dim> &obstacle : problem.obstacles)
+              if (obstacle.moves() && refinement.looks_at(obstacle.name))
+                refinement.depends_on_time = true;
+          }
     }
   } // namespace
 
@@ -363,6 +407,7 @@ namespace limber
       problem.obstacles.push_back(read_obstacle(root, name, problem));
     if (!problem.obstacles.empty())
       check_method_of_obstacles(root, problem);
+    complete_refinements(root, problem);
   }
 
 

@@ -29,6 +29,13 @@ namespace limber
       {"surface",
        RefinementCriterion::surface,
        "cells with points that are near an empty one"},
+      {"obstacle",
+       RefinementCriterion::obstacle,
+       "cells near the surface of an obstacle"},
+      {"contact",
+       RefinementCriterion::contact,
+       "cells with points that are near those of a body that may part from "
+       "theirs ('Contact/Pairs')"},
       {"stress",
        RefinementCriterion::stress,
        "cells whose mean stress differs from that of a neighbour by more than "

@@ -43,6 +43,12 @@ namespace limber
   {
     touches.clear();
     first_of.reinit(parts.nodes.table.n());
+    if (!parts.grid.has_levels())
+      return;
+    hanging_of.reinit(parts.nodes.table.n());
+    std::uint32_t n = 0;
+    for (const HangingNode &hanging : parts.nodes.table.hanging)
+      hanging_of[hanging.node] = ++n;
   }
 
 
@@ -112,15 +118,31 @@ namespace limber
     for (unsigned int k = 0; k < n; ++k)
       {
         const std::uint32_t node = nodes[k] / Layout::stride;
-        if (first_of[node] == 0)
-          continue;
-        for (std::size_t t = first_of[node] - 1;
-             t < touches.size() && touches[t].node == node;
-             ++t)
-          if ((touches[t].a == field || touches[t].b == field) &&
-              law(touches[t].a, touches[t].b).law == ContactLaw::separate)
-            corners.push_back({static_cast<std::uint32_t>(t), k});
+        add_corner(field, node, k, 1);
+        if (hanging_of.size() > 0 && hanging_of[node] > 0)
+          for (const auto &[master, share] :
+               parts.nodes.table.hanging[hanging_of[node] - 1].masters)
+            add_corner(field, master, k, share);
       }
+  }
+
+
+
+  template <int dim>
+  void
+  Contact<dim>::add_corner(const unsigned int  field,
+                           const std::uint32_t node,
+                           const unsigned int  k,
+                           const double        share)
+  {
+    if (first_of[node] == 0)
+      return;
+    for (std::size_t t = first_of[node] - 1;
+         t < touches.size() && touches[t].node == node;
+         ++t)
+      if ((touches[t].a == field || touches[t].b == field) &&
+          law(touches[t].a, touches[t].b).law == ContactLaw::separate)
+        corners.push_back({static_cast<std::uint32_t>(t), k, share});
   }
 
 
@@ -212,7 +234,8 @@ namespace limber
               Vector &gradient =
                 field == touch.a ? touch.gradient_a : touch.gradient_b;
               for (int d = 0; d < dim; ++d)
-                gradient[d] += volume * functions.slope(corners[c].k, d);
+                gradient[d] +=
+                  volume * corners[c].share * functions.slope(corners[c].k, d);
             }
         };
       });

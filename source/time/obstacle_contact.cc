@@ -83,6 +83,62 @@ namespace limber
       some.records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
     for (auto &distances : cell_distance)
       distances.reinit(parts.grid.n_cells());
+    if (parts.grid.has_levels())
+      find_places();
+  }
+
+
+
+  // The owner of a node has a cell around it; a master may be far from the
+  // cells of others that know it.
+  template <int dim>
+  void
+  ObstacleContact<dim>::find_places()
+  {
+    const NodeTable<dim> &table = parts.nodes.table;
+    places.reinit(std::size_t(table.n()) * dim);
+    for (const CellGeometry<dim> &cell : parts.grid.geometry)
+      for (unsigned int k = 0; k < 1u << dim; ++k)
+        {
+          const std::uint32_t node = cell.node[k] / Layout::stride;
+          if (node < table.n_owned)
+            for (int d = 0; d < dim; ++d)
+              places[node * dim + d] =
+                cell.origin[d] + (k >> d & 1) / cell.inverse_edge[d];
+        }
+    const ExchangePlan plan(table.shared);
+    RecordExchange     exchange(dim);
+    exchange.start(plan, places.data(), 0, dim);
+    exchange.finish(places.data());
+  }
+
+
+
+  // With the places of masters instead of its own.
+  template <int dim>
+  void
+  ObstacleContact<dim>::give_to_masters(Sums &some) const
+  {
+    for (const HangingNode &hanging : parts.nodes.table.hanging)
+      {
+        double *const from =
+          some.records.data() + std::size_t(hanging.node) * Sums::stride;
+        if (!(from[Sums::weight] > 0))
+          continue;
+        for (const auto &[master, share] : hanging.masters)
+          {
+            double *const to =
+              some.records.data() + std::size_t(master) * Sums::stride;
+            const double weight = share * from[Sums::weight];
+            for (int d = 0; d < dim; ++d)
+              {
+                to[Sums::normal + d] += share * from[Sums::normal + d];
+                to[Sums::place + d] += weight * places[master * dim + d];
+              }
+            to[Sums::weight] += weight;
+          }
+        std::fill_n(from, Sums::stride, 0.);
+      }
   }
 
 
@@ -108,6 +164,7 @@ namespace limber
             for (unsigned int b = 0; b < parts.bodies.size(); ++b)
               if (parts.bodies[b]->description.nodal_field == field)
                 add_points(b, o, place, some);
+            give_to_masters(some);
             some.exchange.start(parts.nodes.node_plan(),
                                 some.records.data(),
                                 0,

@@ -45,6 +45,10 @@ namespace limber
     bool
     is_near_empty(unsigned int level, const Place &place, int distance) const;
 
+    /** Likewise, whether one is filled. */
+    bool
+    is_near_filled(unsigned int level, const Place &place, int distance) const;
+
   private:
     struct Entry
     {
@@ -58,6 +62,12 @@ namespace limber
 
     const Entry *
     find(const std::vector<Entry> &entries, std::uint64_t place) const;
+
+    bool
+    any_near(unsigned int level,
+             const Place &place,
+             int          distance,
+             bool         filled) const;
 
     const RefinedCells<dim>         numbering;
     std::vector<std::vector<Entry>> all, cells; // by level; those that are

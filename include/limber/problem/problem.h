@@ -14,6 +14,7 @@
 #include <limber/problem/shapes.h>
 #include <limber/problem/side_conditions.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <map>
@@ -170,11 +171,13 @@ namespace limber
   /** What cells are asked for that may have to become finer. */
   enum class RefinementCriterion
   {
-    region,        // where they are
-    body,          // whether they hold points of some bodies
-    surface,       // how far it is from them to an empty cell
-    stress,        // how far mean stress jumps from them to the next ones
-    rate,          // how fast they are sheared
+    region,   // where they are
+    body,     // whether they hold points of some bodies
+    surface,  // how far it is from them to an empty cell
+    obstacle, // how far it is from them to an obstacle
+    contact,  // how far it is from them to a body that may part from theirs
+    stress,   // how far mean stress jumps from them to the next ones
+    rate,     // how fast they are sheared
     plastic_strain // how far they have flowed
   };
 
@@ -195,11 +198,13 @@ namespace limber
     RefinementCriterion criterion = RefinementCriterion::region;
     unsigned int        level     = 1; // wanted there
     Corners<dim>        box;           // m
-    Formula<dim>        where; // 1 component, positive inside; empty: all
-    bool                depends_on_time = false; // the formula
-    int                 distance        = 1;     // of 'surface', in cells
+    Formula<dim>        where;    // 1 component, positive inside; empty: all
+    bool depends_on_time = false; // the formula, or an obstacle that moves
+    // Of 'surface', 'obstacle' and 'contact', in cells
+    int distance = 1;
     // Of the criterion 'body', and those with a scale; empty: all
     std::vector<std::string> bodies;
+    std::vector<std::string> obstacles; // of 'obstacle'; empty: all
     double scale = 0; // beyond it cells are divided; of 'stress' in Pa
 
     /** Whether a place in the box is inside at this time, s. */
@@ -213,7 +218,19 @@ namespace limber
     bool
     is_moving() const
     {
-      return criterion != RefinementCriterion::region || depends_on_time;
+      return (criterion != RefinementCriterion::region &&
+              criterion != RefinementCriterion::obstacle) ||
+             depends_on_time;
+    }
+
+    /** Whether the criterion 'obstacle' looks at one of this name. */
+    bool
+    looks_at(const std::string &obstacle) const
+    {
+      return criterion == RefinementCriterion::obstacle &&
+             (obstacles.empty() ||
+              std::find(obstacles.begin(), obstacles.end(), obstacle) !=
+                obstacles.end());
     }
   };
 

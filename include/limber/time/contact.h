@@ -138,11 +138,15 @@ namespace limber
       double     friction = 0;
     };
 
-    /** A node of a cell at which two fields touch. */
+    /**
+     * A node of a cell at which two fields touch, or one that hangs on such a
+     * node and has a share of its function.
+     */
     struct Corner
     {
       std::uint32_t touch;
       unsigned int  k; // its number in the cell
+      double        share = 1;
     };
 
     /** Points of a body in a cell with such corners: [first, last). */
@@ -166,6 +170,8 @@ namespace limber
     template <std::size_t n>
     void
     add_corners(unsigned int body, const std::array<std::uint32_t, n> &nodes);
+    void
+    add_corner(unsigned int field, std::uint32_t node, unsigned int k, double);
     template <class Begin>
     void
     for_each_neighbour(const Begin &begin);
@@ -194,6 +200,8 @@ namespace limber
     std::vector<std::array<unsigned int, 2>> parting;
     std::vector<Touch>       touches;  // those of a node side by side
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0
+    // By node: 1 + its number among those that hang, or 0; empty if none may
+    LazyArray<std::uint32_t> hanging_of;
     std::vector<Neighbours>  neighbours;
     std::vector<Corner>      corners;     // of the neighbours
     std::vector<Separation>  separations; // of the touches

@@ -138,6 +138,10 @@ namespace limber
                          const ObstaclePlace<dim> &place,
                          Sums                     &some);
     void
+    find_places();
+    void
+    give_to_masters(Sums &some) const;
+    void
     add_touches(unsigned int field,
                 unsigned int obstacle,
                 double       time,
@@ -156,6 +160,8 @@ namespace limber
     std::vector<double> half_edge; // largest of the points of a body, m
     std::vector<Sums>   sums;      // of an obstacle and a field
     std::vector<Touch>  touches;
+    // Of nodes, dim numbers each, m; only where some may hang
+    LazyArray<double> places;
     // Of obstacles at rest: from the middles of cells, m; 0 where nobody has
     // asked
     std::vector<LazyArray<double>> cell_distance;

@@ -347,3 +347,91 @@ TEST(Contact, TwoDisksBounceOffEachOther)
               0,
               1e-10 * p.norm());
 }
+
+
+
+namespace
+{
+  // The same with cells of two sizes in x and y, around a corner of the finer
+  // ones where bodies touch.
+  const std::vector<std::string> two_sizes = {
+    "Grid/Cells=60, 2",
+    "Grid/Upper corner=2.4, 0.08",
+    "Grid/Levels=1",
+    "Grid/Refine=corner",
+    "Grid/Refine corner/Upper corner=1.14, 0.04",
+    "Body left/Box/Upper corner=1.11, 0.08",
+    "Body right/Box/Upper corner=2.13, 0.08"};
+} // namespace
+
+
+
+// Nodes that hang among those at which bodies meet are one with their masters.
+TEST(Contact, WhatSticksIsOneFieldWithHangingNodes)
+{
+  const std::string third    = R"(
+    set Bodies = left, right, middle
+    subsection Body middle
+      subsection Box
+        set Lower corner = 1.11, 0
+        set Upper corner = 1.17, 0.08
+      end
+      subsection Linear elastic
+        set Density = 500
+        set Young's modulus = 2e6
+        set Poisson's ratio = 0.2
+      end
+    end)";
+  const auto        run_with = [&](const std::string &law) {
+    auto settings = two_sizes;
+    settings.push_back("Body right/Box/Lower corner=1.17, 0");
+    settings.push_back("Contact/Pair ends/Law=" + law);
+    return std::make_unique<SceneRun<2>>(two_bars + third, settings);
+  };
+  const auto one = run_with("stick"), several = run_with("slip");
+  EXPECT_FALSE(one->grid.vertices.hanging.empty());
+  one->advance(2e-4, 200);
+  several->advance(2e-4, 200);
+  for (unsigned int b = 0; b < 3; ++b)
+    {
+      const auto p = one->positions(b), q = several->positions(b);
+      for (std::size_t k = 0; k < p.size(); ++k)
+        EXPECT_NEAR((p[k] - q[k]).norm(), 0, 1e-13);
+    }
+  EXPECT_GT(several->totals().bodies[1].momentum[0], 0.01);
+}
+
+
+
+// With cells half as wide where they meet.
+TEST(Contact, EqualBarsSwapTheirVelocitiesAcrossSizes)
+{
+  auto settings = two_sizes;
+  settings.push_back("Grid/Cells=120, 4");
+  settings.push_back("Grid/Refine corner/Lower corner=0.92, 0");
+  settings.push_back("Grid/Refine corner/Upper corner=1.32, 0.08");
+  SceneRun<2>  run(two_bars, settings);
+  const double mass = run.totals().bodies[0].mass, start = energy(run.totals());
+  double       first = -1, last = -1, former = 0.1;
+  run.advance_to(0.4, [&]() {
+    const auto   totals = run.totals();
+    const double now    = totals.bodies[0].momentum[0] / mass;
+    if (std::abs(now - former) > 1e-7)
+      {
+        if (first < 0)
+          first = run.time;
+        last = run.time;
+      }
+    former = now;
+    EXPECT_LT(totals.momentum_error, 1e-12);
+  });
+  const auto totals = run.totals();
+  RecordProperty("contact, s", digits(last - first));
+  RecordProperty("velocity, m/s", digits(totals.bodies[1].momentum[0] / mass));
+  const double other = totals.bodies[1].mass;
+  EXPECT_GT(totals.bodies[1].momentum[0] / other, 0.097);
+  EXPECT_LT(totals.bodies[1].momentum[0] / other, 0.1001);
+  EXPECT_NEAR(last - first, 0.063246, 0.02 * 0.063246);
+  EXPECT_LT(energy(totals), 1.002 * start);
+  EXPECT_NEAR(totals.energy_drift, 0, 0.002);
+}

@@ -379,6 +379,132 @@ TEST(ObstacleContact, OneThatIsFarDoesNothing)
 
 
 
+namespace
+{
+  /** Fine cells in a part of the grid. */
+  std::vector<std::string>
+  fine_where(const std::string &formula)
+  {
+    return {"Grid/Levels=1",
+            "Grid/Refine=part",
+            "Grid/Refine part/Where=" + formula};
+  }
+} // namespace
+
+
+
+// Nodes hang in the middle of what the floor bears: force, moment, momentum
+// and energy are those of their masters.
+TEST(ObstacleContact, TheFloorBearsTheWeightOnTwoSizesOfCells)
+{
+  auto settings = fine_where("0.9 - x");
+  settings.insert(settings.end(),
+                  {"Loads/Gravity=0, -1",
+                   "Obstacle floor/Law=stick",
+                   "Method/Damping rate=20"});
+  SceneRun<2> run(block_over_floor, settings);
+  EXPECT_FALSE(run.grid.vertices.hanging.empty());
+  run.advance_to(1.5);
+  const auto before = run.totals();
+  run.advance_to(2);
+  const auto now     = run.totals();
+  const auto impulse = now.obstacles[0].impulse - before.obstacles[0].impulse;
+  EXPECT_NEAR(impulse[1] / 0.5, 500, 0.5);
+  EXPECT_NEAR(impulse[0] / 0.5, 0, 1);
+  EXPECT_NEAR((now.obstacles[0].moment - before.obstacles[0].moment)[2] / 0.5,
+              500,
+              2);
+  EXPECT_LT(now.momentum_error, 1e-12);
+}
+
+
+
+// The block slides from fine cells into coarse ones.
+TEST(ObstacleContact, ABlockSlidesAcrossSizesOfCells)
+{
+  const double friction = 0.3;
+  auto         settings = fine_where("1.3 - x");
+  settings.push_back("Body block/Placement=cut");
+  SceneRun<2> run(block_on_slope, settings);
+  run.advance_to(0.1);
+  const auto start = run.totals();
+  run.advance_to(0.4);
+  const auto   end  = run.totals();
+  const auto   gain = (end.all.momentum - start.all.momentum) / 500;
+  const double a    = sliding_acceleration(friction);
+  const double found =
+    (gain * down_the_slope() + friction * (gain * off_the_slope())) / 0.3;
+  RecordProperty("of the exact acceleration", digits(found / a));
+  EXPECT_NEAR(found, a, 0.02 * a);
+  EXPECT_NEAR(end.energy_drift, 0, 0.002);
+  EXPECT_LT(end.momentum_error, 1e-12);
+}
+
+
+
+// In space, where a face of a coarse cell has five nodes that hang; the moment
+// is that of forces at the places of masters.
+TEST(ObstacleContact, TheFloorBearsTheWeightOnTwoSizesOfCellsInSpace)
+{
+  const std::string block_in_space = R"(
+    set Dimension = 3
+    set Bodies = block
+    set Obstacles = floor
+    subsection Body block
+      subsection Box
+        set Lower corner = 0.5, 0.5, 0.5
+        set Upper corner = 1.5, 1.5, 1
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Obstacle floor
+      set Shape = half-space
+      set Law = stick
+      subsection Half-space
+        set Point = 0, 0, 0.5
+        set Normal = 0, 0, 1
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 2, 1.5
+      set Cells = 8, 8, 6
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+      set back = free
+      set front = free
+    end
+    subsection Loads
+      set Gravity = 0, 0, -1
+    end
+    subsection Method
+      set Damping rate = 20
+    end)";
+  SceneRun<3>       run(block_in_space, fine_where("0.9 - x"));
+  EXPECT_FALSE(run.grid.vertices.hanging.empty());
+  run.advance_to(1);
+  const auto before = run.totals();
+  run.advance_to(1.5);
+  const auto now     = run.totals();
+  const auto impulse = now.obstacles[0].impulse - before.obstacles[0].impulse,
+             moment  = now.obstacles[0].moment - before.obstacles[0].moment;
+  EXPECT_NEAR(impulse[2] / 0.5, 500, 0.5);
+  // r x F of 500 N downwards at (1, 1) is -500, 500, 0; of the reaction the
+  // other way round
+  EXPECT_NEAR(moment[0] / 0.5, 500, 3);
+  EXPECT_NEAR(moment[1] / 0.5, -500, 3);
+  EXPECT_LT(now.momentum_error, 1e-12);
+}
+
+
+
 TEST(ObstacleContact, BadStartsAndJumpsAreRefused)
 {
   EXPECT_THROW(SceneRun<2>(block_over_floor,
