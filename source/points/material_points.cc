@@ -504,6 +504,36 @@ namespace limber
   // Shifted alike to both sides, nearly as far as the cell reaches: the centre
   // of mass stays, and with it whatever is linear in each direction within the
   // cell. On a face of the cell round-off would decide where a point is.
+  // A quarter of the edges of what the point stands for: its domain, along the
+  // axes or its own edges, or its share of the cell that it was made for.
+  template <int dim>
+  dealii::Tensor<2, dim>
+  MaterialPoints<dim>::shifts_of_children(
+    const PointView<dim>          &points,
+    const std::size_t              p,
+    const std::array<double, dim> &spacing) const
+  {
+    dealii::Tensor<2, dim> result;
+    for (int d = 0; d < dim; ++d)
+      if (points.has_domains())
+        {
+          for (int k = 0; k < dim; ++k)
+            if (const double *const component = points.domain[d * dim + k])
+              result[d][k] = 0.5 * component[p];
+          if (points.has_boxes()) // with the length of the row, see half_box()
+            {
+              const double half = result[d].norm();
+              result[d]         = 0;
+              result[d][d]      = half;
+            }
+        }
+      else
+        result[d][d] = 0.25 * spacing[d] / (1u << size_classes[p]);
+    return result;
+  }
+
+
+
   template <int dim>
   void
   MaterialPoints<dim>::split(const std::vector<std::size_t> &which,
@@ -518,18 +548,23 @@ namespace limber
     for (const std::size_t p : which)
       {
         const CellGeometry<dim> &geometry = grid.geometry[cell[p]];
-        std::array<double, dim>  shift;
+        // column k: from the point to its children along its edge k
+        dealii::Tensor<2, dim> shifts = shifts_of_children(points, p, spacing);
         for (int d = 0; d < dim; ++d)
           {
             const double below = points.position[d][p] - geometry.origin[d];
             const double above = 1 / geometry.inverse_edge[d] - below;
-            shift[d] =
-              std::max(0.,
-                       std::min({0.25 * spacing[d] / (1u << size_classes[p]),
-                                 share * below,
-                                 share * above}));
+            double       all   = 0;
+            for (int k = 0; k < dim; ++k)
+              all += std::abs(shifts[d][k]);
+            const double room = std::max(0., share * std::min(below, above));
+            if (all > room)
+              shifts[d] *= room / all;
           }
         points.mass[p] /= n_children;
+        for (double *const component : points.domain)
+          if (component != nullptr)
+            component[p] /= 2;
         ++size_classes[p];
         for (unsigned int child = 1; child < n_children; ++child, ++last)
           {
@@ -540,7 +575,9 @@ namespace limber
                                      const unsigned int child) {
           for (int d = 0; d < dim; ++d)
             {
-              const double way = child >> d & 1 ? shift[d] : -shift[d];
+              double way = 0;
+              for (int k = 0; k < dim; ++k)
+                way += child >> k & 1 ? shifts[d][k] : -shifts[d][k];
               points.position[d][q] += way;
               if (layout.has_reference())
                 fields[fields.size() - dim + d][q] += way;

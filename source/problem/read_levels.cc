@@ -368,6 +368,19 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Whether its functions are made of those of the nodes of single cells. */
+    bool
+    goes_with_levels(const KernelKind kernel)
+    {
+      return kernel == KernelKind::linear || kernel == KernelKind::gimp ||
+             kernel == KernelKind::cpgimp || kernel == KernelKind::cpdi;
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   check_levels(const Section &root, const Problem<dim> &problem)
@@ -377,15 +390,21 @@ namespace limber
     check_plastic_strains(root.subsection("Grid"), problem);
     check_contacts(root.subsection("Grid"), problem);
     const Section method = root.subsection("Method");
-    if (problem.grid.kernel != KernelKind::linear)
+    if (!goes_with_levels(problem.grid.kernel))
       refuse(method,
              "Kernel",
              has_domains(problem.grid.kernel) ?
-               "domains look for their corners in a lattice" :
+               "points whose corners move one by one cannot be split" :
              is_spline(problem.grid.kernel) ?
                "splines need a lattice" :
                "means around nodes need a lattice",
-             "'Kernel = linear'");
+             "'Kernel = linear', 'gimp', 'cpgimp' or 'cpdi'");
+    if (problem.grid.joins_points && has_domains(problem.grid.kernel))
+      refuse(method,
+             "Kernel",
+             "domains of points that are joined ('Grid/Join points') would not "
+             "be theirs",
+             "'Kernel = linear', or 'Join points = false'");
     if (problem.method.integration != TimeIntegration::explicit_steps)
       refuse(method,
              "Time integration",

@@ -22,16 +22,22 @@ namespace limber
     static constexpr int n_cells  = 1 << dim;
 
     /**
-     * Find the blocks of the first @p n points. In cells, points are @p at from
-     * the lower corner of the bins, and afterwards from the lower corners of
-     * their blocks, and nothing of their domains is farther than @p half from
-     * them. False if a point has none.
+     * Find the blocks of the first @p n points, which are in @p cell. In cells,
+     * points are @p at from the lower corner of the bins, and afterwards from
+     * the lower corners of their blocks, and nothing of their domains is
+     * farther than @p half from them. False if a point has none.
      */
     __attribute__((always_inline)) bool
-    find(const GridView<dim> &grid, const int n, Vector &at, const Vector &half)
+    find(const GridView<dim> &grid,
+         const std::uint32_t  cell,
+         const int            n,
+         Vector              &at,
+         const Vector        &half)
     {
-      const BinView<dim> &bins  = grid.bins;
-      Number              index = Number{};
+      const BinView<dim> &bins = grid.bins;
+      if (rarely(!bins.one_per_cell))
+        return find_of_size(grid, grid.cells[cell], n, at, half);
+      Number index = Number{};
 #pragma GCC unroll 3
       for (int d = dim - 1; d >= 0; --d)
         {
@@ -97,6 +103,50 @@ namespace limber
     }
 
   private:
+    /** Where cells have several sizes: blocks of cells of the size of this. */
+    __attribute__((noinline)) bool
+    find_of_size(const GridView<dim>     &grid,
+                 const CellGeometry<dim> &geometry,
+                 const int                n,
+                 Vector                  &at,
+                 const Vector            &half)
+    {
+      const BinView<dim> &bins = grid.bins;
+      Vector              first;
+      for (int d = 0; d < dim; ++d)
+        {
+          const double last =
+            std::round(static_cast<double>(bins.n[d]) *
+                       geometry.inverse_edge[d] / bins.inverse_edge[d]) -
+            2;
+          if (last < 0)
+            return false;
+          const Number lower = at[d] - half[d];
+          const Number inner = lower > 0. ? lower : Number{};
+          first[d] =
+            rounded_down(inner < last ? inner : broadcast<Number>(last));
+          at[d] -= first[d];
+          store(at[d] + half[d], end[d]);
+        }
+      for (int p = 0; p < n; ++p)
+        for (int c = 0; c < n_cells; ++c)
+          {
+            std::array<double, dim> middle;
+            for (int d = 0; d < dim; ++d)
+              middle[d] = bins.lower[d] + (first[d][p] + (c >> d & 1) + 0.5) /
+                                            geometry.inverse_edge[d];
+            const std::uint32_t there = bins.cell_at(middle);
+            if (there == invalid_cell)
+              return false;
+            const double ratio =
+              grid.cells[there].inverse_edge[0] / geometry.inverse_edge[0];
+            if (ratio > 1.5 || ratio < 0.75)
+              return false;
+            blocks[p][c] = &grid.cells[there].node;
+          }
+      return true;
+    }
+
     /** The place of node i of a block along d: 0, 1, 2. */
     static constexpr int
     digit(const int i, const int d)

@@ -10,10 +10,10 @@ namespace limber
 {
   /**
    * The domains of the points of a pack (convected.h) and the functions of the
-   * nodes on them. Where all cells are alike a domain no longer than one lies
-   * in a block of 2^dim cells: the functions of its 3^dim nodes are computed
-   * with the points as lanes, for the same formula whichever cells the corners
-   * are in. A pack with other domains is done point by point.
+   * nodes on them. Where all cells are alike, or those around, a domain no
+   * longer than one lies in a block of 2^dim cells: the functions of its 3^dim
+   * nodes are computed with the points as lanes, for the same formula whichever
+   * cells the corners are in. A pack with other domains is done point by point.
    */
   template <int dim>
   class ConvectedPack
@@ -36,18 +36,19 @@ namespace limber
       : points(points)
       , grid(grid)
       , cell(cell)
+      , inverse_edge(grid.bins.one_per_cell ? grid.bins.inverse_edge :
+                                              grid.cells[cell].inverse_edge)
       , first(lanes.first)
       , n(lanes.n)
     {
       Vector at; // from the lower corner of the bins, in cells
       for (int d = 0; d < dim; ++d)
         at[d] = (lanes.load(points.position[d]) - grid.bins.lower[d]) *
-                grid.bins.inverse_edge[d];
-      fits = grid.bins.one_per_cell &&
-             (points.has_boxes() ? set_boxes(at, lanes) :
-              rarely(points.domain_form == DomainForm::hexahedron) ?
-                                   set_hexahedra(at, lanes) :
-                                   set_edges(at, lanes));
+                inverse_edge[d];
+      fits = points.has_boxes() ? set_boxes(at, lanes) :
+             rarely(points.domain_form == DomainForm::hexahedron) ?
+                                  set_hexahedra(at, lanes) :
+                                  set_edges(at, lanes);
       if (rarely(!fits))
         invert_one_by_one();
     }
@@ -55,6 +56,9 @@ namespace limber
     const PointView<dim> &points;
     const GridView<dim>  &grid;
     const std::uint32_t   cell;
+
+    // 1/m; of all cells, or where these have several sizes of that of the pack
+    const std::array<double, dim> &inverse_edge;
 
     SmallMatrix<dim, Number> inverse; // R^-1, 1/m, of R as it counts
 
@@ -128,7 +132,7 @@ namespace limber
       for (int c = 0; c < n_corners; ++c)
         for (int d = 0; d < dim; ++d)
           result[c][d] =
-            (at_corners.corner(c, d) - place[d]) / grid.bins.inverse_edge[d] +
+            (at_corners.corner(c, d) - place[d]) / inverse_edge[d] +
             step * result[c][d];
       return result;
     }
@@ -153,14 +157,14 @@ namespace limber
           for (int k = 0; k < dim; ++k)
             {
               edges[d][k]    = lanes.load(points.domain[d * dim + k]);
-              in_cells[d][k] = edges[d][k] * grid.bins.inverse_edge[d];
+              in_cells[d][k] = edges[d][k] * inverse_edge[d];
               half[d] += magnitude(in_cells[d][k]);
             }
           fitted &= half[d] <= 0.5;
           box *= half[d];
         }
       if (rarely(!all(fitted & (determinant<dim>(in_cells) > box))) ||
-          !block.find(grid, n, at, half))
+          !block.find(grid, cell, n, at, half))
         return false;
       invert(edges);
       at_corners.set(at, in_cells);
@@ -175,13 +179,12 @@ namespace limber
       Hexahedron<dim, Number> shape; // in cells
       for (int d = 0; d < dim; ++d)
         {
-          const double inverse_edge = grid.bins.inverse_edge[d];
           for (int k = 0; k < dim; ++k)
             shape.edges[d][k] =
-              lanes.load(points.domain[d * dim + k]) * inverse_edge;
+              lanes.load(points.domain[d * dim + k]) * inverse_edge[d];
           for (int t = 0; t < shape.n_twists; ++t)
             shape.twists[t][d] =
-              lanes.load(points.domain[dim * (dim + t) + d]) * inverse_edge;
+              lanes.load(points.domain[dim * (dim + t) + d]) * inverse_edge[d];
         }
       shape.integrate();
       Vector half;
@@ -197,12 +200,12 @@ namespace limber
         }
       fitted &= shape.smallest > box;
       fitted &= determinant<dim>(shape.edges) > box;
-      if (rarely(!all(fitted)) || !block.find(grid, n, at, half))
+      if (rarely(!all(fitted)) || !block.find(grid, cell, n, at, half))
         return false;
       auto edges = shape.edges;
       for (int d = 0; d < dim; ++d)
         for (int k = 0; k < dim; ++k)
-          edges[d][k] /= grid.bins.inverse_edge[d];
+          edges[d][k] /= inverse_edge[d];
       invert(edges);
       at_corners.set(at, shape);
       place = at;
@@ -218,22 +221,21 @@ namespace limber
 #pragma GCC unroll 3
       for (int d = 0; d < dim; ++d)
         {
-          const double inverse_edge = grid.bins.inverse_edge[d];
-          half[d]                   = larger(half_box<dim>(
+          half[d] = larger(half_box<dim>(
                              points,
                              d,
                              [&](const double *const array) __attribute__((
                                always_inline)) { return lanes.load(array); }) *
-                             inverse_edge,
+                             inverse_edge[d],
                            broadcast<Number>(smallest_half_box));
-          half[d]                   = half[d] < largest_half_box ?
-                                        half[d] :
-                                        broadcast<Number>(largest_half_box);
+          half[d] = half[d] < largest_half_box ?
+                      half[d] :
+                      broadcast<Number>(largest_half_box);
 #pragma GCC unroll 3
           for (int k = 0; k < dim; ++k)
-            inverse[k][d] = k == d ? inverse_edge / half[d] : Number{};
+            inverse[k][d] = k == d ? inverse_edge[d] / half[d] : Number{};
         }
-      if (!block.find(grid, n, at, half))
+      if (!block.find(grid, cell, n, at, half))
         return false;
       on_boxes.set(at, half);
       return true;

@@ -92,8 +92,9 @@ namespace limber
    * hexahedron that is so in one of its Gauss points counts as the
    * parallelepiped of its half edges before that. A
    * corner outside the grid counts in its side. A box counts for no more than
-   * half a cell on either side; where it reaches beyond a side of the grid it
-   * sees linear functions as if they went on.
+   * half a cell on either side, the smallest that it reaches; so its corners
+   * are in all cells that it has a part in. Where it reaches beyond a side of
+   * the grid it sees linear functions as if they went on.
    */
   template <int dim>
   class DomainShape
@@ -127,6 +128,8 @@ namespace limber
           const double half = extent[d] * geometry.inverse_edge[d];
           is_at_home &= (xi >= half) & (xi + half <= 1);
         }
+      if (rarely(!is_at_home && !grid.bins.one_per_cell) && points.has_boxes())
+        restrict_box(grid);
     }
 
     /** +1 or -1: at which end of edge k the corner is. */
@@ -219,6 +222,29 @@ namespace limber
           for (int k = 0; k < dim; ++k)
             edges[d][k] = d == k ? extent[d] : 0;
         }
+    }
+
+    /**
+     * Where cells have several sizes: those next to each other differ by a
+     * factor of two, so ends and middles of the edges meet the smallest one.
+     */
+    __attribute__((noinline, cold)) void
+    restrict_box(const GridView<dim> &grid)
+    {
+      std::array<double, dim> finest{}; // 1 / edge, 1/m
+      for (int i = 0; i < (dim == 2 ? 9 : 27); ++i)
+        {
+          std::array<double, dim> x    = place;
+          int                     rest = i;
+          for (int d = 0; d < dim; ++d, rest /= 3)
+            x[d] += (rest % 3 - 1) * extent[d];
+          const CellGeometry<dim> &cell = grid.cells[cell_at(grid, x)];
+          for (int d = 0; d < dim; ++d)
+            finest[d] = std::max(finest[d], cell.inverse_edge[d]);
+        }
+      for (int d = 0; d < dim; ++d)
+        extent[d] = edges[d][d] =
+          std::min(extent[d], largest_half_box / finest[d]);
     }
 
     __attribute__((always_inline)) void

@@ -190,9 +190,10 @@ namespace limber
     /**
      * Let each of these points become 2^dim of half its size, side by side in
      * its cell, that share its mass and are otherwise what it was. So sums over
-     * points and, as linear functions see them, over nodes do not change. With
-     * @p spacing of points of size class 0, m. One keeps the number, the others
-     * get numbers from @p next_id on.
+     * points and, as linear functions see them, over nodes do not change. A
+     * domain becomes its 2^dim halves. With @p spacing of points of size class
+     * 0, m, that have none. One keeps the number, the others get numbers from
+     * @p next_id on.
      */
     void
     split(const std::vector<std::size_t> &which,
@@ -249,6 +250,10 @@ namespace limber
   private:
     void
     resize(std::size_t n);
+    dealii::Tensor<2, dim>
+    shifts_of_children(const PointView<dim>          &points,
+                       std::size_t                    p,
+                       const std::array<double, dim> &spacing) const;
     void
     move(std::size_t from, std::size_t to);
     std::vector<std::uint32_t>

@@ -164,10 +164,14 @@ namespace
   // All points become 2^dim, on the grid that they are on.
   template <int dim>
   void
-  expect_no_change(const std::string &treatment, const std::string &placement)
+  expect_no_change(const std::string &treatment,
+                   const std::string &placement,
+                   const std::string &kernel = "linear")
   {
-    SCOPED_TRACE(treatment + ", " + placement + ", " + std::to_string(dim));
-    const std::vector<std::string> set = {"Body block/Locking treatment=" +
+    SCOPED_TRACE(treatment + ", " + placement + ", " + kernel + ", " +
+                 std::to_string(dim));
+    const std::vector<std::string> set = {"Method/Kernel=" + kernel,
+                                          "Body block/Locking treatment=" +
                                             treatment,
                                           "Body block/Placement=" + placement,
                                           "Method/Stress update=musl"};
@@ -226,6 +230,18 @@ TEST(Splitting, ChangesNothingThatTheGridSees)
         expect_no_change<2>(treatment, placement);
       for (const std::string treatment : {"cell", "assumed strain"})
         expect_no_change<3>(treatment, placement);
+    }
+}
+
+
+
+// Halves of boxes see what the whole box saw.
+TEST(Splitting, OfBoxesChangesNothingThatTheGridSees)
+{
+  for (const std::string kernel : {"gimp", "cpgimp"})
+    {
+      expect_no_change<2>("none", "regular", kernel);
+      expect_no_change<3>("none", "regular", kernel);
     }
 }
 
