@@ -402,8 +402,7 @@ namespace limber
     if (problem.grid.joins_points && has_domains(problem.grid.kernel))
       refuse(method,
              "Kernel",
-             "domains of points that are joined ('Grid/Join points') would not "
-             "be theirs",
+             "joined points ('Grid/Join points') have no domain",
              "'Kernel = linear', or 'Join points = false'");
     if (problem.method.integration != TimeIntegration::explicit_steps)
       refuse(method,

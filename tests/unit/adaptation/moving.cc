@@ -170,12 +170,13 @@ namespace
   {
     SCOPED_TRACE(treatment + ", " + placement + ", " + kernel + ", " +
                  std::to_string(dim));
-    const std::vector<std::string> set = {"Method/Kernel=" + kernel,
-                                          "Body block/Locking treatment=" +
-                                            treatment,
-                                          "Body block/Placement=" + placement,
-                                          "Method/Stress update=musl"};
-    const std::string              corner =
+    const std::vector<std::string> set = {
+      "Method/Kernel=" + kernel,
+      "Body block/Locking treatment=" + treatment,
+      "Body block/Placement=" + placement,
+      "Method/Stress update=" +
+        std::string(kernel == "linear" ? "musl" : "usl")};
+    const std::string corner =
       dim == 2 ? "set Upper corner = 1, 1" : "set Upper corner = 1, 1, 1";
     SceneRun<dim> whole(block<dim>(corner), set),
       parts(block<dim>(corner), set);

@@ -771,7 +771,7 @@ namespace
      fine_corner},
     {"BoxesThatAreJoined",
      {"Method/Kernel=gimp", "Grid/Join points=true"},
-     {"'gimp'", "joined", "'Join points = false'"},
+     {"'gimp'", "joined points", "'Join points = false'"},
      fine_corner},
     {"FilterOnLevels",
      {"Method/Transfer=fmpm"},
