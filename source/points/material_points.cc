@@ -501,9 +501,6 @@ namespace limber
 
 
 
-  // Shifted alike to both sides, nearly as far as the cell reaches: the centre
-  // of mass stays, and with it whatever is linear in each direction within the
-  // cell. On a face of the cell round-off would decide where a point is.
   // A quarter of the edges of what the point stands for: its domain, along the
   // axes or its own edges, or its share of the cell that it was made for.
   template <int dim>
@@ -534,6 +531,9 @@ namespace limber
 
 
 
+  // Shifted alike to both sides, nearly as far as the cell reaches: the centre
+  // of mass stays, and with it whatever is linear in each direction within the
+  // cell. On a face of the cell round-off would decide where a point is.
   template <int dim>
   void
   MaterialPoints<dim>::split(const std::vector<std::size_t> &which,
