@@ -18,6 +18,7 @@ SINGLETON = {"OMPI_MCA_pml": "ob1",
 CANTILEVER = TOP / "prm/cantilever.prm"
 FREE_BEAM = TOP / "prm/verification/free_soft_beam.prm"
 SLOPE = TOP / "prm/benchmarks/slope_stability.prm"
+OEDOMETER = TOP / "prm/verification/oedometer.prm"
 TUBE = TOP / "prm/verification/plastic_tube.prm"
 STRIP = TOP / "prm/verification/strip_load.prm"
 MANUFACTURED = TOP / "prm/verification/manufactured_solution.prm"
@@ -203,6 +204,18 @@ def flow(folder):
 
     # (2 + pi) c = 5.14 c
     limit(("reference", STRIP), "Loads/Face load strip/Constants=q", 5.1, 5.3)
+
+    # clay between walls: all elements strain as one point (height 1 - 0.12116 m)
+    reference = folder / "clay"
+    limber("reference", OEDOMETER, "--output-directory", reference, code=4,
+           changes=("End time=2.5", "Loads/Face load weight/Traction=0; -p",
+                    "Check centre at the end/At time=2.5",
+                    "Check wall at the end/At time=2.5",
+                    "Reference/Method=quasi-static", "Reference/Elements=2, 2",
+                    "Reference/Load steps=100"))
+    found = json.loads((reference / "summary.json").read_text())["checks"]
+    expect(abs(found["centre"]["value"] - 0.43942) < 5e-5, "clay: height")
+    expect(abs(found["wall"]["value"] - 115104) < 60, "clay: force on the wall")
 
     # strength over F: the slope stands at 1.35, not at 1.4
     soil = "Body soil/Drucker prager/"

@@ -48,6 +48,9 @@ namespace limber
       else if constexpr (std::is_same_v<Law, DruckerPrager<true>>)
         return {{{2000, 1e6, 0.3, 30, 0, 10, 0, 0}},
                 {{1500, 2e6, 0.2, 25, 5e4, 25, 1e9, 2}}};
+      else if constexpr (std::is_same_v<Law, CamClay>)
+        return {{{1800, 1e6, 0.5, 0.2, 1.2, 3e5, 3e5}},
+                {{1600, 5e5, 0.4, 0.1, 0.9, 2e5, 1e5}}};
       else
         {
           std::array<double, Law::parameters.size()> defaults;
@@ -59,11 +62,17 @@ namespace limber
 
 
 
-    /** Laws that bear shear under pressure alone, and part in tension. */
+    /** Laws that part in tension. */
     template <class Law>
-    inline constexpr bool is_frictional =
+    inline constexpr bool may_part =
       std::is_same_v<Law, DruckerPrager<false>> ||
       std::is_same_v<Law, DruckerPrager<true>>;
+
+    /** Laws whose strength follows the pressure, and that bear little tension.
+     */
+    template <class Law>
+    inline constexpr bool is_frictional =
+      may_part<Law> || std::is_same_v<Law, CamClay>;
 
 
 

@@ -2,6 +2,7 @@
 #ifndef limber_materials_law_list_h
 #define limber_materials_law_list_h
 
+#include <limber/materials/cam_clay.h>
 #include <limber/materials/drucker_prager.h>
 #include <limber/materials/j2.h>
 #include <limber/materials/linear_elastic.h>
@@ -26,7 +27,8 @@ namespace limber
                              NewtonianFluid<true>,
                              J2,
                              DruckerPrager<false>,
-                             DruckerPrager<true>>;
+                             DruckerPrager<true>,
+                             CamClay>;
 
 
 

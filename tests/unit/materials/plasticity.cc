@@ -495,6 +495,13 @@ TYPED_TEST(EveryFlow, PlasticWorkIsNeverNegative)
                 // steps that no volume stands for long
                 state.history[0] =
                   std::min(std::max(state.history[0], 0.7), 1.4);
+                if constexpr (std::is_same_v<Law, CamClay>)
+                  {
+                    // which would compact it without end
+                    double &borne =
+                      state.history[index_of_variable<dim, Law>(1)];
+                    borne = std::min(borne, law.shear_modulus);
+                  }
               }
           }
       EXPECT_GT(whole, 0);
@@ -742,4 +749,304 @@ TYPED_TEST(SoilPaths, FlowDilates)
   EXPECT_NEAR(state.pressure,
               1e4 + law.bulk_modulus * dilation,
               1e-3 * state.pressure);
+}
+
+
+
+namespace
+{
+  constexpr double lambda = 0.2, kappa = 0.04, M = 1.2, a = 100.;
+
+  /** Clay that has borne a pressure; M 1.2, lambda 0.2, kappa 0.04. */
+  CamClay
+  clay(const double borne = 0, const double attraction = a)
+  {
+    return law_of<CamClay>(1800, 5e6, lambda, kappa, M, borne, attraction);
+  }
+
+  /** J p + a. */
+  template <class State>
+  double
+  x_of(const State &state)
+  {
+    return state.pressure + a;
+  }
+
+  /** pc */
+  template <int dim, class State>
+  double
+  borne_by(const State &state)
+  {
+    return state.history[index_of_variable<dim, CamClay>(1)];
+  }
+
+  template <int dim, class State>
+  double
+  q_of(const State &state)
+  {
+    return std::sqrt(1.5 * squared_norm<dim, double>(state.deviator));
+  }
+
+  template <class Case>
+  class ClayPaths : public testing::Test
+  {};
+  TYPED_TEST_SUITE(ClayPaths, BothDimensions);
+} // namespace
+
+
+
+// ln J falls by lambda per ln(x) where the pressure is new, by kappa elsewhere,
+// and what has been borne is remembered.
+TYPED_TEST(ClayPaths, PressureCompactsByLambdaAndSwellsByKappa)
+{
+  constexpr int dim   = TypeParam::dim;
+  const CamClay law   = clay(1e4);
+  auto          state = law.template initialise<dim>(1e4);
+  double        x = x_of(state), log_J = 0, largest = 1e4 + a;
+  const auto    J_of = [&]() {
+    return std::log(law.template volume_ratio<dim>(state));
+  };
+  log_J           = J_of();
+  const auto step = [&](const double volume) {
+    auto motion       = motion_of<dim>({});
+    motion.volumetric = volume;
+    const double work = law.template update<dim>(motion, state).plastic;
+    const double now = x_of(state), before = largest;
+    largest             = std::max(largest, now);
+    const double beyond = std::log(largest / before);
+    EXPECT_NEAR(J_of() - log_J,
+                -lambda * beyond - kappa * (std::log(now / x) - beyond),
+                1e-13);
+    EXPECT_EQ(work > 0, beyond > 1e-12);
+    EXPECT_NEAR(borne_by<dim>(state), largest - a, 1e-12 * largest);
+    x     = now;
+    log_J = J_of();
+  };
+  for (int k = 0; k < 50; ++k)
+    step(-0.005);
+  const double highest = x;
+  for (int k = 0; k < 40; ++k)
+    step(0.002);
+  EXPECT_LT(x, 0.2 * highest);
+  for (int k = 0; k < 60; ++k)
+    step(-0.002);
+  EXPECT_GT(x, 1.1 * highest);
+  EXPECT_EQ(alpha_of(law, state), 0);
+}
+
+
+
+// Without a change of volume x / x0 = (R / (1 + (eta / M)^2))^(1 - kappa /
+// lambda) once it flows, in steps of any size, up to the critical state q = M x
+// with half the strength M (R / 2)^(1 - kappa / lambda) x0. The shear that
+// belongs to eta of normally consolidated clay is that of the integral, to
+// first order.
+TYPED_TEST(ClayPaths, UndrainedShearFollowsTheClosedForm)
+{
+  constexpr int    dim     = TypeParam::dim;
+  constexpr double x0      = 1e5;
+  constexpr double drained = 1 - kappa / lambda;
+  for (const double ratio : {1., 2., 4.})
+    {
+      double error[2];
+      for (int k = 0; k < 2; ++k)
+        {
+          const CamClay law   = clay(ratio * x0 - a);
+          auto          state = law.template initialise<dim>(x0 - a);
+          // to the Kirchhoff pressure x0 - a
+          state.history[0] = std::pow(x0 / a, -kappa);
+          move<dim>(law, state, {});
+          const int    n_steps = 1000 << k;
+          const double e       = 0.3 / n_steps;
+          error[k]             = 0;
+          for (int i = 0; i < n_steps; ++i)
+            {
+              const double wide =
+                dim == 2 ? 1 / (1 - e) - 1 : 1 / std::sqrt(1 - e) - 1;
+              move<dim>(law, state, diagonal<dim>(-e, wide, wide));
+              const double alpha = alpha_of(law, state);
+              const double eta   = q_of<dim>(state) / x_of(state) / M;
+              if (alpha > 0)
+                {
+                  ASSERT_NEAR(x_of(state),
+                              x0 * std::pow(ratio / (1 + eta * eta), drained),
+                              1e-10 * x0);
+                }
+              else
+                {
+                  ASSERT_NEAR(x_of(state), x0, 1e-10 * x0);
+                }
+              if (ratio == 1 && eta < 0.9)
+                error[k] = std::max(error[k],
+                                    std::abs(alpha - 2 * kappa * drained / M *
+                                                       (std::atanh(eta) -
+                                                        std::atan(eta))));
+            }
+          EXPECT_NEAR(q_of<dim>(state),
+                      M * x0 * std::pow(ratio / 2, drained),
+                      1e-3 * M * x0);
+          EXPECT_NEAR(q_of<dim>(state), M * x_of(state), 1e-3 * M * x0);
+        }
+      if (ratio == 1)
+        {
+          EXPECT_LT(error[0], 1e-3);
+          EXPECT_NEAR(error[0] / error[1], 2, 0.1);
+        }
+    }
+}
+
+
+
+// At constant lateral stress (Kirchhoff's) q = 3 (p - p0) up to q = M x; the
+// volume there is that of the critical state line. Clay that has borne ten
+// times the pressure dilates.
+TEST(Clay, DrainedTriaxialTestEndsInTheCriticalState)
+{
+  constexpr double p0 = 1e5;
+  for (const double borne : {p0, 10 * p0})
+    {
+      const CamClay law   = clay(borne);
+      auto          state = law.initialise<3>(p0);
+      state.history[0]    = std::pow((p0 + a) / a, -kappa);
+      move<3>(law, state, {});
+      const double start = std::log(law.volume_ratio<3>(state));
+      double       wide = 0, highest = 0;
+      for (int k = 0; k < 5000; ++k)
+        {
+          const auto lateral_at = [&](const double e) {
+            auto trial = state;
+            move<3>(law, trial, diagonal<3>(-5e-4, e, e));
+            return trial.deviator[1] - trial.pressure + p0;
+          };
+          double c = wide, d = wide + 1e-7, fc = lateral_at(c),
+                 fd = lateral_at(d);
+          for (int i = 0; i < 50 && std::abs(fd) > 1e-8 * p0; ++i)
+            {
+              const double next = d - fd * (d - c) / (fd - fc);
+              c                 = d;
+              fc                = fd;
+              d                 = next;
+              fd                = lateral_at(d);
+            }
+          ASSERT_LT(std::abs(fd), 1e-6 * p0) << k;
+          wide = d;
+          move<3>(law, state, diagonal<3>(-5e-4, wide, wide));
+          highest = std::max(highest, q_of<3>(state));
+          EXPECT_NEAR(q_of<3>(state), 3 * (state.pressure - p0), 1e-5 * p0);
+        }
+      const double x = (3 * (p0 + a)) / (3 - M);
+      EXPECT_NEAR(x_of(state), x, 1e-3 * x);
+      EXPECT_NEAR(q_of<3>(state), M * x, 1e-3 * M * x);
+      const double volume = -(lambda - kappa) * std::log(2 * x / (borne + a)) -
+                            kappa * std::log(x / (p0 + a));
+      EXPECT_NEAR(std::log(law.volume_ratio<3>(state)) - start, volume, 1e-3);
+      if (borne > p0)
+        {
+          EXPECT_GT(highest, 1.2 * M * x); // softens
+          EXPECT_GT(volume, 0.1);
+        }
+    }
+}
+
+
+
+// Trial states all over the plane, in one step: on the yield surface, by a flow
+// along its normal there.
+TEST(Clay, ReturnMeetsItsEquations)
+{
+  constexpr int size_of_c = index_of_variable<3, CamClay>(1);
+  int           n_flowed  = 0;
+  for (const double c : {2 * a, 1e3, 1e6})
+    for (double ratio = 1e-6; ratio < 1e3; ratio *= 3)
+      for (const double shear : {1e-6, 1e-3, 0.03, 0.4})
+        {
+          const CamClay law   = clay(c - a);
+          auto          state = law.initialise<3>(0);
+          state.history[0]    = std::pow(ratio * c / a, -kappa);
+          Matrix<3> gradient{};
+          gradient[0][1]             = shear;
+          auto elastic               = state;
+          elastic.history[size_of_c] = 1e100;
+          move<3>(law, elastic, gradient);
+          move<3>(law, state, gradient);
+          const double x_trial = x_of(elastic), q_trial = q_of<3>(elastic);
+          const double x = x_of(state), q = q_of<3>(state);
+          SCOPED_TRACE(testing::Message() << c << ' ' << ratio << ' ' << shear);
+          if (q_trial * q_trial / (M * M) + x_trial * (x_trial - c) <= 0)
+            {
+              EXPECT_EQ(alpha_of(law, state), 0);
+              EXPECT_NEAR(x, x_trial, 1e-12 * x);
+              continue;
+            }
+          ++n_flowed;
+          const double volume = state.history[size_of_c + 1];
+          const double now    = c * std::exp(-volume / (lambda - kappa));
+          EXPECT_NEAR(state.history[size_of_c],
+                      std::max(now - a, 0.),
+                      1e-12 * c);
+          EXPECT_NEAR(q * q / (M * M) + x * (x - now), 0, 1e-10 * now * now);
+          EXPECT_NEAR(std::log(x / x_trial), volume / kappa, 1e-9);
+          // d(volume) : d(shear) = -(2 x - c) : 2 q / M^2
+          const double alpha = alpha_of(law, state);
+          EXPECT_NEAR(-volume * 2 * q / (M * M),
+                      alpha * (2 * x - now),
+                      1e-10 * now * (alpha + std::abs(volume)));
+        }
+  EXPECT_GT(n_flowed, 50);
+}
+
+
+
+// Where softening has come to its end the strength is that of the attraction, q
+// = M a / 2, in steady shear.
+TYPED_TEST(ClayPaths, SofteningEndsAtTheAttraction)
+{
+  constexpr int dim   = TypeParam::dim;
+  const CamClay law   = clay(0);
+  auto          state = law.template initialise<dim>(0);
+  state.history[0]    = std::pow(0.1, -kappa);
+  const double work   = shear<dim>(law, state, 1e-3, 5000, 1);
+  EXPECT_EQ(borne_by<dim>(state), 0);
+  EXPECT_NEAR(x_of(state), a / 2, 1e-3 * a);
+  EXPECT_NEAR(q_of<dim>(state), M * a / 2, 1e-3 * a);
+  EXPECT_GT(work, 0);
+}
+
+
+
+// The work is what is stored and what is dissipated, to second order in the
+// step at least.
+TYPED_TEST(ClayPaths, WorkIsStoredOrDissipated)
+{
+  constexpr int            dim = TypeParam::dim;
+  const CamClay            law = clay(0, 1e5);
+  const Path<dim, CamClay> coarse(law, 200), middle(law, 400), fine(law, 800);
+  EXPECT_GT(coarse.dissipated, 0);
+  EXPECT_LT(std::abs(fine.left), 1e-5 * fine.dissipated);
+  EXPECT_GT(std::abs(coarse.left / middle.left), 3.7);
+  EXPECT_GT(std::abs(middle.left / fine.left), 3.7);
+}
+
+
+
+// Pulled apart and pushed together: no state needs more tension than the
+// attraction, and the pressure comes back with the volume.
+TYPED_TEST(ClayPaths, WhatIsPulledApartBearsPressureOnlyWhenClosed)
+{
+  constexpr int dim   = TypeParam::dim;
+  const CamClay law   = clay(1e5);
+  auto          state = law.template initialise<dim>(5e4);
+  const double  start = state.pressure;
+  for (const double volume : {0.2, -0.16 / 1.2})
+    {
+      auto motion       = motion_of<dim>({});
+      motion.volumetric = volume;
+      law.template update<dim>(motion, state);
+      EXPECT_LT(state.pressure, 0.5 * start);
+      EXPECT_GT(state.pressure, -a);
+    }
+  auto motion       = motion_of<dim>({});
+  motion.volumetric = -0.04 / 1.04;
+  EXPECT_EQ(law.template update<dim>(motion, state).plastic, 0);
+  EXPECT_NEAR(state.pressure, start, 1e-10 * start);
 }

@@ -73,7 +73,9 @@ namespace
           for (std::size_t k = 0; k < a.deviator.size(); ++k)
             ASSERT_NEAR(a.deviator[k], b.deviator[k], tolerance * scale);
           for (int k = 0; k < n_history; ++k)
-            ASSERT_NEAR(a.history[k], b.history[k], tolerance);
+            ASSERT_NEAR(a.history[k],
+                        b.history[k],
+                        tolerance * std::max(1., std::abs(b.history[k])));
         }
     }
 
@@ -494,7 +496,7 @@ TEST(StressUpdates, AreMadeByNameWithTheRightVariant)
 {
   constexpr auto response = HourglassResponse::bending;
   const auto     laws     = describe_laws();
-  ASSERT_EQ(laws.size(), 5u);
+  ASSERT_EQ(laws.size(), 6u);
   for (const auto &law : laws)
     {
       std::vector<double> values;
@@ -571,9 +573,14 @@ TYPED_TEST(Sweep, DeviatoricHistoryTendsToTheMeanOfTheCell)
                           1e-13);
           }
         for (std::size_t p = 0; p < points.size; ++p)
-          EXPECT_NEAR(own.fields[2 * dim + 1][p],
-                      pressure[p],
-                      1e-15 * law.bulk_modulus);
+          {
+            double stiffness = law.bulk_modulus;
+            if constexpr (std::is_same_v<Law, CamClay>) // grows with pressure
+              stiffness = (pressure[p] + law.attraction) / law.swelling;
+            EXPECT_NEAR(own.fields[2 * dim + 1][p],
+                        pressure[p],
+                        1e-15 * std::max(law.bulk_modulus, stiffness));
+          }
         EXPECT_GT(removed, 0);
         EXPECT_NEAR(removed,
                     energy - sweep.summarize(points).strain_energy,

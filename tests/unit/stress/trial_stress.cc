@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/materials/cam_clay.h>
 #include <limber/materials/drucker_prager.h>
 #include <limber/materials/j2.h>
 #include <limber/materials/linear_elastic.h>
@@ -40,6 +41,8 @@ namespace
       return {1000, 1e6, 0.4, 30, 2e4, 0, 1e300, 0, 0, 1, 1, 1};
     else if constexpr (std::is_same_v<Law, DruckerPrager<true>>)
       return {1000, 1e6, 0.4, 30, 2e4, 10, 1e300, 0, 0, 1, 1, 1};
+    else if constexpr (std::is_same_v<Law, CamClay>)
+      return {1000, 4e5, 0.3, 0.1, 1.2, 3e4, 5e4};
     else
       return {1000, 1e6, 0.4};
   }
@@ -412,12 +415,16 @@ namespace
   using SandSpace  = PlasticCasesOf<DruckerPrager<false>, 3>;
   using DensePlane = PlasticCasesOf<DruckerPrager<true>, 2>;
   using DenseSpace = PlasticCasesOf<DruckerPrager<true>, 3>;
+  using ClayPlane  = PlasticCasesOf<CamClay, 2>;
+  using ClaySpace  = PlasticCasesOf<CamClay, 3>;
   INSTANTIATE_TYPED_TEST_SUITE_P(J2In2d, PlasticTrialStresses, J2Plane);
   INSTANTIATE_TYPED_TEST_SUITE_P(J2In3d, PlasticTrialStresses, J2Space);
   INSTANTIATE_TYPED_TEST_SUITE_P(SandIn2d, PlasticTrialStresses, SandPlane);
   INSTANTIATE_TYPED_TEST_SUITE_P(SandIn3d, PlasticTrialStresses, SandSpace);
   INSTANTIATE_TYPED_TEST_SUITE_P(DenseIn2d, PlasticTrialStresses, DensePlane);
   INSTANTIATE_TYPED_TEST_SUITE_P(DenseIn3d, PlasticTrialStresses, DenseSpace);
+  INSTANTIATE_TYPED_TEST_SUITE_P(ClayIn2d, PlasticTrialStresses, ClayPlane);
+  INSTANTIATE_TYPED_TEST_SUITE_P(ClayIn3d, PlasticTrialStresses, ClaySpace);
 
   template <int dim>
   using NeoHookeanTrials = TrialCasesOf<NeoHookean, dim>;

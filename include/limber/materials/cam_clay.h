@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_materials_cam_clay_h
+#define limber_materials_cam_clay_h
+
+#include <limber/materials/finite_elasticity.h>
+#include <limber/materials/radial_return.h>
+
+namespace limber
+{
+  /**
+   * Clay that is compacted by pressure and shear: modified Cam-clay (Roscoe and
+   * Burland 1968) at finite strain (Borja and Tamagnini, CMAME 155 (1998) 73).
+   * Stress is that of Kirchhoff, pressure counted from an attraction a, the
+   * isotropic tension that no state exceeds: x = J p + a.
+   *
+   *   x = a Je^(-1/kappa)                          elastic, G constant
+   *   q^2 / M^2 + x (x - c) <= 0,  c = pc + a      associated flow
+   *   c ~ Jp^(-1 / (lambda - kappa))               hardening and softening
+   *
+   * so that under growing pressure ln J falls by kappa per ln(x) elastically,
+   * by lambda where it flows. The attraction gives a stiffness a / kappa and a
+   * place to the state without stress; with a small one the law is that of the
+   * books. As no volume Je needs more tension than it, what is torn apart bears
+   * pressure again only when it is closed. Softening ends at pc = 0, where the
+   * state without stress is just within the yield surface, so that plastic work
+   * is never negative. The surface is a circle about the pressure axis (von
+   * Mises in the deviatoric plane): M is that of triaxial compression in all
+   * directions.
+   *
+   * J in the history is the elastic volume ratio; the whole one is J
+   * exp(plastic volume).
+   */
+  class CamClay : public FiniteElasticity<3>
+  {
+    using Elasticity = FiniteElasticity<3>;
+
+  public:
+    static constexpr const char *name = "cam clay";
+    static constexpr const char *text =
+      "modified Cam-clay: elastic and plastic with a strength and a density "
+      "that follow the pressure borne before, for soft soil";
+    static constexpr bool                        takes_pressure = false;
+    static constexpr std::array<LawParameter, 7> parameters{
+      {law_parameters::density,
+       LawParameter{"Shear modulus", 1e6, 0, 1e300, false, "G, Pa", "", true},
+       LawParameter{"Compression index",
+                    0.1,
+                    0,
+                    10,
+                    false,
+                    "lambda, dimensionless: fall of ln J per ln of the "
+                    "pressure where pressure is larger than ever before; that "
+                    "of the books over 1 + e",
+                    "",
+                    true},
+       LawParameter{"Swelling index",
+                    0.02,
+                    0,
+                    10,
+                    false,
+                    "kappa, dimensionless: the same for pressure that was "
+                    "borne before; less than lambda",
+                    "",
+                    true},
+       LawParameter{"Critical state slope",
+                    1,
+                    0,
+                    3,
+                    false,
+                    "M, dimensionless: q over p in steady shear, 6 sin(phi) / "
+                    "(3 - sin(phi)) for the friction angle phi in triaxial "
+                    "compression",
+                    "",
+                    true},
+       LawParameter{"Preconsolidation pressure",
+                    0,
+                    0,
+                    1e300,
+                    true,
+                    "pc, Pa: the largest pressure borne before; 'Initial "
+                    "state' may give it by a formula"},
+       LawParameter{"Attraction",
+                    1000,
+                    0,
+                    1e300,
+                    false,
+                    "a, Pa: isotropic tension that is never exceeded, c "
+                    "cot(phi) of the steady state; a / kappa is the bulk "
+                    "modulus without stress. Small against the pressures of "
+                    "the scene"}}};
+    static constexpr std::array<StateVariable, 3> variables{
+      {{"equivalent plastic strain", "", 0},
+       {"preconsolidation pressure", "Pa", 0},
+       {"plastic volume strain", "", -1e300}}};
+
+    static constexpr bool dissipates = true;
+    static constexpr bool is_elastic = false;
+    static constexpr bool is_plastic = true;
+
+    explicit CamClay(const std::array<double, 7> &values)
+      : Elasticity(values[0],
+                   young_modulus(values[6] / values[3], values[1]),
+                   poisson_ratio(values[6] / values[3], values[1]))
+      , compression(values[2])
+      , swelling(values[3])
+      , slope(values[4])
+      , preconsolidation(values[5])
+      , attraction(values[6])
+    {}
+
+    static const char *
+    objection(const std::array<double, 7> &values)
+    {
+      if (values[2] <= values[3])
+        return "the 'Compression index' is not larger than the 'Swelling "
+               "index', so that pressure would leave no compaction behind. "
+               "Usually the two are swapped. Give lambda > kappa, for instance "
+               "five times as large";
+      return nullptr;
+    }
+
+    /** Whether this variant of the law serves these parameters. */
+    static bool
+    accepts(const std::array<double, 7> &)
+    {
+      return true;
+    }
+
+    template <int dim, class Number>
+    Dissipation<Number>
+    update(const MotionIncrement<dim, Number> &motion,
+           State<dim, Number>                 &state) const
+    {
+      const Number former_pressure = state.pressure;
+      strain<dim>(motion, state);
+      Number                    x = stress_at(state.history[0]);
+      const Number              c = larger(variable<dim>(state, 1) + attraction,
+                              broadcast<Number>(attraction));
+      RadialReturn<dim, Number> trial(state, shear_modulus);
+      const Number              q = std::sqrt(1.5) * trial.norm();
+      const Number outside        = q * q * (1 / (slope * slope)) + x * (x - c);
+
+      Dissipation<Number> result;
+      if (!all(outside <= 0.))
+        {
+          const Return<Number> reached(*this, x, c, q, trial.stiffness());
+          const Number         volume = // plastic, logarithmic
+            outside > 0. ? -reached.compaction : Number{};
+          const Number beyond = larger(q - reached.q, Number{}) /
+                                (std::sqrt(1.5) * trial.stiffness());
+          const Number flow = outside > 0. ? beyond : Number{};
+          x                 = outside > 0. ? reached.x : x;
+          state.history[0] *= exponential(-volume);
+          variable<dim>(state, 0) += std::sqrt(2. / 3.) * flow;
+          const Number reached_size = larger(reached.c - attraction, Number{});
+          variable<dim>(state, 1) =
+            outside > 0. ? reached_size : variable<dim>(state, 1);
+          variable<dim>(state, 2) += volume;
+          const Number work =
+            trial.flow(flow, state) -
+            (0.5 * (former_pressure + x) - 0.5 * attraction) * volume;
+          result.plastic = larger(work, Number{});
+        }
+      state.pressure = x - attraction;
+      trial.set_stress(state);
+      return result;
+    }
+
+    /** Whether stress depends on how fast it flows. */
+    bool
+    depends_on_rate() const
+    {
+      return false;
+    }
+
+    /** At rest under a pressure that has been borne before; tension is less
+     * than the attraction. */
+    template <int dim>
+    State<dim, double>
+    initialise(const double pressure) const
+    {
+      // a (Je^(-1/kappa) - 1) = p Je in terms of ln Je, from below
+      double log_J =
+        pressure > 0 ? -swelling * std::log1p(pressure / attraction) : 0;
+      for (int sweep = 0; sweep < 30; ++sweep)
+        {
+          const double x = attraction * std::exp(-log_J / swelling),
+                       p = pressure * std::exp(log_J);
+          log_J += (x - attraction - p) / (x / swelling + p);
+        }
+      State<dim, double> state;
+      state.history[0] = std::exp(log_J);
+      state.history[1] = state.history[2] = 1;
+      set_stress<dim>(state);
+      state.pressure          = stress_at(state.history[0]) - attraction;
+      variable<dim>(state, 1) = std::max(preconsolidation, state.pressure);
+      return state;
+    }
+
+    /** J of the body. */
+    template <int dim, class Number>
+    Number
+    volume_ratio(const State<dim, Number> &state) const
+    {
+      return state.history[0] * exponential(variable<dim>(state, 2));
+    }
+
+    template <class Number>
+    Number
+    volumetric_energy(const Number &J) const
+    {
+      const Number log_J = logarithm(J);
+      return attraction *
+             (swelling * (exponential(-log_J / swelling) - 1.) + log_J);
+    }
+
+    template <int dim>
+    void
+    set_deviatoric_strain(State<dim, double>          &state,
+                          const Deviator<dim, double> &strain) const
+    {
+      Elasticity::set_deviatoric_strain<dim>(state, strain);
+      state.pressure = stress_at(state.history[0]) - attraction;
+    }
+
+    template <int dim, class Number>
+    Number
+    strain_energy(const State<dim, Number> &state) const
+    {
+      return volumetric_energy(state.history[0]) +
+             this->template deviatoric_energy<dim>(state);
+    }
+
+    /** Of the elastic law: flow that is associated makes it softer. */
+    template <int dim, class Number>
+    Number
+    wave_speed_squared(const State<dim, Number> &state) const
+    {
+      const auto   be = isochoric::strain<dim>(state.history);
+      const Number x  = stress_at(state.history[0]);
+      return (larger(x * (1 / swelling + 1.) - attraction, Number{}) +
+              4. / 3. * shear_modulus * isochoric::largest_eigenvalue(be)) *
+             (1. / density);
+    }
+
+    const double compression;      // lambda
+    const double swelling;         // kappa
+    const double slope;            // M
+    const double preconsolidation; // at the start, Pa
+    const double attraction;       // a, Pa
+
+  private:
+    static double
+    young_modulus(const double K, const double G)
+    {
+      return 9 * K * G / (3 * K + G);
+    }
+
+    static double
+    poisson_ratio(const double K, const double G)
+    {
+      return (3 * K - 2 * G) / (2 * (3 * K + G));
+    }
+
+    template <int dim, class AnyState>
+    static auto &
+    variable(AnyState &state, const int k)
+    {
+      return state.history[index_of_variable<dim, CamClay>(k)];
+    }
+
+    /** J p + a */
+    template <class Number>
+    Number
+    stress_at(const Number &J) const
+    {
+      return attraction * exponential(-logarithm(J) / swelling);
+    }
+
+    /**
+     * The place on the yield surface that a trial state beyond it returns to,
+     * with the implicit Euler step of the flow rule: t in
+     *
+     *   x = c / (1 + t^2),  q = M c t / (1 + t^2),
+     *
+     * zero under isotropic pressure, one in the critical state. With r = x / c,
+     * L = ln(r_trial / r), and h = kappa / lambda,
+     *
+     *   compaction = kappa (1 - h) L,  c = c_before exp(h L),
+     *
+     * and as the plastic shear is (q_trial - q) / (3 G I), I the mean of be,
+     * its ratio to the compaction 2 t / (M (1 - t^2)) leaves for t
+     *
+     *   (q_trial - q) (1 - t^2) - 6 G I kappa (1 - h) / M t L = 0,
+     *
+     * which is positive where t is smaller and negative where it is larger of
+     * one and the place of r_trial: Newton's method between bounds. Each lane
+     * stops on its own. What has softened to pc = 0 keeps c, with h = 0.
+     */
+    template <class Number>
+    class Return
+    {
+    public:
+      Return(const CamClay &law,
+             const Number  &x_trial,
+             const Number  &former_c,
+             const Number  &q_trial,
+             const Number  &stiffness) // 2 G I, Pa
+        : law(law)
+        , q_trial(q_trial)
+        , former_c(former_c)
+      {
+        r_trial = x_trial / former_c;
+        // lanes that do not flow take any place
+        const Number zero{}, one = broadcast<Number>(1.);
+        hardening = r_trial < 0.5 ?
+                      (former_c > law.attraction ?
+                         broadcast<Number>(law.swelling / law.compression) :
+                         zero) :
+                      broadcast<Number>(law.swelling / law.compression);
+        resistance =
+          (3 * law.swelling / law.slope) * ((1. - hardening) * stiffness);
+
+        const Number place = square_root(larger(1. / r_trial - 1., zero));
+        Number low = place < 1. ? place : one, high = place < 1. ? one : place,
+               t          = place;
+        Number unfinished = one;
+        for (int sweep = 0; sweep < 60 && !all(unfinished <= 0.); ++sweep)
+          {
+            const Number left   = residual(t);
+            low                 = left > 0. ? t : low;
+            high                = left > 0. ? high : t;
+            const Number newton = t - left / derivative;
+            Number       next   = 0.5 * (low + high);
+            next = newton >= low ? (newton <= high ? newton : next) : next;
+            const Number change = magnitude(next - t) - 1e-13 * next;
+            t                   = unfinished > 0. ? next : t;
+            unfinished = unfinished > 0. ? (change > 0. ? one : zero) : zero;
+          }
+        residual(t);
+        compaction = law.swelling * ((1. - hardening) * distance);
+        x          = c / (1. + t * t);
+        q          = law.slope * (t * x);
+      }
+
+      Number x{}, c{}, q{}, compaction{};
+
+    private:
+      /** What is left of the equation at t, and its derivative. */
+      Number
+      residual(const Number &t)
+      {
+        const Number square = t * t, inverse = 1. / (1. + square);
+        distance        = logarithm(r_trial * (1. + square));
+        c               = former_c * exponential(hardening * distance);
+        const Number Mc = law.slope * c, q = Mc * t * inverse;
+        const Number q_by_t =
+          Mc * inverse * inverse * (1. - square + 2. * hardening * square);
+        derivative = -q_by_t * (1. - square) - 2. * t * (q_trial - q) -
+                     resistance * (distance + 2. * square * inverse);
+        return (q_trial - q) * (1. - square) - resistance * (t * distance);
+      }
+
+      const CamClay &law;
+      const Number   q_trial, former_c;
+      Number         r_trial, hardening, resistance, distance{}, derivative{};
+    };
+  };
+} // namespace limber
+
+#endif
