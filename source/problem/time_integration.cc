@@ -135,8 +135,6 @@ namespace limber
               return "the locking treatment" + of_body + " is not 'cell'";
             if (body.history != HistoryTreatment::keep)
               return "the history" + of_body + " is not kept";
-            if (section.subsection("Newtonian fluid").flag("Tension cutoff"))
-              return "the liquid" + of_body + " has a tension cutoff";
           }
       return "";
     }
@@ -254,11 +252,18 @@ namespace limber
                  section.where("History") +
                  ": with one pressure in a cell its scatter does nothing",
                "'History = keep'");
-      const Section law = section.subsection("Newtonian fluid");
-      if (law.flag("Tension cutoff"))
-        refuse("a tension cutoff in " + law.where("Tension cutoff") +
-                 ", as all cells share in one system",
-               "'Tension cutoff = false'");
+    }
+
+
+
+    /** Let the equations of the pressure cut tension off, and not the law. */
+    template <int dim>
+    void
+    give_tension_to_system(Body<dim> &body)
+    {
+      double &of_law = body.material[NewtonianFluid<true>::tension_entry];
+      body.cuts_tension = of_law != 0;
+      of_law            = 0;
     }
   } // namespace
 
@@ -317,7 +322,10 @@ namespace limber
         {
           const Section section = section_of(body);
           if (body.is_liquid)
-            check_liquid(section, body);
+            {
+              check_liquid(section, body);
+              give_tension_to_system(body);
+            }
           if (section.text("Chequerboard control") == "auto")
             body.chequerboard_control = compact_share;
         }

@@ -294,7 +294,8 @@ namespace limber
           body->cell_shift.size() > 0 ? body->cell_shift.data() : nullptr;
         CellPressures pressures;
         if (body->implicit)
-          pressures = body->implicit->view(description.is_liquid);
+          pressures = body->implicit->view(description.is_liquid,
+                                          description.cuts_tension);
         what.implicit = body->implicit ? &pressures : nullptr;
         what.remapped = remapped && !(body->implicit && description.is_liquid);
         const auto sums  = sums_of(*body);

@@ -10,6 +10,10 @@ namespace limber
   {
     // Residual in the volume of a cell over this volume
     constexpr double accuracy = 1e-10;
+
+    // So often cells without pressure may get it again; then they only lose it,
+    // so that it ends.
+    constexpr unsigned int most_returns = 20;
   } // namespace
 
 
@@ -67,12 +71,20 @@ namespace limber
         solver.set_pattern(system.equations);
       }
     system.assemble(end, step, share);
-    const double       volume = system.scale();
-    const unsigned int iterations =
-      solver.solve(system.equations, accuracy * volume, system.pressures);
+    const double volume     = system.scale();
+    unsigned int iterations = 0;
+    unsigned int solved     = 0;
+    do
+      {
+        iterations +=
+          solver.solve(system.equations, accuracy * volume, system.pressures);
+        ++solved;
+      }
+    while (system.cuts_tension() && system.cut_tension(solved < most_returns));
     for (std::uint32_t row = 0; row < cells.n; ++row)
       system.pressures[row] *= system.scales[row];
     ++spent.steps;
+    spent.solutions += solved;
     spent.iterations += iterations;
     spent.most_iterations = std::max(spent.most_iterations, iterations);
 
@@ -102,6 +114,12 @@ namespace limber
         const double volume      = medium.record(cell)[Record::mass] / density;
         if (!(volume > 0))
           continue;
+        // there points have what their volumes keep taken from them
+        if (!system.is_cut.empty() && system.is_cut[row])
+          {
+            medium.result(cell)[Result::dilation] = 0;
+            continue;
+          }
         const double flux = system.flux(medium, cell, step);
         const double change =
           system.pressures[row] - system.former[row].pressure;

@@ -209,6 +209,7 @@ namespace limber
   PressureSystem<dim>::scale()
   {
     auto &media = cells.media;
+    is_cut.clear();
     pressures.assign(equations.n, 0.);
     scales.assign(equations.n, 0.);
     double squares = 0;

@@ -78,7 +78,12 @@ namespace limber
     return "implicit pressure: " +
            brief(double(spent.iterations) / std::max(1ul, spent.steps)) +
            " iterations a step, at most " +
-           std::to_string(spent.most_iterations);
+           std::to_string(spent.most_iterations) +
+           (spent.solutions > spent.steps ?
+              "; solved " +
+                brief(double(spent.solutions) / double(spent.steps)) +
+                " times a step, as tension is cut off" :
+              "");
   }
 
 

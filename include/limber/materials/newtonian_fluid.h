@@ -57,6 +57,8 @@ namespace limber
     template <int>
     static constexpr int  n_history      = 1;
     static constexpr bool has_deviator   = viscous;
+    static constexpr unsigned int tension_entry = 3; // of the parameters
+
     static constexpr bool keeps_deviator = false;
     static constexpr bool uses_spin      = true;
     static constexpr bool dissipates     = true;
@@ -71,7 +73,7 @@ namespace limber
       : density(values[0])
       , bulk_modulus(values[1])
       , viscosity(values[2])
-      , tension_cutoff(values[3] != 0)
+      , tension_cutoff(values[tension_entry] != 0)
       // with the exponent one the two are the same, and only one has an energy
       , tait(values[4] != 0 && values[5] != 1)
       , exponent(values[5])

@@ -148,6 +148,8 @@ namespace limber
     double chequerboard_control = 0;
     // Found together with the velocity at the end of the step
     bool implicit_pressure = false;
+    // Only above zero, with an implicit pressure; otherwise the law sees to it
+    bool cuts_tension = false;
     // Of what nodes hold beyond their room, the share that is pushed apart in
     // a step as long as motion allows; with an implicit pressure only
     double density_control = 0;

@@ -23,11 +23,12 @@ namespace limber
     {}
 
     CellPressures
-    view(const bool is_liquid) const
+    view(const bool is_liquid, const bool cuts_tension) const
     {
       return {is_liquid ? pressure.data() : nullptr,
               dilation.data(),
-              !is_liquid};
+              !is_liquid,
+              cuts_tension};
     }
 
     LazyArray<double> pressure; // J p, Pa

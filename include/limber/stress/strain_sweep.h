@@ -72,6 +72,8 @@ namespace limber
         , means(sums, batch.cell)
         , shift(what.shift ? what.shift_share * what.shift[batch.cell] : 0)
         , implicit(kind == Projection::cell ? what.implicit : nullptr)
+        , is_cut(implicit != nullptr && implicit->cuts_tension &&
+                 implicit->pressure[batch.cell] == 0)
         , divergence(what.projected_divergence, cell)
         , strain(strained, cell, means, divergence, projection, what.step)
       {}
@@ -85,6 +87,7 @@ namespace limber
       const CellMeans<Basis>                   means;
       const double                             shift;
       const CellPressures *const               implicit;
+      const bool                               is_cut; // tension
       const NodalMean<dim, kind>               divergence;
       const StrainOperator<Basis, kind, Field> strain;
     };
@@ -123,6 +126,11 @@ namespace limber
                       what.relaxation,
                       batch.means.volumetric(),
                       batch.shift};
+        if (rarely(batch.is_cut))
+          {
+            change            = {true, 1, 1, 0};
+            motion.volumetric = Number{};
+          }
         const Number volumetric = strain(points, lanes, motion, change, found);
 
         if (rarely(batch.implicit != nullptr && batch.implicit->pressure))

@@ -19,13 +19,15 @@ namespace limber
    * averaged over them. Points of liquids take the pressure; their J takes the
    * mean divergence, with nothing of second order in the step, and this
    * dilation. Those of solids have the pressure of their own volume, and the
-   * dilation is all that they take.
+   * dilation is all that they take. Where tension is cut off, points of cells
+   * whose pressure is exactly zero have J = 1 afterwards.
    */
   struct CellPressures
   {
     const double *pressure = nullptr; // J p, Pa; null: that of the law
     const double *dilation = nullptr; // over the step, without dimension
     bool          is_whole = false;   // with the divergence
+    bool          cuts_tension = false;
   };
 
 

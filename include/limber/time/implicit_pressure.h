@@ -32,6 +32,9 @@ namespace limber
    *
    * Sides that hold a component of a node take the pressure on it: its entry
    * of M^-1 is zero.
+   *
+   * Where a body bears no tension, the equation of a cell is that P1 >= 0, that
+   * it grows at least as much, and that one of both is an equality.
    */
   template <int dim>
   class ImplicitPressure
@@ -82,7 +85,7 @@ namespace limber
     /** What the solver has been asked to do so far. */
     struct Effort
     {
-      unsigned long steps = 0, iterations = 0;
+      unsigned long steps = 0, solutions = 0, iterations = 0;
       unsigned int  most_iterations = 0; // in a step
     };
 

@@ -49,6 +49,19 @@ namespace limber
     double
     scale();
 
+    /** Whether tension is cut off in any of the bodies. */
+    bool
+    cuts_tension() const;
+
+    /**
+     * Where a solution asks for tension, let there be no pressure; and where
+     * the cell would be compressed without one, let it have one again, if
+     * @p may_return. Returns whether there is anything to be solved anew, from
+     * the pressures as they are now. After scale(); collective.
+     */
+    bool
+    cut_tension(bool may_return);
+
     /** The part of gamma T P in a cell, m^3, with the pressures that cells
      * know of each other. */
     double
@@ -73,6 +86,7 @@ namespace limber
     std::vector<double> growth;    // e
     std::vector<double> pressures; // P1, Pa; over the scales while solved
     std::vector<double> scales;    // of rows and columns
+    std::vector<unsigned char> is_cut; // its tension; empty: none is
 
   private:
     using Layout                          = NodeLayout<dim>;
@@ -89,6 +103,10 @@ namespace limber
                  double        step,
                  double        share);
     double
+    opening(std::uint32_t row) const;
+    void
+    exclude_cut();
+    double
     pattern_scale(const Medium &medium, std::uint32_t node, double step) const;
     double
     excess(std::uint32_t cell, std::uint32_t node, double density) const;
@@ -101,6 +119,8 @@ namespace limber
     LazyArray<double> mobility, velocity;
     // By place in a row: the cell that it stands for
     std::vector<std::uint32_t> mates;
+    // Matrix and right side of all cells, where some are cut off
+    std::vector<double> whole, whole_right_side;
   };
 } // namespace limber
 

@@ -223,6 +223,114 @@ TEST(ImplicitPressure, LetsAVortexTurn)
 
 
 
+namespace
+{
+  // A drop in free space whose upper half rises and whose lower half sinks
+  std::vector<std::string>
+  pulled_drop(const bool cut)
+  {
+    return {"Grid/Upper corner=4, 8",
+            "Grid/Cells=4, 8",
+            "Body water/Box/Lower corner=1, 3",
+            "Body water/Box/Upper corner=3, 5",
+            "Body water/Newtonian fluid/Bulk modulus=2e9",
+            "Body water/Hourglass control=0",
+            "Body water/Initial velocity=0; y-4",
+            std::string("Body water/Newtonian fluid/Tension cutoff=") +
+              (cut ? "true" : "false")};
+  }
+
+
+
+  double
+  kinetic_energy(SceneRun<2> &run)
+  {
+    double sum = 0;
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      sum += 0.5 * run.points().mass[p] * run.velocity(p).norm_square();
+    return sum;
+  }
+} // namespace
+
+
+
+// What is pulled apart flies on as it was thrown where tension is cut off: no
+// point changes its velocity. Without cut-off tension stops it, as nothing
+// flows in from the sides.
+TEST(ImplicitPressure, LetsLiquidsPartWhereTensionIsCutOff)
+{
+  SceneRun<2>         run(vessel, pulled_drop(true));
+  const auto          places = run.positions();
+  std::vector<double> speeds(places.size());
+  for (std::size_t p = 0; p < places.size(); ++p)
+    speeds[run.bodies[0]->points.id(p)] = run.velocity(p)[1];
+  const double before = kinetic_energy(run);
+  run.advance(0.05, 10);
+  for (std::size_t p = 0; p < places.size(); ++p)
+    {
+      ASSERT_EQ(run.points().pressure[p], 0);
+      ASSERT_NEAR(run.velocity(p)[0], 0, 1e-12);
+      ASSERT_NEAR(run.velocity(p)[1],
+                  speeds[run.bodies[0]->points.id(p)],
+                  1e-12);
+      // with the velocity of nodes, which are means of points around them
+      ASSERT_NEAR(run.position(p)[0],
+                  places[run.bodies[0]->points.id(p)][0],
+                  1e-12);
+    }
+  EXPECT_NEAR(kinetic_energy(run), before, 1e-12 * before);
+  EXPECT_NEAR(run.ledger.viscous, 0, 1e-12 * before);
+
+  SceneRun<2> held(vessel, pulled_drop(false));
+  held.advance(0.05);
+  double least = 0;
+  for (std::size_t p = 0; p < places.size(); ++p)
+    least = std::min(least, held.points().pressure[p]);
+  EXPECT_LT(least, -1000);
+  EXPECT_LT(kinetic_energy(held), 0.8 * before);
+}
+
+
+
+// A drop whose parts fly together and apart: no cell has tension, some have no
+// pressure and others one.
+TEST(ImplicitPressure, CutsTensionAloneOff)
+{
+  for (const bool cut : {false, true})
+    {
+      SceneRun<2> run(vessel,
+                      {"Body water/Box/Lower corner=1.1, 1.1",
+                       "Body water/Box/Upper corner=2.9, 3.6",
+                       "Body water/Newtonian fluid/Bulk modulus=1e7",
+                       std::string("Body water/Newtonian fluid/Tension "
+                                   "cutoff=") +
+                         (cut ? "true" : "false"),
+                       "Body water/Initial velocity=sin(2*x)*y; cos(3*y)*x"});
+      double      least = 0;
+      for (unsigned int n = 0; n < 20; ++n)
+        {
+          run.advance(0.02);
+          std::size_t without = 0;
+          for (std::size_t p = 0; p < run.points().size; ++p)
+            {
+              least = std::min(least, run.points().pressure[p]);
+              without += run.points().pressure[p] == 0;
+            }
+          if (n == 0 && cut)
+            {
+              EXPECT_GT(without, run.points().size / 10);
+              EXPECT_LT(without, run.points().size * 9 / 10);
+            }
+        }
+      if (cut)
+        EXPECT_EQ(least, 0);
+      else
+        EXPECT_LT(least, -100);
+    }
+}
+
+
+
 // The same for nearly incompressible solids: the pressure that holds their
 // weight is there after one step, however long sound would take, and stays.
 TEST(ImplicitPressure, HoldsSolidsAsItHoldsLiquids)

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/pressure_system.h>
+
+#include <algorithm>
+
+/**
+ * @file Where liquids bear no tension: P >= 0, cells that have no pressure do
+ * not close, and no cell has both (complementarity), found by a primal-dual
+ * active set (M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13, 2002,
+ * 865-888).
+ */
+
+namespace limber
+{
+  template <int dim>
+  bool
+  PressureSystem<dim>::cuts_tension() const
+  {
+    return std::any_of(cells.media.begin(),
+                       cells.media.end(),
+                       [](const Medium &medium) {
+                         return medium.body->description.cuts_tension;
+                       });
+  }
+
+
+
+  template <int dim>
+  bool
+  PressureSystem<dim>::cut_tension(const bool may_return)
+  {
+    if (is_cut.empty())
+      {
+        whole            = equations.values;
+        whole_right_side = equations.right_side;
+        is_cut.assign(equations.n, 0);
+      }
+    for (std::uint32_t row = 0; row < equations.n; ++row)
+      if (is_cut[row])
+        pressures[row] = 0;
+    for (Medium &medium : cells.media)
+      {
+        for (std::size_t k = 0; k < medium.cells.size(); ++k)
+          medium.result(medium.cells[k])[Result::pressure] =
+            pressures[medium.first + k];
+        cells.share(medium, Result::pressure);
+      }
+
+    int any = 0;
+    for (const Medium &medium : cells.media)
+      if (medium.body->description.cuts_tension)
+        for (std::uint32_t row = medium.first;
+             row < medium.first + medium.cells.size();
+             ++row)
+          {
+            const bool changes =
+              is_cut[row] ? may_return && opening(row) < 0 : pressures[row] < 0;
+            if (!changes)
+              continue;
+            is_cut[row]    = !is_cut[row];
+            pressures[row] = 0;
+            any            = 1;
+          }
+    if (dealii::Utilities::MPI::max(any, parts.grid.communicator) == 0)
+      return false;
+    exclude_cut();
+    return true;
+  }
+
+
+
+  // Times the scale of the row, m^3: by how much the cell grows beyond what
+  // belongs to its pressure.
+  template <int dim>
+  double
+  PressureSystem<dim>::opening(const std::uint32_t row) const
+  {
+    const auto        &media   = cells.media;
+    const unsigned int in_body = equations.width / media.size();
+    double             result  = -whole_right_side[row];
+    for (unsigned int place = 0; place < equations.width; ++place)
+      if (const std::size_t at = std::size_t(row) * equations.width + place;
+          mates[at] != invalid_cell)
+        result += whole[at] *
+                  media[place / in_body].result(mates[at])[Result::pressure];
+    return result;
+  }
+
+
+
+  // Their equations become P = 0; others do not know of them.
+  template <int dim>
+  void
+  PressureSystem<dim>::exclude_cut()
+  {
+    auto &media = cells.media;
+    for (Medium &medium : media)
+      {
+        for (std::size_t k = 0; k < medium.cells.size(); ++k)
+          medium.result(medium.cells[k])[Result::scale] =
+            is_cut[medium.first + k] ? 0 : 1;
+        cells.share(medium, Result::scale);
+      }
+    const unsigned int in_body = equations.width / media.size();
+    for (std::uint32_t row = 0; row < equations.n; ++row)
+      {
+        equations.right_side[row] = is_cut[row] ? 0 : whole_right_side[row];
+        for (unsigned int place = 0; place < equations.width; ++place)
+          {
+            const std::size_t at = std::size_t(row) * equations.width + place;
+            if (mates[at] == invalid_cell)
+              continue;
+            const bool diagonal =
+              equations.columns[at] == equations.first + row;
+            equations.values[at] =
+              diagonal     ? 1 :
+              is_cut[row]  ? 0 :
+                             whole[at] * media[place / in_body].result(
+                                           mates[at])[Result::scale];
+          }
+      }
+  }
+
+
+
+  template bool
+  PressureSystem<2>::cuts_tension() const;
+  template bool
+  PressureSystem<3>::cuts_tension() const;
+  template bool
+  PressureSystem<2>::cut_tension(bool);
+  template bool
+  PressureSystem<3>::cut_tension(bool);
+} // namespace limber
