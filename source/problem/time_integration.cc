@@ -261,7 +261,7 @@ namespace limber
     void
     give_tension_to_system(Body<dim> &body)
     {
-      double &of_law = body.material[NewtonianFluid<true>::tension_entry];
+      double &of_law    = body.material[NewtonianFluid<true>::tension_entry];
       body.cuts_tension = of_law != 0;
       of_law            = 0;
     }

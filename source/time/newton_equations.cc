@@ -7,10 +7,15 @@
 #include <limber/time/free_motions.h>
 #include <limber/time/newton_equations.h>
 
+#include <Epetra_CrsMatrix.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <optional>
+#include <stdexcept>
+#include <tuple>
 
 namespace limber
 {
@@ -37,7 +42,7 @@ namespace limber
      */
     struct Volume
     {
-      std::size_t                         body;
+      std::size_t                         body = 0;
       std::array<std::uint32_t, 1 << dim> numbers;
       std::array<double, dim << dim>      row;       // 1/m
       double                              stiffness; // not in the matrix, J
@@ -70,6 +75,7 @@ namespace limber
     : parts(parts)
     , largest_direct(largest_direct)
     , constraints(parts.problem.sides)
+    , nodes(parts)
     , matrix(std::make_unique<Matrix>())
   {
     for (const auto &body : parts.bodies)
@@ -95,7 +101,7 @@ namespace limber
   void
   NewtonEquations<dim>::begin_step()
   {
-    number_nodes();
+    nodes.update();
     find_held();
     find_ghost_faces();
     make_matrix();
@@ -119,57 +125,6 @@ namespace limber
 
 
 
-  template <int dim>
-  void
-  NewtonEquations<dim>::number_nodes()
-  {
-    cells.clear();
-    for (const auto &body : parts.bodies)
-      for_each_batch(body->points.view(), [&](const CellBatch &batch) {
-        cells.push_back(batch.cell);
-      });
-    std::sort(cells.begin(), cells.end());
-    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-
-    number_of_node.assign(parts.nodes.table.n(), not_numbered);
-    for (const std::uint32_t cell : cells)
-      for (const std::uint32_t offset : parts.grid.geometry[cell].node)
-        number_of_node[offset / NodeLayout<dim>::stride] = 0;
-    nodes.clear();
-    for (std::uint32_t node = 0; node < number_of_node.size(); ++node)
-      if (number_of_node[node] == 0)
-        {
-          number_of_node[node] = nodes.size();
-          nodes.push_back(node);
-        }
-
-    places.resize(nodes.size());
-    for (const std::uint32_t cell : cells)
-      {
-        const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
-        const auto               numbers  = numbers_in(cell);
-        for (unsigned int i = 0; i < numbers.size(); ++i)
-          for (int d = 0; d < dim; ++d)
-            places[numbers[i]][d] =
-              geometry.origin[d] + (i >> d & 1) / geometry.inverse_edge[d];
-      }
-  }
-
-
-
-  template <int dim>
-  std::array<std::uint32_t, 1 << dim>
-  NewtonEquations<dim>::numbers_in(const std::uint32_t cell) const
-  {
-    std::array<std::uint32_t, 1 << dim> result;
-    for (unsigned int i = 0; i < result.size(); ++i)
-      result[i] = number_of_node[parts.grid.geometry[cell].node[i] /
-                                 NodeLayout<dim>::stride];
-    return result;
-  }
-
-
-
   // Of several sides for a component the last counts, as in explicit steps.
   template <int dim>
   void
@@ -178,8 +133,7 @@ namespace limber
     held.assign(size(), 0);
     side_of.assign(size(), 0);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      for (const HeldComponent &entry :
-           constraints.of_sides(parts.nodes.table.sides[nodes[i]]))
+      for (const HeldComponent &entry : constraints.of_sides(nodes.sides(i)))
         {
           held[i * dim + entry.component]    = 1;
           side_of[i * dim + entry.component] = entry.side;
@@ -195,10 +149,8 @@ namespace limber
     std::vector<double> result(size());
     for (std::size_t k = 0; k < size(); ++k)
       if (is_held(k))
-        result[k] =
-          parts.problem.sides[side_of[k]].prescribed_velocity(places[k / dim],
-                                                              time,
-                                                              k % dim);
+        result[k] = parts.problem.sides[side_of[k]].prescribed_velocity(
+          nodes.places()[k / dim], time, k % dim);
     return result;
   }
 
@@ -214,47 +166,30 @@ namespace limber
     if (!(parts.problem.method.ghost_penalty > 0) ||
         parts.problem.method.integration != TimeIntegration::quasi_static)
       return; // in motion nodes have inertia, and this would damp it
-    const auto neighbour =
-      [&](const std::uint32_t cell, const int direction, const double step) {
-        const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
-        std::array<double, dim>  place;
-        for (int d = 0; d < dim; ++d)
-          place[d] = geometry.origin[d] + (0.5 + (d == direction ? step : 0)) /
-                                            geometry.inverse_edge[d];
-        return parts.grid.bins.cell_at(place);
-      };
-    const auto has_points = [&](const std::uint32_t cell) {
-      return std::binary_search(cells.begin(), cells.end(), cell);
-    };
+    const auto                &cells = nodes.cells();
     std::vector<unsigned char> at_surface(cells.size());
     for (std::size_t c = 0; c < cells.size(); ++c)
       for (int d = 0; d < dim; ++d)
-        for (const double step : {-1., 1.})
-          {
-            const std::uint32_t other = neighbour(cells[c], d, step);
-            if (other != invalid_cell && !has_points(other))
-              at_surface[c] = 1;
-          }
+        for (const int step : {-1, 1})
+          if (const auto next = nodes.neighbour(c, d, step);
+              next.in_box && !next.cell)
+            at_surface[c] = 1;
 
     for (std::size_t c = 0; c < cells.size(); ++c)
       for (int d = 0; d < dim; ++d)
         {
-          const std::uint32_t other = neighbour(cells[c], d, 1);
-          const auto          found =
-            std::lower_bound(cells.begin(), cells.end(), other);
-          if (found == cells.end() || *found != other ||
-              !(at_surface[c] || at_surface[found - cells.begin()]))
+          const auto other = nodes.neighbour(c, d, 1).cell;
+          if (!other || !(at_surface[c] || at_surface[*other]))
             continue;
-          const auto own = numbers_in(cells[c]), next = numbers_in(other);
-          GhostFace  face;
-          double     area = 1;
+          const auto &own = cells[c], &next = cells[*other];
+          GhostFace   face;
+          double      area = 1;
           for (int e = 0; e < dim; ++e)
             if (e != d)
-              area /= parts.grid.geometry[cells[c]].inverse_edge[e];
+              area *= nodes.edge(e);
           // h/3 area / h^2: jumps are differences over h
           face.stiffness = parts.problem.method.ghost_penalty * modulus() *
-                           area *
-                           parts.grid.geometry[cells[c]].inverse_edge[d] / 3;
+                           area / nodes.edge(d) / 3;
           unsigned int line = 0;
           for (unsigned int i = 0; i < own.size(); ++i)
             if ((i >> d & 1) == 0)
@@ -299,8 +234,8 @@ namespace limber
       for (const auto row : rows)
         pattern.add_entries(row, rows.begin(), rows.end(), true);
     };
-    for (const std::uint32_t cell : cells)
-      add(numbers_in(cell));
+    for (const auto &numbers : nodes.cells())
+      add(numbers);
     for (const GhostFace &face : ghost_faces)
       {
         std::vector<std::uint32_t> numbers;
@@ -326,9 +261,8 @@ namespace limber
         i = root[i] = root[root[i]];
       return i;
     };
-    for (const std::uint32_t cell : cells)
+    for (const auto &numbers : nodes.cells())
       {
-        const auto numbers = numbers_in(cell);
         for (const std::uint32_t number : numbers)
           root[find(number)] = find(numbers[0]);
       }
@@ -341,7 +275,7 @@ namespace limber
         for (std::uint32_t i = 0; i < nodes.size(); ++i)
           if (find(i) == r)
             {
-              of_part.push_back(places[i]);
+              of_part.push_back(nodes.places()[i]);
               held_there.emplace_back();
               for (int d = 0; d < dim; ++d)
                 held_there.back()[d] = is_held(std::size_t(i) * dim + d);
@@ -362,7 +296,10 @@ namespace limber
   {
     on_grid.resize(std::size_t(parts.nodes.table.n()) * dim);
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      std::copy_n(&displacement[i * dim], dim, &on_grid[nodes[i] * dim]);
+      if (const std::uint32_t node = nodes.on_grid()[i]; node != invalid_cell)
+        std::copy_n(&displacement[i * dim],
+                    dim,
+                    &on_grid[std::size_t(node) * dim]);
   }
 
 
@@ -389,7 +326,8 @@ namespace limber
         matrix->columns.clear();
         matrix->of_held.clear();
       }
-    for (std::size_t b = 0; b < responses.size(); ++b)
+    int admissible = 1;
+    for (std::size_t b = 0; b < responses.size() && admissible; ++b)
       if (!responses[b]->respond(
             parts.bodies[b]->points.view(),
             parts.nodes.view(),
@@ -397,7 +335,7 @@ namespace limber
             former != nullptr ? former_by_node.data() : nullptr,
             inertia != nullptr,
             [&](const std::uint32_t cell, CellResponse<dim> &response) {
-              const auto numbers = numbers_in(cell);
+              const auto numbers = nodes.numbers_in(cell);
               total_energy += response.energy;
               for (unsigned int i = 0; i < n; ++i)
                 for (int d = 0; d < dim; ++d)
@@ -408,7 +346,16 @@ namespace limber
               add_volume(b, numbers, response);
               add_to_matrix(numbers.data(), n, response.tangent.data());
             }))
-        return false;
+        admissible = 0;
+    if (nodes.is_parallel())
+      admissible =
+        dealii::Utilities::MPI::min(admissible, parts.grid.communicator);
+    if (!admissible)
+      return false;
+    nodes.sum(total_forces);
+    nodes.sum(&total_energy, 1);
+    if (inertia != nullptr)
+      sum_tangent();
     add_ghost_forces(displacement);
     total_energy += energy_of_jumps;
     if (inertia == nullptr)
@@ -420,6 +367,62 @@ namespace limber
         matrix->values.add(k, k, (*inertia)[k]);
     fill_held_rows();
     return true;
+  }
+
+
+
+  namespace
+  {
+    /** Plain records of all ranks, one rank after the other. */
+    template <class Plain>
+    void
+    unite(std::vector<Plain> &records, const MPI_Comm communicator)
+    {
+      std::vector<char> bytes(records.size() * sizeof(Plain));
+      if (!records.empty())
+        std::memcpy(bytes.data(), records.data(), bytes.size());
+      const auto of_ranks =
+        dealii::Utilities::MPI::all_gather(communicator, bytes);
+      records.clear();
+      for (const std::vector<char> &of_rank : of_ranks)
+        {
+          const std::size_t before = records.size();
+          records.resize(before + of_rank.size() / sizeof(Plain));
+          if (!of_rank.empty())
+            std::memcpy(static_cast<void *>(&records[before]),
+                        of_rank.data(),
+                        of_rank.size());
+        }
+    }
+  } // namespace
+
+
+
+  // Each rank has added what its points resist with.
+  template <int dim>
+  void
+  NewtonEquations<dim>::sum_tangent()
+  {
+    matrix->values.compress(dealii::VectorOperation::add);
+    if (!nodes.is_parallel())
+      return;
+    const Epetra_CrsMatrix &rows   = matrix->values.trilinos_matrix();
+    int                    *starts = nullptr, *columns = nullptr;
+    double                 *values = nullptr;
+    if (rows.ExtractCrsDataPointers(starts, columns, values) != 0)
+      throw std::logic_error("the tangent is not stored in one piece");
+    nodes.sum(values, rows.NumMyNonzeros());
+
+    unite(matrix->rows, parts.grid.communicator);
+    unite(matrix->columns, parts.grid.communicator);
+    unite(matrix->of_held, parts.grid.communicator);
+    unite(matrix->volumes, parts.grid.communicator);
+    std::stable_sort(matrix->volumes.begin(),
+                     matrix->volumes.end(),
+                     [](const auto &a, const auto &b) {
+                       return std::tie(a.body, a.numbers) <
+                              std::tie(b.body, b.numbers);
+                     });
   }
 
 
@@ -635,8 +638,10 @@ namespace limber
     std::vector<double> result(n_rigid_motions<dim> * size());
     for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
       for (std::size_t k = 0; k < size(); ++k)
-        result[m * size() + k] =
-          rigid_motion<dim>(m, k % dim, places[k / dim], places[0]);
+        result[m * size() + k] = rigid_motion<dim>(m,
+                                                   k % dim,
+                                                   nodes.places()[k / dim],
+                                                   nodes.places()[0]);
     return result;
   }
 

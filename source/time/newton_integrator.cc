@@ -63,12 +63,22 @@ namespace limber
                 share_of_run * parts.problem.end_time)
     , next_step(longest)
   {
-    if (dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
-      throw InputError(
-        "The run has several ranks, but 'Method/Time integration' is "
-        "'implicit' or 'quasi-static', whose equations are for one. Start it "
-        "without mpirun, or set 'Time integration = explicit'.");
     relocation.reinit();
+    measure_waves();
+  }
+
+
+
+  template <int dim>
+  void
+  NewtonIntegrator<dim>::measure_waves()
+  {
+    double squared = 0;
+    for (const auto &body : parts.bodies)
+      squared = std::max(squared,
+                         body->stress->wave_speed_squared(body->points.view()));
+    wave_speed =
+      std::sqrt(dealii::Utilities::MPI::max(squared, parts.grid.communicator));
   }
 
 
@@ -82,6 +92,7 @@ namespace limber
       body->reinit_sums(parts.grid);
     loads.reinit();
     relocation.reinit();
+    measure_waves();
   }
 
 
@@ -91,10 +102,7 @@ namespace limber
   NewtonIntegrator<dim>::state() const
   {
     IntegratorState<dim> result;
-    for (const auto &body : parts.bodies)
-      result.wave_speed = std::max(result.wave_speed,
-                                   std::sqrt(body->stress->wave_speed_squared(
-                                     body->points.view())));
+    result.wave_speed   = wave_speed;
     result.point_speed  = std::sqrt(extremes.speed_squared);
     result.displacement = extremes.displacement;
     result.step         = next_step;
@@ -177,6 +185,7 @@ namespace limber
 
     relocation.end_step(extremes);
     relocation.reinit(); // sorted, as the equations want the points
+    measure_waves();
     lap(move_points);
     return step;
   }
@@ -235,14 +244,20 @@ namespace limber
                           nullptr);
     masses.assign(equations.size(), 0.);
     velocities.assign(equations.size(), 0.);
+    parts.nodes.start_sum(Layout::mass, Layout::momentum + dim);
+    parts.nodes.finish_sum();
+    const NumberedNodes<dim> &nodes = equations.numbered_nodes();
     for (std::size_t k = 0; k < equations.size(); ++k)
-      {
-        const double *const record =
-          parts.nodes.record(equations.node_numbers()[k / dim]);
-        masses[k] = record[Layout::mass];
-        if (masses[k] > 0)
-          velocities[k] = record[Layout::momentum + k % dim] / masses[k];
-      }
+      if (nodes.owns(k / dim))
+        {
+          const double *const record =
+            parts.nodes.record(nodes.on_grid()[k / dim]);
+          masses[k] = record[Layout::mass];
+          if (masses[k] > 0)
+            velocities[k] = record[Layout::momentum + k % dim] / masses[k];
+        }
+    nodes.sum(masses);
+    nodes.sum(velocities);
   }
 
 
@@ -267,17 +282,22 @@ namespace limber
   {
     if (loads.any())
       loads.add(parts.nodes, time);
-    const double factor = load_factor(time);
-    Values       result(equations.size());
+    const double              factor = load_factor(time);
+    const NumberedNodes<dim> &nodes  = equations.numbered_nodes();
+    Values                    result(equations.size());
+    if (loads.any())
+      {
+        for (std::size_t k = 0; k < equations.size(); ++k)
+          if (nodes.owns(k / dim))
+            result[k] = loads.on_node(nodes.on_grid()[k / dim])[k % dim];
+        nodes.sum(result);
+      }
     if (given != nullptr)
       given->resize(equations.size());
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const double weight = masses[k] * parts.problem.loads.gravity[k % dim];
-        result[k]           = factor * weight;
-        if (loads.any())
-          result[k] +=
-            factor * loads.on_node(equations.node_numbers()[k / dim])[k % dim];
+        result[k]           = factor * (weight + result[k]);
         if (given != nullptr)
           (*given)[k] = result[k] - weight;
       }
@@ -331,6 +351,8 @@ namespace limber
         if (!solve(question, true, displacement))
           return false;
       }
+    if (!stays_with_ranks(displacement))
+      return false;
 
     // v1 = v0 + 2 (u / dt - v0); sides say how fast they are at the end
     Values new_velocity(equations.size());
@@ -345,6 +367,32 @@ namespace limber
     last_step = step;
     take_motion(displacement, new_velocity);
     lap(move_points);
+    return true;
+  }
+
+
+
+  // Of several ranks: each knows one layer of cells around its own.
+  template <int dim>
+  bool
+  NewtonIntegrator<dim>::stays_with_ranks(const Values &displacement)
+  {
+    const NumberedNodes<dim> &nodes = equations.numbered_nodes();
+    if (!nodes.is_parallel() || std::none_of(parts.bodies.begin(),
+                                             parts.bodies.end(),
+                                             [](const auto &body) {
+                                               return body->description.frame ==
+                                                      Frame::current;
+                                             }))
+      return true;
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      if (std::abs(displacement[k]) > nodes.edge(k % dim))
+        {
+          obstacle = "points would pass more than a cell, which is as far as "
+                     "ranks follow them (one rank does, and so does 'Frame = "
+                     "initial')";
+          return false;
+        }
     return true;
   }
 
@@ -542,10 +590,11 @@ namespace limber
   NewtonIntegrator<dim>::take_motion(const Values &displacement,
                                      const Values &new_velocity)
   {
-    const auto for_each = [&](const auto &work) {
+    const NumberedNodes<dim> &nodes    = equations.numbered_nodes();
+    const auto                for_each = [&](const auto &work) {
       for (std::size_t k = 0; k < equations.size(); ++k)
-        work(k,
-             parts.nodes.record(equations.node_numbers()[k / dim]) + k % dim);
+        if (nodes.on_grid()[k / dim] != invalid_cell)
+          work(k, parts.nodes.record(nodes.on_grid()[k / dim]) + k % dim);
     };
     if (loads.any())
       {
@@ -565,9 +614,10 @@ namespace limber
         // Points get less of short waves than lumped masses have.
         double expected = kinetic_energy();
         for (std::size_t k = 0; k < equations.size(); ++k)
-          expected +=
-            0.5 * masses[k] *
-            (new_velocity[k] * new_velocity[k] - velocities[k] * velocities[k]);
+          if (nodes.owns(k / dim))
+            expected += 0.5 * masses[k] *
+                        (new_velocity[k] * new_velocity[k] -
+                         velocities[k] * velocities[k]);
         for (const auto &body : parts.bodies)
           extremes.speed_squared =
             std::max(extremes.speed_squared,
@@ -595,6 +645,9 @@ namespace limber
                                  const double    time,
                                  const double    step)
   {
+    // All ranks know the same of nodes; what is on record they sum up.
+    if (dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator) > 0)
+      return;
     Ledger<dim> &ledger = parts.ledger;
     ledger.load_work += product(given, displacement);
     ledger.viscous += equations.ghost_energy();

@@ -113,10 +113,10 @@ namespace limber
             const bool diagonal =
               equations.columns[at] == equations.first + row;
             equations.values[at] =
-              diagonal     ? 1 :
-              is_cut[row]  ? 0 :
-                             whole[at] * media[place / in_body].result(
-                                           mates[at])[Result::scale];
+              diagonal    ? 1 :
+              is_cut[row] ? 0 :
+                            whole[at] * media[place / in_body].result(
+                                          mates[at])[Result::scale];
           }
       }
   }

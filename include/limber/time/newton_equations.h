@@ -5,7 +5,7 @@
 #include <limber/fem/mixed_solver.h>
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
-#include <limber/time/integrator.h>
+#include <limber/time/numbered_nodes.h>
 
 #include <memory>
 #include <string>
@@ -16,8 +16,11 @@ namespace limber
   /**
    * The equations of a step whose unknowns are the displacements of nodes in
    * it: nodes of occupied cells alone, dim equations each, in the order of
-   * nodes. They are made anew when points have moved. For one rank, linear
+   * NumberedNodes. They are made anew when points have moved. For linear
    * functions and cells of one size.
+   *
+   * Each rank finds what its points resist with; then every rank knows the
+   * equations of all and solves them, alike to the last bit.
    *
    * Besides what the points resist with (TrialStress) there is a stiffness
    * against jumps of the normal derivative across faces of cells next to the
@@ -45,7 +48,8 @@ namespace limber
 
     /**
      * Number the nodes of the cells that hold points, and find which components
-     * the sides hold. Points must be sorted.
+     * the sides hold. Points must be sorted, and all of a cell on one rank.
+     * Collective.
      */
     void
     begin_step();
@@ -57,9 +61,9 @@ namespace limber
       return nodes.size() * dim;
     }
 
-    /** By number of equations / dim: numbers of nodes on the grid. */
-    const std::vector<std::uint32_t> &
-    node_numbers() const
+    /** By number of equations / dim. */
+    const NumberedNodes<dim> &
+    numbered_nodes() const
     {
       return nodes;
     }
@@ -89,7 +93,7 @@ namespace limber
      * Strain energy, the forces that resist these displacements, and on
      * request the tangent, to which the diagonal @p inertia (kg/s^2) is added.
      * False where a point is turned inside out. @p former: see TrialStress, may
-     * be null.
+     * be null. Collective.
      */
     bool
     evaluate(const std::vector<double> &displacement,
@@ -175,8 +179,6 @@ namespace limber
     double
     modulus() const;
     void
-    number_nodes();
-    void
     find_held();
     void
     find_ghost_faces();
@@ -192,6 +194,8 @@ namespace limber
                CellResponse<dim>                         &response);
     void
     condense_volumes();
+    void
+    sum_tangent();
     void
     fill_held_rows();
     std::vector<double>
@@ -218,25 +222,21 @@ namespace limber
     void
     spread(const std::vector<double> &displacement,
            std::vector<double>       &on_grid) const;
-    std::array<std::uint32_t, 1 << dim>
-    numbers_in(std::uint32_t cell) const;
 
     const RunParts<dim>                                  parts;
     const std::size_t                                    largest_direct;
     bool                                                 mixed = false;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
-    std::vector<std::uint32_t>      cells, nodes;   // with points, sorted
-    std::vector<std::uint32_t>      number_of_node; // by node on the grid
-    std::vector<dealii::Point<dim>> places;         // of nodes, m
-    std::vector<unsigned char>      held, side_of;  // by equation
-    std::vector<GhostFace>          ghost_faces;
-    std::vector<double>             by_node, former_by_node; // displacements, m
-    std::vector<double>             total_forces;
-    double                  total_energy = 0, energy_of_jumps = 0, noise = 0;
-    std::unique_ptr<Matrix> matrix;
-    unsigned long           n_linear_iterations = 0;
-    bool                    factorises_all      = false;
+    NumberedNodes<dim>                                   nodes;
+    std::vector<unsigned char> held, side_of; // by equation
+    std::vector<GhostFace>     ghost_faces;
+    std::vector<double>        by_node, former_by_node; // displacements, m
+    std::vector<double>        total_forces;
+    double                     total_energy = 0, energy_of_jumps = 0, noise = 0;
+    std::unique_ptr<Matrix>    matrix;
+    unsigned long              n_linear_iterations = 0;
+    bool                       factorises_all      = false;
   };
 } // namespace limber
 

@@ -22,13 +22,14 @@ namespace limber
   class NewtonIntegrator final : public Integrator<dim>
   {
   public:
-    /** Throws InputError on several ranks. */
     explicit NewtonIntegrator(const RunParts<dim> &parts);
 
     bool
     reorganise() override
     {
-      return false;
+      // to their ranks, as if they might pass a cell
+      return equations.numbered_nodes().is_parallel() &&
+             relocation.reorganise(1);
     }
     bool
     bring_points_home() override
@@ -101,11 +102,15 @@ namespace limber
     };
 
     void
+    measure_waves();
+    void
     begin_step();
     void
     gather_nodes();
     bool
     try_step(double time, double step);
+    bool
+    stays_with_ranks(const Values &displacement);
     void
     guess(const Question &question, Values &displacement);
     bool
@@ -158,7 +163,7 @@ namespace limber
 
     const double longest;   // of steps that may be asked for, s
     double       next_step; // s
-    double       last_step = 0;
+    double       last_step = 0, wave_speed = 0;
     StepExtremes extremes;
 
     double                      rest = 0; // unbalanced share of the forces

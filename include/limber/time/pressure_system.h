@@ -83,9 +83,9 @@ namespace limber
       double compliance; // C, m^3/Pa
     };
     std::vector<Former> former;
-    std::vector<double> growth;    // e
-    std::vector<double> pressures; // P1, Pa; over the scales while solved
-    std::vector<double> scales;    // of rows and columns
+    std::vector<double> growth;        // e
+    std::vector<double> pressures;     // P1, Pa; over the scales while solved
+    std::vector<double> scales;        // of rows and columns
     std::vector<unsigned char> is_cut; // its tension; empty: none is
 
   private:
