@@ -82,7 +82,7 @@ namespace limber
     for (Sums &some : sums)
       some.records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
     for (auto &distances : cell_distance)
-      distances.reinit(parts.grid.n_cells());
+      distances.reinit(std::size_t(parts.grid.n_cells()) * (1 + dim));
     if (parts.grid.has_levels())
       find_places();
   }
@@ -177,26 +177,36 @@ namespace limber
 
 
 
-  // Of an obstacle at rest, once and for all.
+  // Where the middle of the cell has come nearer in the frame of the obstacle
+  // since it asked, the distance is less by no more than that, or by twice as
+  // much if it is of first order. At rest each cell asks once.
   template <int dim>
-  double
-  ObstacleContact<dim>::distance_of_cell(const unsigned int        obstacle,
-                                         const ObstaclePlace<dim> &place,
-                                         const std::uint32_t       cell)
+  bool
+  ObstacleContact<dim>::is_beyond(const double              reach,
+                                  const unsigned int        obstacle,
+                                  const ObstaclePlace<dim> &place,
+                                  const std::uint32_t       cell)
   {
-    const bool rests = !parts.problem.obstacles[obstacle].moves();
-    if (rests && cell_distance[obstacle][cell] != 0)
-      return cell_distance[obstacle][cell];
     const CellGeometry<dim> &geometry = parts.nodes.view().cells[cell];
     dealii::Point<dim>       middle;
     for (int d = 0; d < dim; ++d)
       middle[d] = geometry.origin[d] + 0.5 / geometry.inverse_edge[d];
-    double result = place.distance(middle).value;
-    if (result == 0)
-      result = 1e-300; // zero is what nobody has asked for
-    if (rests)
-      cell_distance[obstacle][cell] = result;
-    return result;
+    const dealii::Point<dim> start = place.start_of(middle);
+    double *const            asked =
+      &cell_distance[obstacle][std::size_t(cell) * (1 + dim)];
+    double way = 0; // squared
+    for (int d = 0; d < dim; ++d)
+      way += (start[d] - asked[1 + d]) * (start[d] - asked[1 + d]);
+    if (asked[0] == 0 || (way > 0 && asked[0] - 2 * std::sqrt(way) <= reach))
+      {
+        asked[0] = place.distance(middle).value;
+        if (asked[0] == 0)
+          asked[0] = 1e-300; // zero is what nobody has asked for
+        for (int d = 0; d < dim; ++d)
+          asked[1 + d] = start[d];
+        way = 0;
+      }
+    return asked[0] - 2 * std::sqrt(way) > reach;
   }
 
 
@@ -237,8 +247,10 @@ namespace limber
       double                   square = 0;
       for (int d = 0; d < dim; ++d)
         square += 0.25 / (cell.inverse_edge[d] * cell.inverse_edge[d]);
-      if (distance_of_cell(obstacle, place, batch.cell) >
-          2 * (std::sqrt(square) + half_edge[body]))
+      if (is_beyond(2 * (std::sqrt(square) + half_edge[body]),
+                    obstacle,
+                    place,
+                    batch.cell))
         return;
       CellFunctions<dim, degree> functions(grid, batch.cell);
       for (std::size_t p = batch.begin; p < batch.end; ++p)

@@ -122,10 +122,11 @@ namespace limber
     check_start() const;
     void
     check_way(unsigned int obstacle, double time, double step) const;
-    double
-    distance_of_cell(unsigned int              obstacle,
-                     const ObstaclePlace<dim> &place,
-                     std::uint32_t             cell);
+    bool
+    is_beyond(double                    reach,
+              unsigned int              obstacle,
+              const ObstaclePlace<dim> &place,
+              std::uint32_t             cell);
     void
     add_points(unsigned int              body,
                unsigned int              obstacle,
@@ -162,8 +163,8 @@ namespace limber
     std::vector<Touch>  touches;
     // Of nodes, dim numbers each, m; only where some may hang
     LazyArray<double> places;
-    // Of obstacles at rest: from the middles of cells, m; 0 where nobody has
-    // asked
+    // From the middles of cells when they asked, m, 0 where nobody has; and
+    // where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;
   };
 } // namespace limber
