@@ -295,7 +295,7 @@ namespace limber
         CellPressures pressures;
         if (body->implicit)
           pressures = body->implicit->view(description.is_liquid,
-                                          description.cuts_tension);
+                                           description.cuts_tension);
         what.implicit = body->implicit ? &pressures : nullptr;
         what.remapped = remapped && !(body->implicit && description.is_liquid);
         const auto sums  = sums_of(*body);

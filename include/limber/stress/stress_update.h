@@ -24,9 +24,9 @@ namespace limber
    */
   struct CellPressures
   {
-    const double *pressure = nullptr; // J p, Pa; null: that of the law
-    const double *dilation = nullptr; // over the step, without dimension
-    bool          is_whole = false;   // with the divergence
+    const double *pressure     = nullptr; // J p, Pa; null: that of the law
+    const double *dilation     = nullptr; // over the step, without dimension
+    bool          is_whole     = false;   // with the divergence
     bool          cuts_tension = false;
   };
 
