@@ -248,8 +248,8 @@ namespace limber
     suggestion(const Declaration &declaration, const std::string &value)
     {
       const Admissible &admissible = declaration.admissible;
-      const std::string write =
-        "Write " + first_words(admissible.description(), 14);
+      const std::string shown      = first_words(admissible.description(), 14);
+      const std::string write      = "Write " + shown;
       if (const auto meant = admissible.meant(value))
         return write + ". Did you mean " + in_quotes(*meant) + "?";
       const std::string example = admissible.match(declaration.default_value) &&
@@ -257,8 +257,12 @@ namespace limber
                                       admissible.is_choice() ?
                                     declaration.default_value :
                                     admissible.example();
-      return "Usually a digit, sign or word is mistyped. " + write +
-             ", for instance " + in_quotes(first_words(example, 8)) + ".";
+      const std::string cause   = "Usually a digit, sign or word is mistyped. ";
+      // a long list of choices is an example of itself
+      if (admissible.is_choice() && shown != admissible.description())
+        return cause + write + ".";
+      return cause + write + ", for instance " +
+             in_quotes(first_words(example, 8)) + ".";
     }
   } // namespace
 

@@ -113,7 +113,7 @@ namespace limber
     {
       if (values[2] <= values[3])
         return "the 'Compression index' is not larger than the 'Swelling "
-               "index', so that pressure would leave no compaction behind. "
+               "index', so pressure would leave no compaction. "
                "Usually the two are swapped. Give lambda > kappa, for instance "
                "five times as large";
       return nullptr;
