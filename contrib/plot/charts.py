@@ -103,7 +103,8 @@ CHANGES = {
     "3 points": ("#17807e", "P"), "3 x 3": ("#17807e", "P"),
     "soft water": ("#a6761d", "X"), "chi 0.3": ("#6a51a3", "d"),
     "Damping time": ("#a6761d", "X"), "control": ("#d01c8b", "d"),
-    "replaced": ("#8a8d00", "p"), "semi-implicit": ("#08519c", "*")}
+    "bending": ("#6a3d9a", "D"), "replaced": ("#8a8d00", "p"),
+    "semi-implicit": ("#08519c", "*")}
 
 SPARE = ("#1f78b4", "#b2443a", "#33a02c", "#6a51a3", "#b15928", "#a6761d",
          "#17807e", "#d01c8b")

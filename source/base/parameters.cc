@@ -260,7 +260,7 @@ namespace limber
       const std::string cause   = "Usually a digit, sign or word is mistyped. ";
       // a long list of choices is an example of itself
       if (admissible.is_choice() && shown != admissible.description())
-        return cause + write + ".";
+        return cause + write;
       return cause + write + ", for instance " +
              in_quotes(first_words(example, 8)) + ".";
     }
