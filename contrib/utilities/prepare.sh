@@ -8,7 +8,8 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$root/build/${preset:=release}
 
-packages=(g++ cmake ninja-build ccache libdeal.ii-dev libgtest-dev
+compilers=(g++ cmake ninja-build ccache)
+libraries=(libdeal.ii-dev libgtest-dev
   python3-numpy python3-matplotlib python3-h5py)
 
 # Both for mpirun in a container, and for more ranks than cores.
@@ -32,29 +33,54 @@ quietly() {
   fail "'$*' failed; what it said is above and in $log."
 }
 
+# missing PACKAGE...: those which are not installed.
+missing() {
+  local package
+  for package in "$@"; do
+    [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == \
+      installed ]] || echo "$package"
+  done
+}
+
+install_packages() {
+  local log as_root=()
+  if [[ $(id -u) != 0 ]]; then
+    command -v sudo >/dev/null || fail "Missing: $*." \
+      "Installing them needs root: apt-get install $*"
+    as_root=(sudo)
+  fi
+  log=$(mktemp)
+  quietly "$log" "${as_root[@]}" apt-get update
+  quietly "$log" "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install --yes --no-install-recommends "$@"
+  rm "$log"
+}
+
+# While packages are unpacked the processor has little to do. What goes wrong
+# here is said by the build that follows.
+compile_kernels() {
+  cmake -S "$root" --preset "$preset" -DLIMBER_KERNELS_ONLY=ON &&
+    nice cmake --build "$build" --parallel "$(jobs_that_fit)"
+}
+
 install_missing() {
   # Elsewhere CMake says what is missing.
   command -v dpkg-query apt-get >/dev/null || return 0
 
-  local package missing=() as_root=()
-  for package in "${packages[@]}"; do
-    [[ $(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null) == \
-      installed ]] || missing+=("$package")
-  done
-  [[ ${#missing[@]} == 0 ]] && return
-
-  if [[ $(id -u) != 0 ]]; then
-    command -v sudo >/dev/null || fail "Missing: ${missing[*]}." \
-      "Installing them needs root: apt-get install ${missing[*]}"
-    as_root=(sudo)
+  local tools wanted kernels
+  mapfile -t tools < <(missing "${compilers[@]}")
+  mapfile -t wanted < <(missing "${libraries[@]}")
+  if [[ ${#tools[@]} != 0 ]]; then
+    echo "Installing ${tools[*]}"
+    install_packages "${tools[@]}"
   fi
-  echo "Installing ${missing[*]} (deal.II alone takes some minutes)"
-  local log
-  log=$(mktemp)
-  quietly "$log" "${as_root[@]}" apt-get update
-  quietly "$log" "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install --yes --no-install-recommends "${missing[@]}"
-  rm "$log"
+  if [[ ${#wanted[@]} != 0 ]]; then
+    echo "Installing ${wanted[*]} (deal.II takes a minute or more)"
+    compile_kernels >/dev/null 2>&1 &
+    kernels=$!
+    install_packages "${wanted[@]}"
+    wait "$kernels" || true
+  fi
 }
 
 # As many compilers as there are cores, at 1.5 GB each.
@@ -93,9 +119,11 @@ prepare() {
   local log=$build/build.log
   install_missing
   mkdir -p "$build"
-  if [[ ! -e $build/build.ninja ]]; then
+  if [[ ! -e $build/build.ninja ]] ||
+    grep -q LIMBER_KERNELS_ONLY:BOOL=ON "$build/CMakeCache.txt"; then
     echo "Configuring Limber in $build"
-    quietly "$build/configure.log" cmake -S "$root" --preset "$preset"
+    quietly "$build/configure.log" cmake -S "$root" --preset "$preset" \
+      -DLIMBER_KERNELS_ONLY=OFF
   fi
   cmake --build "$build" --parallel "$(jobs_that_fit)" ${1:+--target "$@"} 2>&1 |
     tee "$log" | announce_building "$log" && return

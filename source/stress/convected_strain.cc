@@ -3,8 +3,6 @@
 #include <limber/interpolation/domain_means.h>
 #include <limber/stress/convected_sweep.h>
 
-#include <stdexcept>
-
 namespace limber
 {
   namespace
@@ -13,14 +11,12 @@ namespace limber
      * With the two fields of velocities from slot @p first on, that from
      * @p strained on strains the points.
      */
-    template <int          dim,
-              Projection   kind,
-              unsigned int first,
-              unsigned int strained>
+    template <int dim, unsigned int first, unsigned int strained>
     StressSummary
     strain_by(const PointView<dim>  &points,
               const GridView<dim>   &grid,
               const StressSweep     &what,
+              const Projection       kind,
               const PackStrain<dim> &law,
               PackFindings<dim>     &found)
     {
@@ -30,10 +26,11 @@ namespace limber
       VelocityFindings<dim> taken;
       Number                displacement{};
       for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim>    &cell = grid.cells[batch.cell];
-        const DomainMean<dim, kind> divergence(what.projected_divergence,
-                                               cell,
-                                               batch.cell);
+        const CellGeometry<dim> &cell = grid.cells[batch.cell];
+        const DomainMean<dim>    divergence(kind,
+                                         what.projected_divergence,
+                                         cell,
+                                         batch.cell);
         for_each_pack<dim>(batch, [&](const auto &lanes) {
           const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
           const Fields             fields(domains);
@@ -49,11 +46,10 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               motion.gradient[d][e] =
                 what.step * fields.slope(domains.inverse, strained + d, e);
-          if constexpr (kind != Projection::none)
-            motion.volumetric = what.step * divergence.template value<Number>(
-                                              lanes.natural(points, cell));
-          else
-            motion.volumetric = motion.trace();
+          motion.volumetric =
+            divergence.is_averaged() ?
+              what.step * divergence.value(lanes.natural(points, cell)) :
+              motion.trace();
           law.strain_pack(points, lanes, motion, HistoryChange(), found);
           if (what.move > 0)
             displacement =
@@ -80,26 +76,12 @@ namespace limber
                  const PackStrain<dim> &law,
                  PackFindings<dim>     &found)
   {
-    using Layout    = NodeLayout<dim>;
-    const auto with = [&](const auto projection) {
-      constexpr Projection P = decltype(projection)::value;
-      return what.remapped ?
-               strain_by<dim, P, Layout::velocity, Layout::remapped>(
-                 points, grid, what, law, found) :
-               strain_by<dim, P, Layout::increment, Layout::velocity>(
-                 points, grid, what, law, found);
-    };
-    switch (kind)
-      {
-        case Projection::none:
-          return with(std::integral_constant<Projection, Projection::none>());
-        case Projection::cell:
-          return with(std::integral_constant<Projection, Projection::cell>());
-        case Projection::node:
-          return with(std::integral_constant<Projection, Projection::node>());
-        default:
-          throw std::logic_error("no such projection with domains");
-      }
+    using Layout = NodeLayout<dim>;
+    check_projection_of_domains(kind);
+    return what.remapped ? strain_by<dim, Layout::velocity, Layout::remapped>(
+                             points, grid, what, kind, law, found) :
+                           strain_by<dim, Layout::increment, Layout::velocity>(
+                             points, grid, what, kind, law, found);
   }
 
 

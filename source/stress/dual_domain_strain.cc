@@ -3,28 +3,29 @@
 #include <limber/interpolation/dual_domain.h>
 #include <limber/stress/dual_domain_sweep.h>
 
-#include <stdexcept>
 
 namespace limber
 {
   namespace
   {
     /** By the field from that component on. */
-    template <int dim, Projection kind, unsigned int strained>
+    template <int dim, bool averaged, unsigned int strained>
     StressSummary
     strain_dual_domain(const PointView<dim>  &points,
                        const GridView<dim>   &grid,
                        const StressSweep     &what,
+                       const Projection       kind,
                        const PackStrain<dim> &law,
                        PackFindings<dim>     &found)
     {
       using Number = PointPack<dim>;
       Number displacement{};
       for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim>    &cell = grid.cells[batch.cell];
-        const DomainMean<dim, kind> divergence(what.projected_divergence,
-                                               cell,
-                                               batch.cell);
+        const CellGeometry<dim> &cell = grid.cells[batch.cell];
+        const DomainMean<dim>    divergence(kind,
+                                         what.projected_divergence,
+                                         cell,
+                                         batch.cell);
         const DualDomainGradient<dim, NodeLayout<dim>::velocity, strained>
           gradient(grid, batch.cell);
         for_each_pack<dim>(batch, [&](const auto &lanes) {
@@ -36,11 +37,8 @@ namespace limber
           for (auto &row : motion.gradient)
             for (Number &component : row)
               component *= what.step;
-          if constexpr (kind != Projection::none)
-            motion.volumetric =
-              what.step * divergence.template value<Number>(xi);
-          else
-            motion.volumetric = motion.trace();
+          motion.volumetric =
+            averaged ? what.step * divergence.value(xi) : motion.trace();
           law.strain_pack(points, lanes, motion, HistoryChange(), found);
           if (what.move > 0)
             {
@@ -74,23 +72,15 @@ namespace limber
                         const PackStrain<dim> &law,
                         PackFindings<dim>     &found)
   {
-    const auto with = [&](const auto projection) {
-      constexpr Projection P = decltype(projection)::value;
-      return what.remapped ?
-               strain_dual_domain<dim, P, dim>(points, grid, what, law, found) :
-               strain_dual_domain<dim, P, 0>(points, grid, what, law, found);
+    const auto with = [&](const auto averaged) {
+      return what.remapped ? strain_dual_domain<dim, averaged(), dim>(
+                               points, grid, what, kind, law, found) :
+                             strain_dual_domain<dim, averaged(), 0>(
+                               points, grid, what, kind, law, found);
     };
-    switch (kind)
-      {
-        case Projection::none:
-          return with(std::integral_constant<Projection, Projection::none>());
-        case Projection::cell:
-          return with(std::integral_constant<Projection, Projection::cell>());
-        case Projection::node:
-          return with(std::integral_constant<Projection, Projection::node>());
-        default:
-          throw std::logic_error("no such projection with dual domains");
-      }
+    check_projection_of_domains(kind);
+    return kind == Projection::none ? with(std::false_type()) :
+                                      with(std::true_type());
   }
 
 

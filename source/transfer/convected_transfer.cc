@@ -4,42 +4,25 @@
 #include <limber/transfer/convected_transfer.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 namespace limber
 {
   namespace
   {
-    struct NoForceOfDomains
-    {
-      static constexpr bool any = false;
-    };
-
-    template <Projection projection>
-    struct ForceOfDomains
-    {
-      static constexpr bool       any  = true;
-      static constexpr Projection kind = projection;
-    };
-
-
-
     /** J sigma of a pack of points, Pa, with the pressure that does the work.
      */
-    template <int dim, Projection kind, class Lanes>
+    template <int dim, class Lanes>
     __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
-    kirchhoff_stress(const PointView<dim>        &points,
-                     const CellGeometry<dim>     &cell,
-                     const DomainMean<dim, kind> &projected_pressure,
-                     const Lanes                 &lanes)
+    kirchhoff_stress(const PointView<dim>    &points,
+                     const CellGeometry<dim> &cell,
+                     const DomainMean<dim>   &projected_pressure,
+                     const Lanes             &lanes)
     {
-      auto           t = stress_deviator<dim>(points, lanes);
-      PointPack<dim> pressure;
-      if constexpr (kind != Projection::none)
-        pressure = projected_pressure.template value<PointPack<dim>>(
-          lanes.natural(points, cell));
-      else
-        pressure = lanes.load(points.pressure);
+      auto                 t = stress_deviator<dim>(points, lanes);
+      const PointPack<dim> pressure =
+        projected_pressure.is_averaged() ?
+          projected_pressure.value(lanes.natural(points, cell)) :
+          lanes.load(points.pressure);
       for (int d = 0; d < dim; ++d)
         t[d][d] -= pressure;
       return t;
@@ -47,7 +30,7 @@ namespace limber
 
 
 
-    template <int dim, bool momentum, class Force>
+    template <int dim, bool momentum, bool force>
     std::size_t
     give(const PointView<dim> &points,
          const GridView<dim>  &grid,
@@ -82,12 +65,17 @@ namespace limber
               }
             else
               set_zero(alike);
-            if constexpr (Force::any)
+            if constexpr (force)
               {
-                const DomainMean<dim, Force::kind> projected_pressure(
-                  what.projected_pressure, cell, batch.cell);
-                const auto t = kirchhoff_stress<dim, Force::kind>(
-                  points, cell, projected_pressure, lanes);
+                const DomainMean<dim> projected_pressure(
+                  what.projection.kind,
+                  what.projected_pressure,
+                  cell,
+                  batch.cell);
+                const auto   t = kirchhoff_stress<dim>(points,
+                                                     cell,
+                                                     projected_pressure,
+                                                     lanes);
                 const Number V = what.inverse_density * mass;
 #pragma GCC unroll 3
                 for (int k = 0; k < dim; ++k)
@@ -97,30 +85,18 @@ namespace limber
 #pragma GCC unroll 3
                     for (int d = 0; d < dim; ++d)
                       {
-                        Number force{};
+                        Number sum{};
 #pragma GCC unroll 3
                         for (int e = 0; e < dim; ++e)
-                          force -= t[d][e] * domains.inverse[k][e];
-                        slots[Window::lane_of(Layout::force + d)] = V * force;
+                          sum -= t[d][e] * domains.inverse[k][e];
+                        slots[Window::lane_of(Layout::force + d)] = V * sum;
                       }
                     along[k] = records_of<Record>(slots);
                   }
               }
-            domains.template give<Window, momentum, Force::any>(alike, along);
+            domains.template give<Window, momentum, force>(alike, along);
           });
       });
-    }
-
-
-
-    template <int dim, class Force>
-    std::size_t
-    choose_momentum(const PointView<dim> &points,
-                    const GridView<dim>  &grid,
-                    const GiveToGrid     &what)
-    {
-      return what.momentum ? give<dim, true, Force>(points, grid, what) :
-                             give<dim, false, Force>(points, grid, what);
     }
   } // namespace
 
@@ -132,28 +108,11 @@ namespace limber
                   const GridView<dim>  &grid,
                   const GiveToGrid     &what)
   {
-    using P = Projection;
+    check_projection_of_domains(what.projection.kind);
     if (!what.force)
-      return what.momentum ?
-               give<dim, true, NoForceOfDomains>(points, grid, what) :
-               0;
-    switch (what.projection.kind)
-      {
-        case P::none:
-          return choose_momentum<dim, ForceOfDomains<P::none>>(points,
-                                                               grid,
-                                                               what);
-        case P::cell:
-          return choose_momentum<dim, ForceOfDomains<P::cell>>(points,
-                                                               grid,
-                                                               what);
-        case P::node:
-          return choose_momentum<dim, ForceOfDomains<P::node>>(points,
-                                                               grid,
-                                                               what);
-        default:
-          throw std::logic_error("no such projection with domains");
-      }
+      return what.momentum ? give<dim, true, false>(points, grid, what) : 0;
+    return what.momentum ? give<dim, true, true>(points, grid, what) :
+                           give<dim, false, true>(points, grid, what);
   }
 
 

@@ -4,7 +4,6 @@
 #include <limber/transfer/add_to_nodes.h>
 #include <limber/transfer/dual_domain_transfer.h>
 
-#include <stdexcept>
 
 namespace limber
 {
@@ -26,7 +25,7 @@ namespace limber
 
 
     /** What a batch gives, before it goes to the nodes. */
-    template <int dim, Projection kind, bool deviator>
+    template <int dim, bool averaged, bool deviator>
     class DualDomainStress
     {
       using Basis                  = Linear<dim>;
@@ -48,19 +47,16 @@ namespace limber
 
       template <class Lanes>
       __attribute__((always_inline)) void
-      add(const PointView<dim>        &points,
-          const DomainMean<dim, kind> &projected_pressure,
-          const double                 inverse_density,
-          const Lanes                 &lanes)
+      add(const PointView<dim>  &points,
+          const DomainMean<dim> &projected_pressure,
+          const double           inverse_density,
+          const Lanes           &lanes)
       {
         const auto   xi = lanes.natural(points, cell);
         const Number volume =
           inverse_density * lanes.only_active(lanes.load(points.mass));
-        Number p;
-        if constexpr (kind != Projection::none)
-          p = projected_pressure.template value<Number>(xi);
-        else
-          p = lanes.load(points.pressure);
+        const Number p =
+          averaged ? projected_pressure.value(xi) : lanes.load(points.pressure);
         SmallMatrix<dim, Number> t{};
         if constexpr (deviator)
           t = stress_deviator<dim>(points, lanes);
@@ -135,37 +131,25 @@ namespace limber
 
 
 
-    template <int dim, Projection kind, bool deviator>
+    template <int dim, bool averaged, bool deviator>
     std::size_t
     give_stress(const PointView<dim> &points,
                 const GridView<dim>  &grid,
                 const GiveToGrid     &what)
     {
       return for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim>              &cell = grid.cells[batch.cell];
-        const DomainMean<dim, kind>           pressure(what.projected_pressure,
-                                             cell,
-                                             batch.cell);
-        DualDomainStress<dim, kind, deviator> stress(cell);
+        const CellGeometry<dim>                  &cell = grid.cells[batch.cell];
+        const DomainMean<dim>                     pressure(what.projection.kind,
+                                       what.projected_pressure,
+                                       cell,
+                                       batch.cell);
+        DualDomainStress<dim, averaged, deviator> stress(cell);
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {
             stress.add(points, pressure, what.inverse_density, lanes);
           });
         stress.give(grid.nodes, grid.dual_domain);
       });
-    }
-
-
-
-    template <int dim, Projection kind>
-    std::size_t
-    choose_deviator(const PointView<dim> &points,
-                    const GridView<dim>  &grid,
-                    const GiveToGrid     &what)
-    {
-      return points.deviator[0] != nullptr ?
-               give_stress<dim, kind, true>(points, grid, what) :
-               give_stress<dim, kind, false>(points, grid, what);
     }
 
 
@@ -205,17 +189,14 @@ namespace limber
                         const GridView<dim>  &grid,
                         const GiveToGrid     &what)
   {
-    switch (what.projection.kind)
-      {
-        case Projection::none:
-          return choose_deviator<dim, Projection::none>(points, grid, what);
-        case Projection::cell:
-          return choose_deviator<dim, Projection::cell>(points, grid, what);
-        case Projection::node:
-          return choose_deviator<dim, Projection::node>(points, grid, what);
-        default:
-          throw std::logic_error("no such projection with dual domains");
-      }
+    check_projection_of_domains(what.projection.kind);
+    const auto with = [&](const auto averaged) {
+      return points.deviator[0] != nullptr ?
+               give_stress<dim, averaged(), true>(points, grid, what) :
+               give_stress<dim, averaged(), false>(points, grid, what);
+    };
+    return what.projection.kind == Projection::none ? with(std::false_type()) :
+                                                      with(std::true_type());
   }
 
 

@@ -5,6 +5,8 @@
 #include <limber/base/pack.h>
 #include <limber/interpolation/nodal_means.h>
 
+#include <stdexcept>
+
 /**
  * @file What treatments average of a quantity q of points with domains
  * (convected.h): around nodes (nodal_means.h), or over the points of the cell,
@@ -65,35 +67,66 @@ namespace limber
 
 
 
-  /** The mean within a cell that a projection asks for; nothing for 'none'. */
-  template <int dim, Projection kind>
+  /** Those that points with domains have; std::logic_error for the others. */
+  inline void
+  check_projection_of_domains(const Projection kind)
+  {
+    if (kind != Projection::none && kind != Projection::cell &&
+        kind != Projection::node)
+      throw std::logic_error("no such projection with domains");
+  }
+
+
+
+  /**
+   * The mean within a cell that a projection asks for: none, over its points,
+   * or around its nodes. Which is asked once per batch, and whether there is
+   * one once per pack of convected domains, whose functions outweigh it by far:
+   * compiled for each projection they took half as long again.
+   */
+  template <int dim>
   class DomainMean
   {
   public:
-    DomainMean(const double *const      records,
+    /** With the @p records of the means, which none needs. */
+    DomainMean(const Projection         kind,
+               const double *const      records,
                const CellGeometry<dim> &geometry,
                const std::uint32_t      cell)
-      : around_nodes(records, geometry)
-      , in_cell(averages_volume_in_cells(kind) ?
-                  records[std::size_t(cell) * NodalMeanLayout::stride +
-                          NodalMeanLayout::value] :
-                  0)
-    {}
+      : averaged(kind != Projection::none)
+    {
+      constexpr auto value = NodalMeanLayout::value;
+      if (averages_around_nodes(kind))
+        {
+          for (int i = 0; i < Linear<dim>::n_nodes; ++i)
+            coefficients[i] = records[nodal_mean_record(geometry, i) + value];
+          Linear<dim>::to_monomials(coefficients);
+        }
+      else if (averaged)
+        coefficients[0] =
+          records[std::size_t(cell) * NodalMeanLayout::stride + value];
+    }
+
+    /** Whether there is one; else points keep their own value. */
+    bool
+    is_averaged() const
+    {
+      return averaged;
+    }
 
     /** At natural coordinates xi. */
     template <class Number>
     Number
     value(const std::array<Number, dim> &xi) const
     {
-      if constexpr (averages_around_nodes(kind))
-        return around_nodes.template value<Number>(xi);
-      else
-        return broadcast<Number>(in_cell);
+      return Linear<dim>::template value<Number>(
+        [this](const int k) { return coefficients[k]; }, xi);
     }
 
   private:
-    const NodalMean<dim, kind> around_nodes;
-    const double               in_cell;
+    const bool averaged;
+    // of the monomials
+    std::array<double, Linear<dim>::n_nodes> coefficients{};
   };
 } // namespace limber
 

@@ -26,8 +26,8 @@ namespace limber
 
   /**
    * The fastest there is. The treatments that most scenes have are compiled for
-   * each law; so are none of those of a law that flows, whose return map takes
-   * longer than the call per pack.
+   * each law, `assumed strain` for those of solids; so are none of those of a
+   * law that flows, whose return map takes longer than the call per pack.
    */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
@@ -47,7 +47,7 @@ namespace limber
           case P::cell:
             return with(std::integral_constant<P, P::cell>());
           case P::assumed_strain:
-            if constexpr (Law::has_deviator)
+            if constexpr (Law::is_elastic)
               return with(std::integral_constant<P, P::assumed_strain>());
             break;
           default:

@@ -422,8 +422,9 @@ TYPED_TEST(ConvectedDomains, GiveForcesThatAreTheTransposeOfTheStrain)
                                                     points.cell[p],
                                                     p);
           const typename TestFixture::Fields fields(domain, this->grid.view());
-          const auto t = kirchhoff_stress<dim>(points, p);
-          const DomainMean<dim, Projection::cell> mean_divergence(
+          const auto            t = kirchhoff_stress<dim>(points, p);
+          const DomainMean<dim> mean_divergence(
+            Projection::cell,
             divergence.data(),
             this->grid.cells[points.cell[p]],
             points.cell[p]);
