@@ -297,6 +297,29 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Letter case aside; empty where there is none or more than one. */
+    std::optional<std::string>
+    only_one_with_word(const std::string              &word,
+                       const std::vector<std::string> &candidates)
+    {
+      const std::string          wanted = ' ' + lower_case(word) + ' ';
+      std::optional<std::string> result;
+      for (const std::string &candidate : candidates)
+        if ((' ' + lower_case(candidate) + ' ').find(wanted) !=
+            std::string::npos)
+          {
+            if (result)
+              return {};
+            result = candidate;
+          }
+      return result;
+    }
+  } // namespace
+
+
+
   std::optional<std::string>
   nearest(const std::string &word, const std::vector<std::string> &candidates)
   {
@@ -321,6 +344,6 @@ namespace limber
             result = candidate;
           }
       }
-    return result;
+    return result ? result : only_one_with_word(word, candidates);
   }
 } // namespace limber

@@ -56,16 +56,15 @@ namespace limber
         "Displacement",
         "",
         admissible::text("formula of t with " + std::to_string(dim) +
-                           " components, or empty",
+                           " components",
                          dim == 2 ? "0.1*sin(t); 0" : "0.1*sin(t); 0; 0")
           .or_empty(),
         "u(t), m: how far it has moved; empty: it is not displaced.");
-      parameters.declare(
-        "Rotation",
-        "",
-        admissible::text("formula of t, or empty", "2*pi*t").or_empty(),
-        "Angle about 'Centre' by which it has turned, rad, "
-        "anticlockwise; empty: it does not turn.");
+      parameters.declare("Rotation",
+                         "",
+                         admissible::text("formula of t", "2*pi*t").or_empty(),
+                         "Angle about 'Centre' by which it has turned, rad, "
+                         "anticlockwise; empty: it does not turn.");
       parameters.declare("Centre",
                          for_each_direction(dim, "0"),
                          admissible::numbers(dim, for_each_direction(dim, "0")),

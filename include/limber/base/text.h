@@ -64,7 +64,9 @@ namespace limber
 
   /**
    * The candidate that @p word was probably meant to be: the one with the
-   * smallest edit distance, letter case aside. Empty where none is near.
+   * smallest edit distance, letter case aside, or the only one that has it
+   * among its words, as 'Initial velocity' has 'velocity'. Empty where none is
+   * near.
    */
   std::optional<std::string>
   nearest(const std::string &word, const std::vector<std::string> &candidates);

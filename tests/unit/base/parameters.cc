@@ -195,6 +195,10 @@ TEST(Text, NearestNameIsNotGuessedFromAfar)
   EXPECT_EQ(nearest("densty", {"Viscosity", "Density"}), "Density");
   EXPECT_EQ(nearest("baem", {"bed", "beam"}), "beam");
   EXPECT_FALSE(nearest("temperature", {"Density", "Viscosity"}));
+  // a word of a longer name, where it is the only one
+  EXPECT_EQ(nearest("velocity", {"Initial velocity", "Density"}),
+            "Initial velocity");
+  EXPECT_FALSE(nearest("stress", {"Initial stress", "Stress update"}));
 }
 
 
