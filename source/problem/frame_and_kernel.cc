@@ -290,9 +290,6 @@ namespace limber
       if (!root.subsection("Contact").list("Pairs").empty())
         return say("'linear', which loses least where bodies touch "
                    "('Contact/Pairs')");
-      if (!root.list("Obstacles").empty())
-        return say("'linear', which loses least where obstacles are met "
-                   "('Obstacles')");
       for (const auto &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);
