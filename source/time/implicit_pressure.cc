@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
 #include <limber/time/implicit_pressure.h>
 
 #include <algorithm>
@@ -95,6 +97,34 @@ namespace limber
 
 
 
+  // What a cell gives back of its elastic energy as it grows by a part of its
+  // volume, J: the integral of J p over ln J. Where J p is linear in J, the
+  // mean J of the points in the cell is enough, however much they differ.
+  template <int dim>
+  double
+  ImplicitPressure<dim>::elastic_work(const Medium       &medium,
+                                      const std::uint32_t row,
+                                      const double        volume,
+                                      const double        dilation) const
+  {
+    const auto &former = system.former[row];
+    if (!medium.body->description.is_liquid)
+      return 0.5 * (former.pressure + system.pressures[row]) * volume *
+             dilation;
+    static const dealii::QGauss<1> rule(3);
+    const double                   way    = std::log1p(dilation);
+    double                         result = 0;
+    for (unsigned int q = 0; q < rule.size(); ++q)
+      result += rule.weight(q) *
+                medium.body->stress
+                  ->volumetric_response(former.volume_ratio *
+                                        std::exp(rule.point(q)[0] * way))
+                  .pressure;
+    return volume * way * result;
+  }
+
+
+
   // For the sweep that strains the points, in all cells where they may be.
   template <int dim>
   void
@@ -120,15 +150,17 @@ namespace limber
             medium.result(cell)[Result::dilation] = 0;
             continue;
           }
-        const double flux = system.flux(medium, cell, step);
-        const double change =
-          system.pressures[row] - system.former[row].pressure;
+        const double flux     = system.flux(medium, cell, step);
+        const double pressure = system.pressures[row];
+        const double dilation = system.former[row].compliance *
+                                (system.former[row].pressure - pressure) /
+                                volume;
         medium.result(cell)[Result::dilation] =
           medium.body->description.is_liquid ?
             flux / volume - system.growth[row] :
-            -system.former[row].compliance * change / volume;
-        lost += 0.5 * system.former[row].compliance * change * change +
-                system.pressures[row] * (flux - volume * system.growth[row]);
+            dilation;
+        lost += elastic_work(medium, row, volume, dilation) -
+                pressure * (volume * (dilation + system.growth[row]) - flux);
       }
     cells.share(medium, Result::dilation);
     parts.ledger.viscous += lost;

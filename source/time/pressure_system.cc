@@ -281,7 +281,7 @@ namespace limber
     auto response = law.volumetric_response(J);
     if (!medium.body->description.is_liquid)
       response.pressure = own[Record::moment] / own[Record::mass];
-    former[row] = {response.pressure, volume / response.stiffness};
+    former[row] = {response.pressure, volume / response.stiffness, J};
     right       = volume * (response.pressure / response.stiffness);
 
     for (unsigned int a = 0; a < n_nodes; ++a)

@@ -193,6 +193,10 @@ namespace limber
 
 
 
+  // That of the points after the step if nothing were lost on the way to them:
+  // kinetic energy as lumped nodes have gained it, and gravity that works along
+  // the new velocity, while points follow curves and take short waves with
+  // their full mass.
   template <int dim>
   double
   SemiImplicitIntegrator<dim>::energy_to_points() const
@@ -204,28 +208,34 @@ namespace limber
         if (!this->parts.nodes.owns(node))
           continue;
         for (int d = 0; d < dim; ++d)
-          result += record[Layout::mass] * record[Layout::increment + d] *
-                    (record[Layout::velocity + d] -
-                     0.5 * record[Layout::increment + d]);
+          result += record[Layout::mass] *
+                    (record[Layout::increment + d] *
+                       (record[Layout::velocity + d] -
+                        0.5 * record[Layout::increment + d]) -
+                     this->step * this->parts.problem.loads.gravity[d] *
+                       record[Layout::velocity + d]);
       }
     return result;
   }
 
 
 
-  // Of this rank, and what is on record as removed from it, J.
+  // Kinetic energy and that of gravity on this rank, and what is on record as
+  // removed from it, J.
   template <int dim>
   double
   SemiImplicitIntegrator<dim>::energy_of_points() const
   {
-    double result = this->parts.ledger.transfer;
+    const auto &gravity = this->parts.problem.loads.gravity;
+    double      result  = this->parts.ledger.transfer;
     for (const auto &body : this->parts.bodies)
       {
         const PointView<dim> points = body->points.view();
         for (int d = 0; d < dim; ++d)
           for (std::size_t p = 0; p < points.size; ++p)
-            result += 0.5 * points.mass[p] * points.velocity[d][p] *
-                      points.velocity[d][p];
+            result += points.mass[p] *
+                      (0.5 * points.velocity[d][p] * points.velocity[d][p] -
+                       gravity[d] * points.position[d][p]);
       }
     return result;
   }
@@ -253,7 +263,8 @@ namespace limber
 
 
   // The heat of hourglass motion is on record as if the velocity did not change
-  // in the step.
+  // in the step. On what a side holds, forces work with its velocity (see
+  // BoundaryConditions), else with the mean of the step.
   template <int dim>
   void
   SemiImplicitIntegrator<dim>::account(const unsigned int velocity_after)
@@ -267,8 +278,9 @@ namespace limber
             const double *const record = this->parts.nodes.record(node);
             const double        before =
               record[Layout::velocity + d] - record[Layout::increment + d];
+            const double share = pressure.is_held(node, d) ? 1 : 0.5;
             this->parts.ledger.viscous -=
-              0.5 * this->step * hourglass[std::size_t(node) * dim + d] *
+              share * this->step * hourglass[std::size_t(node) * dim + d] *
               (record[velocity_after + d] - before);
           }
   }

@@ -104,6 +104,11 @@ namespace limber
 
     void
     keep_result(Medium &medium, double step);
+    double
+    elastic_work(const Medium &medium,
+                 std::uint32_t row,
+                 double        volume,
+                 double        dilation) const;
     void
     push_nodes(double step);
 

@@ -79,8 +79,9 @@ namespace limber
     // By row
     struct Former
     {
-      double pressure;   // P0, Pa
-      double compliance; // C, m^3/Pa
+      double pressure;     // P0, Pa
+      double compliance;   // C, m^3/Pa
+      double volume_ratio; // mean J of its points, or what a law has for it
     };
     std::vector<Former> former;
     std::vector<double> growth;        // e
