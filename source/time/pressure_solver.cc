@@ -178,11 +178,10 @@ namespace limber
     if (equations.n_all == 0)
       return 0;
     methods->set_values(equations);
-    for (std::uint32_t r = 0; r < equations.n; ++r)
-      {
-        methods->x[equations.first + r] = solution[r];
-        methods->b[equations.first + r] = equations.right_side[r];
-      }
+    std::copy(solution.begin(), solution.end(), methods->x.begin());
+    std::copy(equations.right_side.begin(),
+              equations.right_side.end(),
+              methods->b.begin());
 
     const bool is_new = !methods->has_multigrid;
     if (is_new)
@@ -197,8 +196,7 @@ namespace limber
       methods->more_iterations += iterations - methods->iterations_when_new;
     methods->has_multigrid = methods->more_iterations < iterations_of_making;
 
-    for (std::uint32_t r = 0; r < equations.n; ++r)
-      solution[r] = methods->x[equations.first + r];
+    std::copy(methods->x.begin(), methods->x.end(), solution.begin());
     return iterations;
   }
 } // namespace limber

@@ -88,6 +88,9 @@ namespace limber
   {
     mobility.reinit(std::size_t(parts.nodes.table.n()) * dim);
     velocity.reinit(std::size_t(parts.nodes.table.n()) * dim);
+    pattern_scales.resize(cells.media.size());
+    for (auto &of_medium : pattern_scales)
+      of_medium.reinit(parts.nodes.table.n());
   }
 
 
@@ -149,19 +152,27 @@ namespace limber
 
 
 
-  // dt^2 <M> / (rho_0^2 4^(dim - 1)) of a node that is inside.
   template <int dim>
-  double
-  PressureSystem<dim>::pattern_scale(const Medium       &medium,
-                                     const std::uint32_t node,
-                                     const double        step) const
+  void
+  PressureSystem<dim>::find_pattern_scales(const double step)
   {
-    constexpr double all  = dim == 2 ? 4 : 16;
-    double           mass = 0;
-    for (unsigned int k = 0; k < n_nodes; ++k)
-      mass += medium.record(medium.cells_around(node)[k] - 1)[Record::mass];
-    const double density = medium.body->stress->density();
-    return step * step * mass / n_nodes / (density * density * all);
+    constexpr double all = dim == 2 ? 4 : 16;
+    for (std::size_t l = 0; l < cells.media.size(); ++l)
+      {
+        const Medium &medium  = cells.media[l];
+        const double  density = medium.body->stress->density();
+        const double  factor  = medium.body->description.chequerboard_control *
+                              step * step / (n_nodes * density * density * all);
+        for (const std::uint32_t node : parts.nodes.active_nodes())
+          {
+            double mass = 0;
+            if (factor > 0 && medium.is_inside(node))
+              for (unsigned int k = 0; k < n_nodes; ++k)
+                mass +=
+                  medium.record(medium.cells_around(node)[k] - 1)[Record::mass];
+            pattern_scales[l][node] = factor * mass;
+          }
+      }
   }
 
 
@@ -192,6 +203,7 @@ namespace limber
                                 const double share)
   {
     hold_nodes(end);
+    find_pattern_scales(step);
     const auto &media = cells.media;
     equations.values.assign(equations.columns.size(), 0.);
     equations.right_side.assign(equations.n, 0.);
@@ -267,9 +279,8 @@ namespace limber
     const double             density = law.density();
     const double *const      own     = medium.record(cell);
     const double             volume  = own[Record::mass] / density;
-    const double      gamma  = medium.body->description.chequerboard_control;
-    const std::size_t begin  = std::size_t(row) * equations.width;
-    double *const     values = equations.values.data() + begin;
+    double *const            values =
+      equations.values.data() + std::size_t(row) * equations.width;
     constexpr unsigned int in_body = row_width(dim);
     double                &right   = equations.right_side[row];
     const double           control = medium.body->description.density_control;
@@ -311,17 +322,14 @@ namespace limber
               for (int d = 0; d < dim; ++d)
                 values[place] += scaled[d] * mate[Record::rows + b * dim + d];
             }
-        if (gamma > 0 && medium.is_inside(node))
-          {
-            const double scale = gamma * pattern_scale(medium, node, step);
-            for_each_pattern<dim>(
-              parts.grid.geometry[cell],
-              [&](const unsigned int pattern, const double weight) {
-                for (unsigned int b = 0; b < n_nodes; ++b)
-                  values[number * in_body + place_in_row<dim>(a, b)] +=
-                    scale * weight * sign(pattern, a) * sign(pattern, b);
-              });
-          }
+        if (const double scale = pattern_scales[number][node]; scale > 0)
+          for_each_pattern<dim>(
+            parts.grid.geometry[cell],
+            [&](const unsigned int pattern, const double weight) {
+              for (unsigned int b = 0; b < n_nodes; ++b)
+                values[number * in_body + place_in_row<dim>(a, b)] +=
+                  scale * weight * sign(pattern, a) * sign(pattern, b);
+            });
       }
     right += volume * growth[row];
     values[number * in_body + place_in_row<dim>(0, 0)] +=
@@ -332,29 +340,27 @@ namespace limber
 
   template <int dim>
   double
-  PressureSystem<dim>::flux(const Medium       &medium,
-                            const std::uint32_t cell,
-                            const double        step) const
+  PressureSystem<dim>::flux(const std::size_t   number,
+                            const std::uint32_t cell) const
   {
-    const double gamma = medium.body->description.chequerboard_control;
-    double       flux  = 0;
-    if (gamma > 0)
-      for (unsigned int a = 0; a < n_nodes; ++a)
-        if (const std::uint32_t node = cells.node_of(cell, a);
-            medium.is_inside(node))
-          {
-            const double scale = gamma * pattern_scale(medium, node, step);
-            for_each_pattern<dim>(
-              parts.grid.geometry[cell],
-              [&](const unsigned int pattern, const double weight) {
-                double sum = 0;
-                for (unsigned int b = 0; b < n_nodes; ++b)
-                  sum += sign(pattern, b) *
-                         medium.result(medium.cells_around(node)[b] -
-                                       1)[Result::pressure];
-                flux += scale * weight * sign(pattern, a) * sum;
-              });
-          }
+    const Medium &medium = cells.media[number];
+    double        flux   = 0;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      {
+        const std::uint32_t node  = cells.node_of(cell, a);
+        const double        scale = pattern_scales[number][node];
+        if (scale > 0)
+          for_each_pattern<dim>(
+            parts.grid.geometry[cell],
+            [&](const unsigned int pattern, const double weight) {
+              double sum = 0;
+              for (unsigned int b = 0; b < n_nodes; ++b)
+                sum += sign(pattern, b) *
+                       medium.result(medium.cells_around(node)[b] -
+                                     1)[Result::pressure];
+              flux += scale * weight * sign(pattern, a) * sum;
+            });
+      }
     return flux;
   }
 

@@ -103,7 +103,7 @@ namespace limber
     static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
     void
-    keep_result(Medium &medium, double step);
+    keep_result(std::size_t medium);
     double
     elastic_work(const Medium &medium,
                  std::uint32_t row,

@@ -65,7 +65,7 @@ namespace limber
     /** The part of gamma T P in a cell, m^3, with the pressures that cells
      * know of each other. */
     double
-    flux(const Medium &medium, std::uint32_t cell, double step) const;
+    flux(std::size_t medium, std::uint32_t cell) const;
 
     /** 1/m of a component of a node, or 0 where a side holds it. */
     double
@@ -107,8 +107,8 @@ namespace limber
     opening(std::uint32_t row) const;
     void
     exclude_cut();
-    double
-    pattern_scale(const Medium &medium, std::uint32_t node, double step) const;
+    void
+    find_pattern_scales(double step);
     double
     excess(std::uint32_t cell, std::uint32_t node, double density) const;
 
@@ -118,6 +118,9 @@ namespace limber
     // By node and component: 1/m, or 0 where a side holds it; and the velocity
     // without the pressures, or that of the side
     LazyArray<double> mobility, velocity;
+    // By body and node, for T: gamma dt^2 <M> / (rho_0^2 4^(dim - 1)) where all
+    // cells around are occupied, else 0
+    std::vector<LazyArray<double>> pattern_scales;
     // By place in a row: the cell that it stands for
     std::vector<std::uint32_t> mates;
     // Matrix and right side of all cells, where some are cut off

@@ -126,7 +126,7 @@ namespace
       double result = 0;
       for (const std::uint32_t cell : medium.cells)
         if (is_full(cell))
-          result = std::max(result, std::abs(system.flux(medium, cell, dt)));
+          result = std::max(result, std::abs(system.flux(0, cell)));
       return result;
     }
 
