@@ -195,7 +195,25 @@ namespace limber
 
 
 
-    /** The mass of a node that bodies share says nothing about one of them. */
+    /** Whether a body may take all of the box, so that it has no surface. */
+    template <int dim>
+    bool
+    fills_box(const Body<dim> &body, const GridDescription<dim> &grid)
+    {
+      const auto box = body.shape->bounding_box();
+      for (unsigned int d = 0; d < dim; ++d)
+        if (box.first[d] > grid.lower[d] + 1e-6 * grid.edge(d) ||
+            box.second[d] < grid.upper[d] - 1e-6 * grid.edge(d))
+          return false;
+      return true;
+    }
+
+
+
+    /**
+     * The mass of a node that bodies share says nothing about one of them; and
+     * what is pushed apart in a full box presses on all of it.
+     */
     template <int dim>
     void
     read_density_control(const Section      &section,
@@ -207,7 +225,8 @@ namespace limber
         body.is_liquid && problem.bodies.size() == 1;
       const bool automatic = section.text("Density control") == "auto";
       body.density_control = !automatic ? section.number("Density control") :
-                             possible   ? density_control :
+                             possible && !fills_box(body, problem.grid) ?
+                                          density_control :
                                           0;
       if (body.density_control > 0 && !possible)
         throw InputError("The entry 'Density control' in " +

@@ -233,6 +233,23 @@ TEST(Scenes, AutomaticTimeIntegration)
 
 
 
+// What is pushed apart in a full box would press on all of it.
+TEST(Scenes, DensityIsNotControlledWhereThereIsNoRoom)
+{
+  const auto control = [](const std::string &change) {
+    return read_problem<2>(
+             SceneFile(prm_folder() + "verification/taylor_green.prm",
+                       {change}))
+      .bodies[0]
+      .density_control;
+  };
+  EXPECT_EQ(control("Body water/Box/Upper corner=1, 1"), 0);
+  EXPECT_EQ(control("Body water/Box/Upper corner=1, 0.9"), 0.2);
+  EXPECT_EQ(control("Body water/Density control=0.1"), 0.1);
+}
+
+
+
 TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 {
   const Problem<3> problem = read_problem<3>(scene_of(R"(
