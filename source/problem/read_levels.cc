@@ -404,7 +404,7 @@ namespace limber
              "Kernel",
              "joined points ('Grid/Join points') have no domain",
              "'Kernel = linear', or 'Join points = false'");
-    if (problem.method.integration != TimeIntegration::explicit_steps)
+    if (is_solved_by_newton(problem.method.integration))
       refuse(method,
              "Time integration",
              "its equations have not been tried across a change of size",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <limber/base/exceptions.h>
 #include <limber/time/implicit_pressure.h>
 
 #include <algorithm>
@@ -31,6 +32,13 @@ namespace limber
     , system(parts, boundaries, cells)
     , solver(parts.grid.communicator)
   {
+    if (parts.problem.grid.levels > 0 &&
+        dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
+      throw InputError(
+        "Time integration 'semi-implicit' with cells of several sizes ('Grid/"
+        "Levels') is for one rank: ranks do not know all cells that share a "
+        "node. Run it without mpirun, or set 'Time integration = "
+        "explicit'.");
     reinit();
   }
 

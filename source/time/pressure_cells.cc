@@ -33,6 +33,7 @@ namespace limber
     for (auto &body : parts.bodies)
       if (body->implicit)
         {
+          body->implicit.emplace(parts.grid.n_cells());
           Medium medium;
           medium.body = body.get();
           medium.records.reinit(std::size_t(parts.grid.n_cells()) *

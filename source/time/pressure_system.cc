@@ -88,6 +88,7 @@ namespace limber
   {
     mobility.reinit(std::size_t(parts.nodes.table.n()) * dim);
     velocity.reinit(std::size_t(parts.nodes.table.n()) * dim);
+    corners.reinit(parts);
     pattern_scales.resize(cells.media.size());
     for (auto &of_medium : pattern_scales)
       of_medium.reinit(parts.nodes.table.n());
@@ -99,11 +100,24 @@ namespace limber
   void
   PressureSystem<dim>::find_columns()
   {
+    equations.n     = cells.n;
+    equations.first = cells.first;
+    equations.n_all = cells.n_all;
+    if (corners.empty())
+      find_columns_of_lattice();
+    else
+      find_columns_over_levels();
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::find_columns_of_lattice()
+  {
     auto &media            = cells.media;
-    equations.n            = cells.n;
-    equations.first        = cells.first;
-    equations.n_all        = cells.n_all;
-    equations.width        = row_width(dim) * media.size();
+    in_body                = row_width(dim);
+    equations.width        = in_body * media.size();
     const std::size_t size = std::size_t(equations.n) * equations.width;
     equations.columns.assign(size, PressureEquations::no_column);
     mates.assign(size, invalid_cell);
@@ -115,8 +129,8 @@ namespace limber
               if (const double number = media[l].record(near)[Record::number];
                   number > 0)
                 {
-                  const std::size_t at = (medium.first + k) * equations.width +
-                                         l * row_width(dim) + place;
+                  const std::size_t at =
+                    (medium.first + k) * equations.width + l * in_body + place;
                   equations.columns[at] = number - 1;
                   mates[at]             = near;
                 }
@@ -166,7 +180,7 @@ namespace limber
         for (const std::uint32_t node : parts.nodes.active_nodes())
           {
             double mass = 0;
-            if (factor > 0 && medium.is_inside(node))
+            if (factor > 0 && is_inside(medium, node))
               for (unsigned int k = 0; k < n_nodes; ++k)
                 mass +=
                   medium.record(medium.cells_around(node)[k] - 1)[Record::mass];
@@ -190,6 +204,18 @@ namespace limber
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (parts.nodes.table.sides[node] >> side & 1)
         room *= 0.5;
+    return excess_in(room, node, density);
+  }
+
+
+
+  // Of a room, m^3.
+  template <int dim>
+  double
+  PressureSystem<dim>::excess_in(const double        room,
+                                 const std::uint32_t node,
+                                 const double        density) const
+  {
     const double held = parts.nodes.record(node)[Layout::mass] / density;
     return std::max(0., held / room - 1 - excess_allowed);
   }
@@ -232,8 +258,10 @@ namespace limber
           {
             const std::uint32_t row = medium.first + k;
             double             &diagonal =
-              equations.values[std::size_t(row) * equations.width +
-                               l * row_width(dim) + place_in_row<dim>(0, 0)];
+              equations.values[corners.empty() ?
+                                 std::size_t(row) * equations.width +
+                                   l * in_body + place_in_row<dim>(0, 0) :
+                                 entry_of(row, l, medium.cells[k])];
             const double *const of_cell = medium.record(medium.cells[k]);
             if (!(of_cell[Record::mass] > 0))
               diagonal = 1;
@@ -254,9 +282,8 @@ namespace limber
       for (unsigned int place = 0; place < equations.width; ++place)
         if (const std::size_t at = std::size_t(row) * equations.width + place;
             mates[at] != invalid_cell)
-          equations.values[at] *=
-            scales[row] *
-            media[place / row_width(dim)].result(mates[at])[Result::scale];
+          equations.values[at] *= scales[row] * media[place / in_body].result(
+                                                  mates[at])[Result::scale];
     return std::sqrt(
       dealii::Utilities::MPI::sum(squares, parts.grid.communicator));
   }
@@ -279,11 +306,8 @@ namespace limber
     const double             density = law.density();
     const double *const      own     = medium.record(cell);
     const double             volume  = own[Record::mass] / density;
-    double *const            values =
-      equations.values.data() + std::size_t(row) * equations.width;
-    constexpr unsigned int in_body = row_width(dim);
-    double                &right   = equations.right_side[row];
-    const double           control = medium.body->description.density_control;
+    const std::size_t        begin   = std::size_t(row) * equations.width;
+    const double             control = medium.body->description.density_control;
 
     const CellSums<dim> sums = medium.body->cell_sums->view();
     const double        J =
@@ -293,8 +317,59 @@ namespace limber
     if (!medium.body->description.is_liquid)
       response.pressure = own[Record::moment] / own[Record::mass];
     former[row] = {response.pressure, volume / response.stiffness, J};
-    right       = volume * (response.pressure / response.stiffness);
+    equations.right_side[row] =
+      volume * (response.pressure / response.stiffness);
 
+    const auto entry_at = [&](const std::uint32_t node,
+                              const unsigned int  a,
+                              const unsigned int  b) {
+      return corners.empty() ?
+               begin + number * in_body + place_in_row<dim>(a, b) :
+               entry_of(row, number, medium.cells_around(node)[b] - 1);
+    };
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      {
+        const std::uint32_t node = cells.node_of(cell, a);
+        if (control > 0)
+          growth[row] +=
+            share * control / n_nodes *
+            (corners.empty() ? excess(cell, node, density / J) :
+                               excess_over_levels(node, density / J));
+        if (const double scale = pattern_scales[number][node]; scale > 0)
+          for_each_pattern<dim>(parts.grid.geometry[cell],
+                                [&](const unsigned int pattern,
+                                    const double       weight) {
+                                  for (unsigned int b = 0; b < n_nodes; ++b)
+                                    equations.values[entry_at(node, a, b)] +=
+                                      scale * weight * sign(pattern, a) *
+                                      sign(pattern, b);
+                                });
+      }
+    if (corners.empty())
+      couple_on_lattice(number, cell, row, step);
+    else
+      couple_over_levels(number, cell, row, step);
+    equations.right_side[row] += volume * growth[row];
+    equations.values[corners.empty() ?
+                       begin + number * in_body + place_in_row<dim>(0, 0) :
+                       entry_of(row, number, cell)] += former[row].compliance;
+  }
+
+
+
+  // dt^2 B M^-1 B^T, and - dt B v* on the right.
+  template <int dim>
+  void
+  PressureSystem<dim>::couple_on_lattice(const std::size_t   number,
+                                         const std::uint32_t cell,
+                                         const std::uint32_t row,
+                                         const double        step)
+  {
+    const auto         &media = cells.media;
+    const double *const own   = media[number].record(cell);
+    double *const       values =
+      equations.values.data() + std::size_t(row) * equations.width;
+    double &right = equations.right_side[row];
     for (unsigned int a = 0; a < n_nodes; ++a)
       {
         const std::uint32_t node = cells.node_of(cell, a);
@@ -307,33 +382,19 @@ namespace limber
             scaled[d] =
               step * step * entry * mobility[std::size_t(node) * dim + d];
           }
-        if (control > 0)
-          growth[row] +=
-            share * control / n_nodes * excess(cell, node, density / J);
-
         for (std::size_t l = 0; l < media.size(); ++l)
           for (unsigned int b = 0; b < n_nodes; ++b)
             {
               const std::uint32_t other = media[l].cells_around(node)[b];
               if (other == 0)
                 continue;
-              const double *const mate  = media[l].record(other - 1);
-              const unsigned int  place = l * in_body + place_in_row<dim>(a, b);
+              const double *const mate = media[l].record(other - 1);
+              const unsigned int  place =
+                l * row_width(dim) + place_in_row<dim>(a, b);
               for (int d = 0; d < dim; ++d)
                 values[place] += scaled[d] * mate[Record::rows + b * dim + d];
             }
-        if (const double scale = pattern_scales[number][node]; scale > 0)
-          for_each_pattern<dim>(
-            parts.grid.geometry[cell],
-            [&](const unsigned int pattern, const double weight) {
-              for (unsigned int b = 0; b < n_nodes; ++b)
-                values[number * in_body + place_in_row<dim>(a, b)] +=
-                  scale * weight * sign(pattern, a) * sign(pattern, b);
-            });
       }
-    right += volume * growth[row];
-    values[number * in_body + place_in_row<dim>(0, 0)] +=
-      former[row].compliance;
   }
 
 

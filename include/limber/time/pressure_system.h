@@ -3,6 +3,7 @@
 #define limber_time_pressure_system_h
 
 #include <limber/grid/boundary_conditions.h>
+#include <limber/time/corners_of_nodes.h>
 #include <limber/time/pressure_cells.h>
 #include <limber/time/pressure_solver.h>
 
@@ -103,6 +104,24 @@ namespace limber
                  std::uint32_t row,
                  double        step,
                  double        share);
+    void
+    couple_on_lattice(std::size_t   medium,
+                      std::uint32_t cell,
+                      std::uint32_t row,
+                      double        step);
+    void
+    couple_over_levels(std::size_t   medium,
+                       std::uint32_t cell,
+                       std::uint32_t row,
+                       double        step);
+    void
+    find_columns_of_lattice();
+    void
+    find_columns_over_levels();
+    bool
+    is_inside(const Medium &medium, std::uint32_t node) const;
+    std::size_t
+    entry_of(std::uint32_t row, std::size_t medium, std::uint32_t cell) const;
     double
     opening(std::uint32_t row) const;
     void
@@ -111,10 +130,16 @@ namespace limber
     find_pattern_scales(double step);
     double
     excess(std::uint32_t cell, std::uint32_t node, double density) const;
+    double
+    excess_in(double room, std::uint32_t node, double density) const;
+    double
+    excess_over_levels(std::uint32_t node, double density) const;
 
     const RunParts<dim>      parts;
     BoundaryConditions<dim> &boundaries;
     PressureCells<dim>      &cells;
+    CornersOfNodes<dim>      corners;     // where cells have several sizes
+    unsigned int             in_body = 0; // places of a body in a row
     // By node and component: 1/m, or 0 where a side holds it; and the velocity
     // without the pressures, or that of the side
     LazyArray<double> mobility, velocity;

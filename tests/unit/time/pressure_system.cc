@@ -210,7 +210,92 @@ namespace
         ASSERT_NEAR(S[row][k], expected, 1e-13 * unit) << step.middle(cells[k]);
       }
   }
+  /** Fine cells in one half, so that nodes hang between. */
+  const std::vector<std::string> two_sizes = {
+    "Body water/Chequerboard control=0",
+    "Grid/Levels=1",
+    "Grid/Refine=part",
+    "Grid/Refine part/Upper corner=3, 8"};
+
+
+
+  /**
+   * The matrix, column by column, is what the tables of hanging nodes make of
+   * the rows B of cells, those by which explicit steps go too: forces of one
+   * pressure on corners go to masters, what these get of velocity to corners.
+   */
+  void
+  expect_masters_in_equations()
+  {
+    using Record = PressureCells<2>::Record;
+    const EquationsOfStep<2> step(block<2>("5.3, 4.6"), two_sizes);
+    const auto               S     = step.matrix();
+    const auto              &water = step.water();
+    const NodeTable<2>      &table = step.run.nodes.table;
+    ASSERT_GT(table.hanging.size(), 0u);
+    unsigned int hanging = 0; // entries that go through them
+    for (std::size_t column = 0; column < S.size(); ++column)
+      {
+        std::vector<double> at_nodes(2 * table.n());
+        const auto          for_each_entry = [&](const std::size_t row,
+                                        const auto       &work) {
+          const std::uint32_t cell = water.cells[row];
+          if (step.is_full(cell))
+            for (unsigned int a = 0; a < 4; ++a)
+              for (unsigned int d = 0; d < 2; ++d)
+                work(at_nodes[2 * step.cells.node_of(cell, a) + d],
+                     water.record(cell)[Record::rows + 2 * a + d]);
+        };
+        for_each_entry(column, [](double &force, const double entry) {
+          force += entry;
+        });
+        for (const HangingNode &node : table.hanging)
+          hanging += at_nodes[2 * node.node] != 0;
+        table.give_to_masters(at_nodes.data(), 2, 0, 2);
+        for (std::uint32_t node = 0; node < table.n(); ++node)
+          for (unsigned int d = 0; d < 2; ++d)
+            {
+              const double mass =
+                step.run.nodes.record(node)[NodeLayout<2>::mass];
+              at_nodes[2 * node + d] *= mass > 0 ? dt / mass : 0;
+            }
+        table.take_from_masters(at_nodes.data(), 2, 0, 2);
+        for (std::size_t row = 0; row < S.size(); ++row)
+          {
+            double expected =
+              row == column ? step.system.former[row].compliance : 0;
+            for_each_entry(row,
+                           [&](const double &velocity, const double entry) {
+                             expected += dt * entry * velocity;
+                           });
+            ASSERT_NEAR(S[row][column],
+                        expected,
+                        1e-13 * std::sqrt(S[row][row] * S[column][column]));
+          }
+      }
+    EXPECT_GT(hanging, 5u);
+  }
 } // namespace
+
+
+
+TEST(PressureSystem, PushesTheMastersOfHangingNodes)
+{
+  expect_masters_in_equations();
+}
+
+
+
+TEST(PressureSystem, IsSymmetricOverLevels)
+{
+  auto changes = two_sizes;
+  changes[0]   = "Body water/Chequerboard control=1";
+  const EquationsOfStep<2> step(block<2>("5.3, 4.6"), changes);
+  const auto               S = step.matrix();
+  for (std::size_t i = 0; i < S.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      ASSERT_NEAR(S[i][j], S[j][i], 1e-14 * std::sqrt(S[i][i] * S[j][j]));
+}
 
 
 

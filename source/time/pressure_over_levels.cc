@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/pressure_system.h>
+
+#include <algorithm>
+
+/**
+ * @file The equations of the implicit pressure where cells have several sizes:
+ * hanging nodes follow their masters, so that B is the mean divergence of what
+ * is left, B Z with the interpolation Z, and its transpose pushes masters.
+ */
+
+namespace limber
+{
+  // The cells that follow a node which a cell follows as well.
+  template <int dim>
+  void
+  PressureSystem<dim>::find_columns_over_levels()
+  {
+    const auto                             &media = cells.media;
+    std::vector<std::vector<std::uint32_t>> near(equations.n);
+    in_body = 0;
+    for (const Medium &medium : media)
+      for (std::size_t k = 0; k < medium.cells.size(); ++k)
+        {
+          auto &of_row = near[medium.first + k];
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            corners.for_each_master(
+              cells.node_of(medium.cells[k], a), [&](const auto &master) {
+                corners.for_each(master.node, [&](const auto &corner) {
+                  of_row.push_back(corner.cell);
+                });
+              });
+          std::sort(of_row.begin(), of_row.end());
+          of_row.erase(std::unique(of_row.begin(), of_row.end()), of_row.end());
+          in_body = std::max<unsigned int>(in_body, of_row.size());
+        }
+    equations.width        = in_body * media.size();
+    const std::size_t size = std::size_t(equations.n) * equations.width;
+    equations.columns.assign(size, PressureEquations::no_column);
+    mates.assign(size, invalid_cell);
+    for (std::uint32_t row = 0; row < equations.n; ++row)
+      for (std::size_t l = 0; l < media.size(); ++l)
+        {
+          std::size_t at = std::size_t(row) * equations.width + l * in_body;
+          for (const std::uint32_t cell : near[row])
+            if (const double number = media[l].record(cell)[Record::number];
+                number > 0)
+              {
+                equations.columns[at] = number - 1;
+                mates[at++]           = cell;
+              }
+        }
+  }
+
+
+
+  // The place of a cell of a body in a row where cells have several sizes.
+  template <int dim>
+  std::size_t
+  PressureSystem<dim>::entry_of(const std::uint32_t row,
+                                const std::size_t   medium,
+                                const std::uint32_t cell) const
+  {
+    const auto begin =
+      mates.begin() + std::size_t(row) * equations.width + medium * in_body;
+    return std::find(begin, begin + in_body, cell) - mates.begin();
+  }
+
+
+
+  // Whether there is material in all cells around it, which are alike.
+  template <int dim>
+  bool
+  PressureSystem<dim>::is_inside(const Medium       &medium,
+                                 const std::uint32_t node) const
+  {
+    if (!medium.is_inside(node))
+      return false;
+    const auto size_of = [&](const unsigned int k) {
+      return parts.grid.geometry[medium.cells_around(node)[k] - 1]
+        .inverse_edge[0];
+    };
+    for (unsigned int k = 1; k < n_nodes && !corners.empty(); ++k)
+      if (size_of(k) != size_of(0))
+        return false;
+    return true;
+  }
+
+
+
+  // As on the lattice, with what corners follow.
+  template <int dim>
+  void
+  PressureSystem<dim>::couple_over_levels(const std::size_t   number,
+                                          const std::uint32_t cell,
+                                          const std::uint32_t row,
+                                          const double        step)
+  {
+    const auto         &media = cells.media;
+    const double *const own   = media[number].record(cell);
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      corners.for_each_master(cells.node_of(cell, a), [&](const auto &master) {
+        double scaled[dim];
+        for (int d = 0; d < dim; ++d)
+          {
+            const std::size_t at = std::size_t(master.node) * dim + d;
+            const double      entry =
+              step * master.share * own[Record::rows + a * dim + d];
+            equations.right_side[row] -= entry * velocity[at];
+            scaled[d] = step * entry * mobility[at];
+          }
+        corners.for_each(master.node, [&](const auto &corner) {
+          for (std::size_t l = 0; l < media.size(); ++l)
+            {
+              const double *const mate = media[l].record(corner.cell);
+              if (!(mate[Record::number] > 0 && mate[Record::mass] > 0))
+                continue;
+              double &value = equations.values[entry_of(row, l, corner.cell)];
+              for (int d = 0; d < dim; ++d)
+                value += scaled[d] * corner.share *
+                         mate[Record::rows + corner.corner * dim + d];
+            }
+        });
+      });
+  }
+
+
+
+  // Of what a corner follows; the room of a node is its part of cells around.
+  template <int dim>
+  double
+  PressureSystem<dim>::excess_over_levels(const std::uint32_t corner,
+                                          const double        density) const
+  {
+    double result = 0;
+    corners.for_each_master(corner, [&](const auto &master) {
+      double room = 0;
+      corners.for_each(master.node, [&](const auto &part) {
+        double volume = 1. / n_nodes;
+        for (int d = 0; d < dim; ++d)
+          volume /= parts.grid.geometry[part.cell].inverse_edge[d];
+        room += part.share * volume;
+      });
+      result += master.share * excess_in(room, master.node, density);
+    });
+    return result;
+  }
+
+
+
+  template void
+  PressureSystem<2>::find_columns_over_levels();
+  template void
+                       PressureSystem<2>::couple_over_levels(std::size_t,
+                                        std::uint32_t,
+                                        std::uint32_t,
+                                        double);
+  template std::size_t PressureSystem<2>::entry_of(std::uint32_t,
+                                                   std::size_t,
+                                                   std::uint32_t) const;
+  template double
+  PressureSystem<2>::excess_over_levels(std::uint32_t, double) const;
+  template bool
+  PressureSystem<2>::is_inside(const Medium &, std::uint32_t) const;
+  template void
+  PressureSystem<3>::find_columns_over_levels();
+  template void
+                       PressureSystem<3>::couple_over_levels(std::size_t,
+                                        std::uint32_t,
+                                        std::uint32_t,
+                                        double);
+  template std::size_t PressureSystem<3>::entry_of(std::uint32_t,
+                                                   std::size_t,
+                                                   std::uint32_t) const;
+  template double
+  PressureSystem<3>::excess_over_levels(std::uint32_t, double) const;
+  template bool
+  PressureSystem<3>::is_inside(const Medium &, std::uint32_t) const;
+} // namespace limber
