@@ -148,7 +148,9 @@ TEST(ImplicitPressure, IsHydrostaticOverLevels)
                       1e4 * (4 - height),
                       layers ? 4e-4 : 600);
           if (layers)
-            ASSERT_NEAR(run.velocity(p).norm(), 0, 2e-8);
+            {
+              ASSERT_NEAR(run.velocity(p).norm(), 0, 2e-8);
+            }
         }
     }
 }
