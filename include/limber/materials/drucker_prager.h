@@ -184,14 +184,21 @@ namespace limber
               const Number square = J * J;
               const Number rate =
                 opening > 0. ? Number{} : broadcast<Number>(cone.dilatancy);
-              // f / (G I + K J^2 eta eta_bar), with s = sqrt(2) sqrt(J2)
+              // in the state that is reached J^2 is its former value over 1 + 2
+              // eta_bar g, so that J p grows by K J^2 eta_bar g / (1 + 2
+              // eta_bar g), and g solves f = G I g + eta times that: there is
+              // a solution however large f is, with s = sqrt(2) sqrt(J2)
+              const Number f         = std::sqrt(0.5) * flow;
+              const Number stiffness = 0.5 * trial.stiffness();
+              const Number linear =
+                stiffness +
+                rate * (bulk_modulus * cone.slope * square - 2. * f);
               const Number plastic =
-                flow * std::sqrt(0.5) /
-                (0.5 * trial.stiffness() +
-                 bulk_modulus * cone.slope * (rate * square));
-              const Number ratio = square_root(1. - 2. * rate * plastic);
-              // J p grows by K J^2 eta_bar plastic
-              volume = -logarithm(ratio);
+                2. * f /
+                (linear +
+                 square_root(linear * linear + 8. * rate * stiffness * f));
+              const Number ratio = 1. / square_root(1. + 2. * rate * plastic);
+              volume             = -logarithm(ratio);
               J *= ratio;
               variable<dim>(state, 2) =
                 (1. + variable<dim>(state, 2)) / ratio - 1.;

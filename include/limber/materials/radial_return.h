@@ -62,18 +62,25 @@ namespace limber
       for (Number &component : strain)
         component *= share;
 
-      // det(strain + I 1) = I^3 - I |strain|^2 / 2 + det(strain) = 1. Elastic
-      // strain is small, so that the first guess is close; the reciprocal of
-      // the slope follows by a step of Newton's method of its own, as divisions
-      // wait for each other.
+      // det(strain + I 1) = I^3 - I |strain|^2 / 2 + det(strain) = 1. Its
+      // largest root, where alone be is positive definite, is a convex function
+      // of the share, so that the chord from no flow to no strain is not below
+      // it; from there Newton's method comes down to it. The reciprocal of the
+      // slope follows by a step of Newton's method of its own, as divisions
+      // wait for each other; it is never too large.
       const Number half       = 0.5 * length * length;
       const Number rest       = determinant_of(strain) - 1.;
-      Number       I          = 1. + (half - rest - 1.) * (1. / 3.);
+      Number       I          = 1. + share * (mean - 1.);
       Number       slope      = 3. * (I * I) - half;
       Number       reciprocal = 1. / slope;
-      for (int sweep = 0; sweep < 3; ++sweep)
+      Number       step       = broadcast<Number>(1e300);
+      // three are enough where elastic strain is small
+      for (int sweep = 0;
+           sweep < 3 || rarely(sweep < 100 && !all(step <= 1e-11 * I));
+           ++sweep)
         {
-          I -= (I * (I * I - half) + rest) * reciprocal;
+          step = (I * (I * I - half) + rest) * reciprocal;
+          I -= step;
           slope = 3. * (I * I) - half;
           reciprocal *= 2. - slope * reciprocal;
         }

@@ -469,7 +469,10 @@ namespace
 
 
 
-TYPED_TEST(EveryFlow, PlasticWorkIsNeverNegative)
+// Steps from a thousandth to more than ten at random: elastic strain is what
+// the strength allows, and as clay is compacted without end, so is its: to
+// stretches of a hundred and more.
+TYPED_TEST(EveryFlow, PlasticStrainAndWorkNeverFall)
 {
   constexpr int dim = TypeParam::dim;
   using Law         = typename TypeParam::Law;
@@ -477,35 +480,60 @@ TYPED_TEST(EveryFlow, PlasticWorkIsNeverNegative)
     {
       Random random;
       double whole = 0;
-      for (const auto &law : samples<Law>())
-        for (int run = 0; run < 100; ++run)
-          {
-            auto   state = law.template initialise<dim>(0);
-            double alpha = 0;
-            for (int k = 0; k < 1000; ++k)
-              {
-                const double work = move<dim>(law,
-                                              state,
-                                              random.template matrix<dim>(
-                                                0.001 * std::pow(1.04, run)));
-                ASSERT_GE(work, 0.);
-                ASSERT_GE(alpha_of(law, state), alpha);
-                alpha = alpha_of(law, state);
-                whole += work;
-                // steps that no volume stands for long
-                state.history[0] =
-                  std::min(std::max(state.history[0], 0.7), 1.4);
-                if constexpr (std::is_same_v<Law, CamClay>)
-                  {
-                    // which would compact it without end
-                    double &borne =
-                      state.history[index_of_variable<dim, Law>(1)];
-                    borne = std::min(borne, law.shear_modulus);
-                  }
-              }
-          }
+      for (const double growth : {1.04, 1.1})
+        for (const auto &law : samples<Law>())
+          for (int run = 0; run < 100; ++run)
+            {
+              auto   state = law.template initialise<dim>(0);
+              double alpha = 0;
+              for (int k = 0; k < 1000; ++k)
+                {
+                  const auto gradient =
+                    random.template matrix<dim>(0.001 * std::pow(growth, run));
+                  const double work = move<dim>(law, state, gradient);
+                  ASSERT_GE(work, 0.);
+                  ASSERT_GE(alpha_of(law, state), alpha);
+                  // the mean of eigenvalues whose product is one
+                  const auto be = isochoric::strain<dim>(state.history);
+                  ASSERT_GE(isochoric::trace(be), 3 - 1e-12);
+                  alpha = alpha_of(law, state);
+                  whole += work;
+                  // steps that no volume stands for long
+                  state.history[0] =
+                    std::min(std::max(state.history[0], 0.7), 1.4);
+                }
+            }
       EXPECT_GT(whole, 0);
     }
+}
+
+
+
+// Flow of any length, from elastic strain of any size: be keeps its determinant
+// and stays positive definite, so that the strain that is left is that of the
+// share of the deviator. Stretches are as large as doubles resolve what the
+// determinant leaves for the smallest eigenvalue.
+TEST(RadialReturns, StayOnTheBranchOfPositiveStrain)
+{
+  using State = PointState<3, double, 6>;
+  for (const double stretch : {0.05, 0.5, 0.9, 1.001, 1.3, 2., 3., 10.})
+    for (const double share : {0., 1e-6, 0.1, 0.5, 0.9, 0.999, 1.})
+      {
+        SCOPED_TRACE(testing::Message() << stretch << ' ' << share);
+        State state; // be = diag(stretch^2, 1 / stretch, 1 / stretch)
+        state.history[1] = stretch * stretch;
+        state.history[2] = 1 / stretch;
+        RadialReturn<3, double> trial(state, 1.);
+        const double            norm = trial.norm();
+        EXPECT_GE(trial.flow((1 - share) * norm / trial.stiffness(), state), 0);
+        const auto   be = isochoric::strain<3>(state.history);
+        const double x  = std::sqrt(be[0][0]); // what is left of the stretch
+        EXPECT_NEAR(x * x - 1 / x,
+                    share * (stretch * stretch - 1 / stretch),
+                    1e-8 * (norm + 1));
+        EXPECT_NEAR(be[1][1], 1 / x, 1e-8 / x);
+        EXPECT_NEAR(be[2][2], 1 / x, 1e-8 / x);
+      }
 }
 
 
