@@ -84,6 +84,11 @@ namespace limber
       throw InputError("The scene has obstacles ('Obstacles'), which the "
                        "finite element reference does not know. Make a scene "
                        "without them, or compare with a finer run.");
+    if (problem.bodies.front().initial_stress)
+      throw InputError("The body '" + problem.bodies.front().name +
+                       "' has an 'Initial stress', which the finite element "
+                       "reference does not know. Leave it empty and let the "
+                       "load settle, or compare with a finer run.");
     if (element->n_memory() > 0 &&
         problem.reference.method == ReferenceMethod::explicit_steps)
       throw InputError("The material of body '" + problem.bodies.front().name +

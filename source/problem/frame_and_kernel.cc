@@ -34,6 +34,10 @@ namespace limber
           "alone, which the material " +
             in_quotes(section.text("Material")) + " does not have",
           ", or an elastic material, for instance 'neo hookean'"};
+      if (!section.is_empty("Initial stress"))
+        return Hindrance{"has a stress that follows from the deformation "
+                         "alone, so that no 'Initial stress' can be",
+                         ", or leave 'Initial stress' empty"};
       const Projection treatment =
         read_word(section, "Locking treatment", locking_words());
       if (!treatment_of(treatment).in_initial_frame)

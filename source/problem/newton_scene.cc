@@ -118,6 +118,13 @@ namespace limber
       body.hourglass_control    = 0;
       body.chequerboard_control = 0;
       if (problem.method.integration == TimeIntegration::quasi_static &&
+          body.initial_stress && problem.loads.factor.empty())
+        refuse(section,
+               "Initial stress",
+               "whose loads grow from nothing, so that they do not balance it "
+               "at first",
+               "'Loads/Load factor = 1'");
+      if (problem.method.integration == TimeIntegration::quasi_static &&
           !body.initial_velocity.empty() && !body.initial_velocity.is_zero())
         refuse(section,
                "Initial velocity",

@@ -45,23 +45,7 @@ namespace limber
                                             " components",
                                           for_each_direction(dim, "0", "; ")),
                          "v at time 0, m/s.");
-      parameters.declare("Initial pressure",
-                         "",
-                         admissible::text("empty, hydrostatic, or formula of " +
-                                            variable_names(dim),
-                                          "hydrostatic"),
-                         "p at time 0, Pa, positive in compression, only for "
-                         "fluids; empty: none; hydrostatic: in balance with "
-                         "gravity, zero at the highest place of the body.");
-      parameters.declare(
-        "Initial state",
-        "",
-        admissible::text("formulas of " + variable_names(dim) +
-                           " for variables of the material",
-                         "equivalent plastic strain: 0.01*x"),
-        "What the points of the material have been through before time 0: "
-        "'name: formula', several with ';' between them; variables that are "
-        "not named are zero. Materials without memory have none.");
+      declare_initial_state(parameters, dim);
     }
 
 
@@ -309,88 +293,6 @@ namespace limber
 
 
 
-    template <int dim>
-    void
-    read_initial_pressure(const Section      &section,
-                          const Constants    &constants,
-                          const Problem<dim> &problem,
-                          Body<dim>          &body)
-    {
-      const std::string entry = "Initial pressure";
-      if (section.is_empty(entry))
-        return;
-
-      // A solid under initial stress needs a reference state that the scene
-      // cannot describe; a fluid has only its volume ratio.
-      if (!read_word(section, "Material", law_words()).takes_pressure)
-        throw InputError("The pressure " + in_quotes(section.text(entry)) +
-                         " in " + section.where(entry) +
-                         " is for fluids only; solids start without stress. "
-                         "Leave it empty and let the load settle, or use "
-                         "'Material = newtonian fluid'.");
-
-      body.hydrostatic = section.text(entry) == "hydrostatic";
-      if (!body.hydrostatic)
-        body.initial_pressure = read_formula(
-          section, entry, 1, constants, body.shape->bounding_box());
-      else if (problem.loads.gravity.norm() == 0)
-        throw InputError("The pressure 'hydrostatic' in " +
-                         section.where(entry) +
-                         " has nothing to balance, as gravity is zero. "
-                         "Usually section 'Loads' was forgotten. Set there "
-                         "'Gravity = " +
-                         for_each_direction(dim - 1, "0") + ", -9.81'.");
-    }
-
-
-
-    /** One part of 'Initial state', "name: formula". */
-    template <int dim>
-    void
-    read_variable(const std::string                &part,
-                  const std::vector<StateVariable> &variables,
-                  const Section                    &section,
-                  const Constants                  &constants,
-                  Body<dim>                        &body)
-    {
-      const std::string where = section.where("Initial state");
-      const std::size_t colon = part.find(':');
-      if (colon == std::string::npos)
-        throw InputError("The part " + in_quotes(part) + " in " + where +
-                         " has no ':' between a name and a formula. Write "
-                         "'equivalent plastic strain: 0.01', for instance.");
-      std::vector<std::string> names;
-      for (const StateVariable &variable : variables)
-        names.push_back(variable.name);
-      const std::string name = trimmed(part.substr(0, colon));
-      if (names.empty())
-        throw InputError("The variable " + in_quotes(name) + " in " + where +
-                         " has no meaning for the material " +
-                         in_quotes(section.text("Material")) +
-                         ", which has no memory. Usually the material was "
-                         "changed. Remove the entry.");
-      check_name("variable of the material", name, names, where);
-      const unsigned int k =
-        std::find(names.begin(), names.end(), name) - names.begin();
-      body.initial_state[k] =
-        Formula<dim>(part.substr(colon + 1), constants, 1, where);
-    }
-
-
-
-    template <int dim>
-    void
-    read_initial_state(const Section   &section,
-                       const Constants &constants,
-                       Body<dim>       &body)
-    {
-      const auto variables = variables_of(body.law, body.material);
-      for (const std::string &part : split(section.text("Initial state"), ';'))
-        read_variable(part, variables, section, constants, body);
-    }
-
-
-
     /**
      * Whether averages leave hourglass modes without resistance: all modes
      * where everything is averaged, or where the rest bears no load at rest;
@@ -609,11 +511,10 @@ namespace limber
                                            constants,
                                            body.shape->bounding_box());
       read_material(section, body, problem);
-      read_initial_pressure(section, constants, problem, body);
       const LawDescription law = read_word(section, "Material", law_words());
       body.is_liquid           = law.takes_pressure;
       body.is_plastic          = law.is_plastic;
-      read_initial_state(section, constants, body);
+      read_initial_state(section, constants, problem, body);
       body.frame = read_word(section, "Frame", frame_words());
       return body;
     }

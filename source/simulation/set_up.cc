@@ -6,6 +6,7 @@
 #include <limber/materials/law_list.h>
 #include <limber/points/seeding.h>
 #include <limber/problem/read_parts.h>
+#include <limber/simulation/initial_state.h>
 #include <limber/simulation/set_up.h>
 
 #include <algorithm>
@@ -14,106 +15,19 @@ namespace limber
 {
   namespace
   {
-    /**
-     * The pressure at rest under a head rho_0 g z of material, Pa: dp/dz =
-     * rho_0 g / J(p), integrated by Runge and Kutta's classical method. For
-     * a real liquid it is rho_0 g z; a soft one is denser at the bottom, and
-     * would start to bounce without this.
-     */
-    template <int dim>
-    double
-    hydrostatic_pressure(const StressUpdate<dim> &law, const double head)
-    {
-      constexpr unsigned int n_steps = 16;
-      const double           step    = head / n_steps;
-      const auto             slope   = [&](const double p) {
-        return 1 / law.volume_ratio_at_rest(p);
-      };
-      double p = 0;
-      for (unsigned int i = 0; i < n_steps; ++i)
-        {
-          const double a = slope(p);
-          const double b = slope(p + 0.5 * step * a);
-          const double c = slope(p + 0.5 * step * b);
-          const double d = slope(p + step * c);
-          p += step / 6 * (a + 2 * b + 2 * c + d);
-        }
-      return p;
-    }
-
-
-
-    /** Initial Cauchy pressure of a body at a place, Pa. */
-    template <int dim>
-    double
-    initial_pressure(const Problem<dim>       &problem,
-                     const Body<dim>          &body,
-                     const StressUpdate<dim>  &law,
-                     const dealii::Point<dim> &place)
-    {
-      if (body.initial_pressure)
-        return body.initial_pressure->value(place, 0);
-      if (!body.hydrostatic)
-        return 0;
-      // the head rho_0 g z below the highest place of the body
-      const auto &gravity = problem.loads.gravity;
-      const auto  box     = body.shape->bounding_box();
-      double      head    = 0;
-      for (int d = 0; d < dim; ++d)
-        {
-          const double top = gravity[d] < 0 ? box.second[d] : box.first[d];
-          head += body.density() * gravity[d] * (place[d] - top);
-        }
-      return hydrostatic_pressure(law, head);
-    }
-
-
-
-    /** What the point has been through, by the formulas of the scene. */
-    template <int dim>
-    void
-    set_initial_variables(const dealii::Point<dim> &place,
-                          const std::size_t         p,
-                          MaterialBody<dim>        &body)
-    {
-      const Body<dim> &scene = body.description;
-      if (scene.initial_state.empty())
-        return;
-      const auto           variables = variables_of(scene.law, scene.material);
-      const PointView<dim> points    = body.points.view();
-      for (const auto &[k, formula] : scene.initial_state)
-        {
-          const StateVariable &variable = variables[k];
-          const double         value    = formula.value(place, 0);
-          if (!(value >= variable.lowest))
-            throw InputError(
-              "The variable " + in_quotes(variable.name) + " of body " +
-              in_quotes(scene.name) + " is " + brief(value) + " at the place " +
-              to_text(place) + " by 'Body " + scene.name +
-              "/Initial state', where it is at least " +
-              brief(variable.lowest) +
-              ". Usually a formula has the wrong sign. Correct it there.");
-          points.history[body.stress->first_variable() + k][p] = value;
-        }
-    }
-
-
-
     template <int dim>
     void
     set_initial_state(const Problem<dim> &problem, MaterialBody<dim> &body)
     {
-      const PointView<dim> points = body.points.view();
+      const PointView<dim>    points = body.points.view();
+      const InitialState<dim> initial(problem, body.description, *body.stress);
       for (std::size_t p = 0; p < points.size; ++p)
         {
           dealii::Point<dim> place;
           for (int d = 0; d < dim; ++d)
             place[d] = points.position[d][p];
-          body.stress->initialise(
-            points,
-            p,
-            initial_pressure(problem, body.description, *body.stress, place));
-          set_initial_variables(place, p, body);
+          if (!body.stress->initialise(points, p, initial.at(place)))
+            initial.refuse(place);
           if (body.description.initial_velocity.empty())
             continue;
           const auto velocity =
@@ -203,14 +117,13 @@ namespace limber
                      const BackgroundGrid<dim> &grid,
                      MaterialBody<dim>         &body)
     {
-      const StressUpdate<dim> &law = *body.stress;
+      const InitialState<dim> initial(problem, body.description, *body.stress);
       seed<dim>(
         body.description,
         grid,
         [&](const dealii::Point<dim> &place) {
           return body.description.density() /
-                 law.volume_ratio_at_rest(
-                   initial_pressure(problem, body.description, law, place));
+                 body.stress->volume_ratio_at(initial.at(place));
         },
         body.points);
       set_initial_state(problem, body);

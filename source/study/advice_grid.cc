@@ -66,6 +66,23 @@ namespace limber
 
 
 
+    /** Likewise, without shear stress. */
+    template <int dim>
+    bool
+    is_even_along(const InitialStress<dim> &stress,
+                  const unsigned int        axis,
+                  const Body<dim>          &body)
+    {
+      for (unsigned int k = 0; k < stress.components.size(); ++k)
+        if (k < 3 ? !is_even_along(stress.components[k], axis, body) :
+                    !stress.components[k].empty())
+          return false;
+      return is_even_along(stress.lateral_ratio, axis, body) &&
+             is_even_along(stress.overburden, axis, body);
+    }
+
+
+
     /** Bodies from side to side, slip on both, nothing that changes along it.
      */
     template <int dim>
@@ -92,6 +109,8 @@ namespace limber
               !is_even_along(body.initial_velocity, axis, body) ||
               (body.initial_pressure &&
                !is_even_along(*body.initial_pressure, axis, body)) ||
+              (body.initial_stress &&
+               !is_even_along(*body.initial_stress, axis, body)) ||
               (problem.loads.body_force &&
                !is_even_along(*problem.loads.body_force, axis, body)))
             return false;

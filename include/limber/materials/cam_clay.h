@@ -78,7 +78,8 @@ namespace limber
                     1e300,
                     true,
                     "pc, Pa: the largest pressure borne before; 'Initial "
-                    "state' may give it by a formula"},
+                    "state' may give it by a formula; 0: what an 'Initial "
+                    "stress' is on the yield surface with"},
        LawParameter{"Attraction",
                     1000,
                     0,
@@ -179,22 +180,39 @@ namespace limber
     State<dim, double>
     initialise(const double pressure) const
     {
-      // a (Je^(-1/kappa) - 1) = p Je in terms of ln Je, from below
-      double log_J =
-        pressure > 0 ? -swelling * std::log1p(pressure / attraction) : 0;
-      for (int sweep = 0; sweep < 30; ++sweep)
-        {
-          const double x = attraction * std::exp(-log_J / swelling),
-                       p = pressure * std::exp(log_J);
-          log_J += (x - attraction - p) / (x / swelling + p);
-        }
       State<dim, double> state;
-      state.history[0] = std::exp(log_J);
+      state.history[0] = volume_at(pressure);
       state.history[1] = state.history[2] = 1;
       set_stress<dim>(state);
       state.pressure          = stress_at(state.history[0]) - attraction;
       variable<dim>(state, 1) = std::max(preconsolidation, state.pressure);
       return state;
+    }
+
+    /**
+     * As FiniteElasticity::start_under(); a preconsolidation pressure of zero
+     * becomes the one that has the stress on the yield surface.
+     */
+    template <int dim>
+    void
+    start_under(State<dim, double>          &state,
+                const double                 pressure,
+                const Deviator<dim, double> &deviator) const
+    {
+      state.history[0] = volume_at(pressure);
+      this->template set_deviator_of_start<dim>(state, deviator);
+      state.pressure = stress_at(state.history[0]) - attraction;
+      if (double &borne = variable<dim>(state, 1); borne == 0)
+        borne = std::max(needed_size<dim>(state) - attraction, 0.);
+    }
+
+    /** Whether the stress is within the yield surface. */
+    template <int dim>
+    bool
+    admits(const State<dim, double> &state) const
+    {
+      return needed_size<dim>(state) <=
+             (1 + 1e-9) * (variable<dim>(state, 1) + attraction);
     }
 
     /** J of the body. */
@@ -267,6 +285,38 @@ namespace limber
     variable(AnyState &state, const int k)
     {
       return state.history[index_of_variable<dim, CamClay>(k)];
+    }
+
+    /** The size c of the yield surface that a state is on, Pa. */
+    template <int dim>
+    double
+    needed_size(const State<dim, double> &state) const
+    {
+      const double x = state.pressure + attraction;
+      return x + 1.5 * squared_norm<dim, double>(state.deviator) /
+                   (slope * slope * x);
+    }
+
+    /**
+     * J under a Cauchy pressure p: a (Je^(-1/kappa) - 1) = p Je in terms of ln
+     * Je, from below; not a number for tension that no volume has.
+     */
+    double
+    volume_at(const double pressure) const
+    {
+      double log_J =
+        pressure > 0 ? -swelling * std::log1p(pressure / attraction) : 0;
+      double left = 0;
+      for (int sweep = 0; sweep < 30; ++sweep)
+        {
+          const double x = attraction * std::exp(-log_J / swelling),
+                       p = pressure * std::exp(log_J);
+          left           = x - attraction - p;
+          log_J += left / (x / swelling + p);
+        }
+      return std::abs(left) <= 1e-9 * (attraction + std::abs(pressure)) ?
+               std::exp(log_J) :
+               std::nan("");
     }
 
     /** J p + a */

@@ -223,6 +223,22 @@ namespace limber
       return result;
     }
 
+    /**
+     * Whether the stress is within the cone and beyond the tension at which the
+     * material parts; what has opened bears none.
+     */
+    template <int dim>
+    bool
+    admits(const State<dim, double> &state) const
+    {
+      const double p = state.pressure, opening = variable<dim>(state, 1);
+      const double tolerance = 1e-9 * (cone.cohesion + std::abs(p));
+      return std::sqrt(squared_norm<dim, double>(state.deviator)) <=
+               radius_at(p, opening) + tolerance &&
+             p >= least_pressure - tolerance &&
+             (opening == 0 || p <= tolerance);
+    }
+
     /** Whether stress depends on how fast it flows. */
     bool
     depends_on_rate() const

@@ -64,15 +64,38 @@ namespace limber
       return false;
     }
 
+    /**
+     * Put a state, whose variables are given, under the Cauchy stress with this
+     * pressure and deviator, both times the volume that the variables stand
+     * for (Pa).
+     */
+    template <int dim>
+    void
+    start_under(State<dim, double>          &state,
+                const double                 pressure,
+                const Deviator<dim, double> &deviator) const
+    {
+      state.history[0] = volume_at(pressure);
+      set_deviator_of_start<dim>(state, deviator);
+      state.pressure = pressure_at(state.history[0]);
+    }
+
+    /** Whether a state is one that the law may be in. */
+    template <int dim>
+    bool
+    admits(const State<dim, double> &state) const
+    {
+      return std::isfinite(state.pressure) &&
+             std::isfinite(squared_norm<dim, double>(state.deviator));
+    }
+
     /** At rest; the law's own variables are zero. */
     template <int dim>
     State<dim, double>
     initialise(const double pressure) const
     {
-      // J p with Cauchy pressure p: K/2 J^2 + p J - K/2 = 0
-      const double       ratio = pressure / bulk_modulus;
       State<dim, double> state;
-      state.history[0] = std::sqrt(ratio * ratio + 1) - ratio;
+      state.history[0] = volume_at(pressure);
       state.history[1] = state.history[2] = 1;
       set_stress<dim>(state);
       return state;
@@ -166,6 +189,28 @@ namespace limber
     const double shear_modulus; // G, Pa
 
   protected:
+    /** Under a Cauchy pressure p: K/2 J^2 + p J - K/2 = 0. */
+    double
+    volume_at(const double pressure) const
+    {
+      const double ratio = pressure / bulk_modulus;
+      return std::sqrt(ratio * ratio + 1) - ratio;
+    }
+
+    /** be and the deviator of the stress, for that of Cauchy at J. */
+    template <int dim>
+    void
+    set_deviator_of_start(State<dim, double>   &state,
+                          Deviator<dim, double> deviator) const
+    {
+      for (double &component : deviator)
+        component *= state.history[0];
+      state.deviator = deviator;
+      for (double &component : deviator)
+        component /= shear_modulus;
+      isochoric::set_deviator<dim>(state.history, deviator);
+    }
+
     /** Strained by a motion without flow; the stress is that of before. */
     template <int dim, class Number>
     __attribute__((always_inline)) static void

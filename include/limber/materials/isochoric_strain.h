@@ -6,6 +6,8 @@
 #include <limber/materials/law.h>
 #include <limber/materials/symmetric_function.h>
 
+#include <cmath>
+
 /**
  * @file The isochoric elastic left Cauchy-Green tensor be, det(be) = 1, in the
  * history of a point, for solids at finite strain. From entry 1 on the history
@@ -128,6 +130,42 @@ namespace limber
       else
         return {
           {be[0][0] - third, be[1][1] - third, be[0][1], be[1][2], be[2][0]}};
+    }
+
+
+
+    template <int dim, class Number>
+    inline Number
+    determinant_of(const Deviator<dim, Number> &e)
+    {
+      const Number zz     = -(e[0] + e[1]);
+      Number       result = zz * (e[0] * e[1] - e[2] * e[2]);
+      if constexpr (dim == 3)
+        result += e[3] * (2. * e[2] * e[4] - e[0] * e[3]) - e[1] * e[4] * e[4];
+      return result;
+    }
+
+
+
+    /**
+     * be from its deviator: its mean is the largest root I of det(deviator + I
+     * 1) = 1, to which Newton's method comes down from what is not below it.
+     */
+    template <int dim, class History>
+    inline void
+    set_deviator(History &h, const Deviator<dim, double> &e)
+    {
+      const double half = 0.5 * squared_norm<dim, double>(e);
+      const double rest = determinant_of<dim>(e) - 1;
+      double       I = 1 + std::sqrt(2 * half), step = I;
+      for (int sweep = 0; sweep < 100 && step > 1e-15 * I; ++sweep)
+        {
+          step = (I * (I * I - half) + rest) / (3 * I * I - half);
+          I -= step;
+        }
+      set_entries<dim>(h, [&](const int i, const int j) {
+        return i == j ? e[i] + I : e[i + j == 1 ? 2 : i + j == 3 ? 3 : 4];
+      });
     }
 
 

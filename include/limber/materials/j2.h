@@ -129,6 +129,17 @@ namespace limber
       return result;
     }
 
+    /** Whether the stress is within the yield surface. */
+    template <int dim>
+    bool
+    admits(const State<dim, double> &state) const
+    {
+      const double alpha = state.history[index_of_variable<dim, J2>(0)];
+      return std::isfinite(state.pressure) &&
+             std::sqrt(squared_norm<dim, double>(state.deviator)) <=
+               (1 + 1e-9) * root * yield_strength(alpha);
+    }
+
     /** Whether stress depends on how fast it flows. */
     bool
     depends_on_rate() const

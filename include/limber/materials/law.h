@@ -223,6 +223,8 @@ namespace limber
    *    (logarithmic and in the current configuration where it is finite);
    *  - update(): new stress and history after a motion;
    *  - initialise(): the state at rest under a given pressure;
+   *  - start_under(), admits(), where it does not take pressure: the state
+   * under a given Cauchy stress, and whether the law may be in it;
    *  - volume_ratio(), strain_energy(), volumetric_energy(),
    *    wave_speed_squared() of a state; dynamic_viscosity();
    *  - is_elastic, whether the stress follows from the deformation alone;

@@ -5,6 +5,8 @@
 #include <limber/base/law_parameter.h>
 #include <limber/materials/law.h>
 
+#include <cmath>
+
 namespace limber
 {
   /**
@@ -130,6 +132,25 @@ namespace limber
       State<dim, double> state;
       state.pressure = pressure;
       return state;
+    }
+
+    /** The strain is small: stress is stress, whatever the volume. */
+    template <int dim>
+    void
+    start_under(State<dim, double>          &state,
+                const double                 pressure,
+                const Deviator<dim, double> &deviator) const
+    {
+      state.pressure = pressure;
+      state.deviator = deviator;
+    }
+
+    template <int dim>
+    bool
+    admits(const State<dim, double> &state) const
+    {
+      return std::isfinite(state.pressure) &&
+             std::isfinite(squared_norm<dim, double>(state.deviator));
     }
 
     template <int dim, class Number>

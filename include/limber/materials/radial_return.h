@@ -57,7 +57,8 @@ namespace limber
       const Number inverse = 1. / larger(length, broadcast<Number>(1e-100));
       const Number before  = product(state.deviator, strain) * inverse;
       const Number share   = larger(1. - 2. * mean * flow * inverse, Number{});
-      const Number skew    = determinant_of(strain) * (inverse * inverse);
+      const Number skew =
+        isochoric::determinant_of<dim>(strain) * (inverse * inverse);
       length *= share;
       for (Number &component : strain)
         component *= share;
@@ -69,7 +70,7 @@ namespace limber
       // slope follows by a step of Newton's method of its own, as divisions
       // wait for each other; it is never too large.
       const Number half       = 0.5 * length * length;
-      const Number rest       = determinant_of(strain) - 1.;
+      const Number rest       = isochoric::determinant_of<dim>(strain) - 1.;
       Number       I          = 1. + share * (mean - 1.);
       Number       slope      = 3. * (I * I) - half;
       Number       reciprocal = 1. / slope;
@@ -121,16 +122,6 @@ namespace limber
       Number result = a[0] * b[0] + a[1] * b[1] + (a[0] + a[1]) * (b[0] + b[1]);
       for (unsigned int k = 2; k < a.size(); ++k)
         result += 2. * (a[k] * b[k]);
-      return result;
-    }
-
-    static Number
-    determinant_of(const Deviator &e)
-    {
-      const Number zz     = -(e[0] + e[1]);
-      Number       result = zz * (e[0] * e[1] - e[2] * e[2]);
-      if constexpr (dim == 3)
-        result += e[3] * (2. * e[2] * e[4] - e[0] * e[3]) - e[1] * e[4] * e[4];
       return result;
     }
 

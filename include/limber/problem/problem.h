@@ -115,6 +115,20 @@ namespace limber
     }
   };
 
+  /**
+   * Under which a solid starts: the weight of what is above and a share of it
+   * across, or every component by its formula. Cauchy stress, Pa; components
+   * in tension, the overburden in compression.
+   */
+  template <int dim>
+  struct InitialStress
+  {
+    Formula<dim> lateral_ratio; // K0; empty: components
+    Formula<dim> overburden;    // on the highest place; empty: none
+    // xx, yy, zz, xy, yz, zx; empty: zero
+    std::array<Formula<dim>, 6> components;
+  };
+
   template <int dim>
   struct Body
   {
@@ -124,10 +138,11 @@ namespace limber
     Placement                         placement = Placement::regular;
     // Of a box or block: parts of its edges in each natural direction, for the
     // placement 'fitted' and for the pieces of loaded faces
-    std::array<unsigned int, dim> lattice{};
-    Formula<dim>                  initial_velocity; // dim components, m/s
-    bool                          hydrostatic = false;
-    std::optional<Formula<dim>>   initial_pressure; // 1 component, Pa
+    std::array<unsigned int, dim>     lattice{};
+    Formula<dim>                      initial_velocity; // dim components, m/s
+    bool                              hydrostatic = false;
+    std::optional<Formula<dim>>       initial_pressure; // 1 component, Pa
+    std::optional<InitialStress<dim>> initial_stress;   // of solids
 
     std::string         law;      // by name, as in the list of laws
     std::vector<double> material; // its entries, in its order

@@ -189,6 +189,19 @@ namespace limber
   void
   read_bodies(const Section &root, Problem<dim> &problem);
 
+  // Stress and history at time 0 (source/problem/read_initial_state.cc)
+
+  void
+  declare_initial_state(Parameters &parameters, const unsigned int dim);
+
+  /** Needs shape, material and gravity. */
+  template <int dim>
+  void
+  read_initial_state(const Section      &section,
+                     const Constants    &constants,
+                     const Problem<dim> &problem,
+                     Body<dim>          &body);
+
   // Contact of bodies (source/problem/read_contact.cc)
 
   void

@@ -93,21 +93,27 @@ namespace limber
     }
 
     double
-    volume_ratio_at_rest(const double pressure) const override
+    volume_ratio_at(const PointStart<dim> &start) const override
     {
-      return law.template volume_ratio<dim>(
-        law.template initialise<dim>(pressure));
+      if constexpr (Law::is_elastic)
+        if constexpr (!Law::finite_strain)
+          return 1;
+      return law.template volume_ratio<dim>(state_at(start));
     }
 
-    void
-    initialise(const PointView<dim> &points,
-               const std::size_t     p,
-               const double          pressure) const override
+    bool
+    initialise(const PointView<dim>  &points,
+               const std::size_t      p,
+               const PointStart<dim> &start) const override
     {
-      const auto state = law.template initialise<dim>(pressure);
+      const auto state = state_at(start);
       store_state(points, state, [&](const double value, double *const a) {
         a[p] = value;
       });
+      if constexpr (Law::takes_pressure)
+        return true;
+      else
+        return law.template admits<dim>(state);
     }
 
     void
@@ -170,6 +176,34 @@ namespace limber
       for (unsigned int k = 0; k < state.history.size(); ++k)
         state.history[k] = load(points.history[k]);
       return state;
+    }
+
+    State<double>
+    state_at(const PointStart<dim> &start) const
+    {
+      if constexpr (Law::takes_pressure)
+        return law.template initialise<dim>(start.pressure);
+      else
+        {
+          State<double> state = law.template initialise<dim>(0);
+          for (unsigned int k = 0; k < Law::variables.size(); ++k)
+            if (start.variables[k])
+              state.history[first_variable() + k] = *start.variables[k];
+          if (!start.is_under_stress())
+            return state;
+          // Kirchhoff's stress counts the volume of the variables as well
+          double volume = 1;
+          if constexpr (Law::volumetric >= 0)
+            volume = law.template volume_ratio<dim>(state) /
+                     state.history[Law::volumetric];
+          auto deviator = start.deviator;
+          for (double &component : deviator)
+            component *= volume;
+          law.template start_under<dim>(state,
+                                        volume * start.pressure,
+                                        deviator);
+          return state;
+        }
     }
 
     static State<double>

@@ -4,6 +4,7 @@
 
 #include <limber/materials/frame.h>
 #include <limber/materials/kernel.h>
+#include <limber/materials/point_start.h>
 #include <limber/materials/projection.h>
 #include <limber/points/point_view.h>
 
@@ -172,15 +173,18 @@ namespace limber
     virtual VolumetricResponse
     volumetric_response(double variable) const = 0;
 
-    /** J at rest under a Cauchy pressure (Pa). */
+    /**
+     * Volume of a point that starts so over its volume without stress, as its
+     * mass counts it: one where strain is small.
+     */
     virtual double
-    volume_ratio_at_rest(double pressure) const = 0;
+    volume_ratio_at(const PointStart<dim> &start) const = 0;
 
-    /** Set point p to rest under a Cauchy pressure (Pa). */
-    virtual void
-    initialise(const PointView<dim> &points,
-               std::size_t           p,
-               double                pressure) const = 0;
+    /** Let point p start so; false where the law does not admit it. */
+    virtual bool
+    initialise(const PointView<dim>  &points,
+               std::size_t            p,
+               const PointStart<dim> &start) const = 0;
 
     /** J at all points, written to an array of their number. */
     virtual void

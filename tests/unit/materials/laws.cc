@@ -749,3 +749,104 @@ TYPED_TEST(EveryLaw, TangentsAreDerivatives)
                       1e-6 * this->stiffness(law));
         }
 }
+
+
+
+namespace
+{
+  /** Laws that may start under any stress that is within their strength. */
+  template <class Law>
+  constexpr bool starts_under_stress = !Law::takes_pressure;
+
+  /** A Cauchy stress that all sample laws admit, in parts of a modulus. */
+  template <int dim>
+  Deviator<dim, double>
+  mild_deviator(const double size)
+  {
+    if constexpr (dim == 2)
+      return {{0.5 * size, -0.7 * size, 0.3 * size}};
+    else
+      return {{0.5 * size, -0.7 * size, 0.3 * size, -0.2 * size, 0.4 * size}};
+  }
+} // namespace
+
+
+
+// Kirchhoff's stress of a start over its J is the stress that is given, and at
+// rest it stays; small strain knows no J.
+TYPED_TEST(EveryLaw, StartsUnderAGivenStress)
+{
+  constexpr int dim = TestFixture::dim;
+  using Law         = typename TestFixture::Law;
+  if constexpr (starts_under_stress<Law>)
+    for (const auto &law : samples<Law>())
+      for (const double pressure : {1e4, 3e4})
+        {
+          const auto deviator = mild_deviator<dim>(0.1 * pressure);
+          auto       state    = law.template initialise<dim>(0);
+          law.template start_under<dim>(state, pressure, deviator);
+          EXPECT_TRUE(law.template admits<dim>(state));
+          const double J =
+            TestFixture::linear ? 1 : law.template volume_ratio<dim>(state);
+          EXPECT_NEAR(state.pressure / J, pressure, 1e-9 * pressure);
+          for (unsigned int k = 0; k < deviator.size(); ++k)
+            EXPECT_NEAR(state.deviator[k] / J, deviator[k], 1e-12 * pressure);
+          const auto   before = state;
+          const double work =
+            law.template update<dim>(motion_of<dim>({}), state).plastic;
+          EXPECT_EQ(work, 0);
+          EXPECT_NEAR(state.pressure, before.pressure, 1e-12 * pressure);
+          for (unsigned int k = 0; k < deviator.size(); ++k)
+            EXPECT_NEAR(state.deviator[k],
+                        before.deviator[k],
+                        1e-10 * pressure);
+
+          // beyond any strength that is not that of elasticity
+          auto beyond = law.template initialise<dim>(0);
+          if constexpr (Law::is_plastic)
+            beyond.history[index_of_variable<dim, Law>(0)] = 0;
+          law.template start_under<dim>(beyond,
+                                        pressure,
+                                        mild_deviator<dim>(1e7));
+          EXPECT_EQ(law.template admits<dim>(beyond), Law::is_elastic);
+        }
+}
+
+
+
+// A soil that is not said to have borne more starts on its yield surface, and
+// what has opened bears nothing.
+TYPED_TEST(EveryLaw, StartsKnowWhatIsAdmitted)
+{
+  constexpr int dim = TestFixture::dim;
+  using Law         = typename TestFixture::Law;
+  if constexpr (std::is_same_v<Law, CamClay>)
+    {
+      auto parameters = sample_parameters<Law>().front();
+      parameters[5]   = 0;
+      const Law law(parameters);
+      auto      state = law.template initialise<dim>(0);
+      law.template start_under<dim>(state, 1e5, mild_deviator<dim>(3e4));
+      double      &borne = state.history[index_of_variable<dim, Law>(1)];
+      const double a = law.attraction, x = state.pressure + a,
+                   q =
+                     std::sqrt(1.5 * squared_norm<dim, double>(state.deviator));
+      EXPECT_NEAR(borne + a, x + q * q / (law.slope * law.slope * x), 1e-9 * x);
+      EXPECT_TRUE(law.template admits<dim>(state));
+      borne *= 0.99;
+      EXPECT_FALSE(law.template admits<dim>(state));
+      law.template start_under<dim>(state, -20 * a, {});
+      EXPECT_FALSE(law.template admits<dim>(state));
+    }
+  else if constexpr (may_part<Law>)
+    {
+      const Law law(sample_parameters<Law>().front()); // no tension
+      auto      state = law.template initialise<dim>(0);
+      law.template start_under<dim>(state, -1e3, {});
+      EXPECT_FALSE(law.template admits<dim>(state));
+      law.template start_under<dim>(state, 1e3, {});
+      EXPECT_TRUE(law.template admits<dim>(state));
+      state.history[index_of_variable<dim, Law>(1)] = 0.1;
+      EXPECT_FALSE(law.template admits<dim>(state));
+    }
+}

@@ -63,7 +63,7 @@ namespace
               points.deformation[d * (dim + 1)][p] = 1;
             }
           points.mass[p] = random(0.5, 2);
-          sweep.initialise(points, p, 0);
+          sweep.initialise(points, p, {});
         }
     }
 

@@ -477,14 +477,19 @@ TYPED_TEST(Sweep, SummariesAreSumsOverPoints)
       EXPECT_EQ(summary.largest_volume, largest);
       EXPECT_DOUBLE_EQ(sweep.wave_speed_squared(points), squared);
 
-      const double pressure = 0.01 * law.bulk_modulus;
-      sweep.initialise(points, 3, pressure);
+      const double    pressure = 0.01 * law.bulk_modulus;
+      PointStart<dim> start;
+      start.pressure = pressure;
+      sweep.initialise(points, 3, start);
       const auto wanted = law.template initialise<dim>(pressure);
       const auto state  = this->get(points, 3);
       EXPECT_EQ(state.pressure, wanted.pressure);
       EXPECT_EQ(state.history, wanted.history);
-      EXPECT_EQ(sweep.volume_ratio_at_rest(pressure),
-                law.template volume_ratio<dim>(wanted));
+      // the mass of what is strained little does not follow its volume
+      EXPECT_EQ(sweep.volume_ratio_at(start),
+                std::is_same_v<Law, LinearElastic> ?
+                  1 :
+                  law.template volume_ratio<dim>(wanted));
       EXPECT_EQ(sweep.n_history(), unsigned(TestFixture::n_history));
       EXPECT_EQ(sweep.density(), law.density);
     }

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_simulation_initial_state_h
+#define limber_simulation_initial_state_h
+
+#include <limber/problem/problem.h>
+#include <limber/stress/stress_update.h>
+
+namespace limber
+{
+  /**
+   * The stress of a body at time 0, and what its points have been through, by
+   * the formulas of the scene or in balance with gravity.
+   */
+  template <int dim>
+  class InitialState
+  {
+  public:
+    InitialState(const Problem<dim>      &problem,
+                 const Body<dim>         &body,
+                 const StressUpdate<dim> &law);
+
+    /** Throws InputError where a formula gives what cannot be. */
+    PointStart<dim>
+    at(const dealii::Point<dim> &place) const;
+
+    /** That the law does not admit what at() gives there. */
+    [[noreturn]] void
+    refuse(const dealii::Point<dim> &place) const;
+
+  private:
+    void
+    set_variables(const dealii::Point<dim> &place,
+                  PointStart<dim>          &start) const;
+
+    void
+    set_components(const dealii::Point<dim> &place,
+                   PointStart<dim>          &start) const;
+
+    void
+    set_geostatic(const dealii::Point<dim> &place,
+                  PointStart<dim>          &start) const;
+
+    /** The head rho_0 g z below the highest place of the body, Pa. */
+    double
+    head(const dealii::Point<dim> &place) const;
+
+    const Problem<dim>      &problem;
+    const Body<dim>         &body;
+    const StressUpdate<dim> &law;
+  };
+} // namespace limber
+
+#endif
