@@ -17,7 +17,8 @@ import sys
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-STABILITY = {"cut_cell", "free_cell", "courant_number"}
+STABILITY = {"cut_cell", "free_cell", "courant_number", "stability_contact",
+             "stability_friction", "stability_hardening"}
 INF_SUP = {
     "inf_sup": ["--cells", "4,8,12,16,20"],
     "inf_sup_random": ["--cells", "4,8,12,16,20", "--fill", "0.5",
