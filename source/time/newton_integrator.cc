@@ -146,6 +146,10 @@ namespace limber
            brief(double(iterations) / double(std::max(1ul, steps))) +
            " iterations a step, at most " + std::to_string(most_iterations) +
            "; steps halved: " + std::to_string(halvings) +
+           (lost_between_steps != 0 ?
+              "; lost to forces out of balance between steps: " +
+                brief(lost_between_steps) + " J" :
+              "") +
            (equations.linear_iterations() > 0 ?
               std::string(equations.is_mixed() ?
                             "; minimal residuals of displacements and "
@@ -634,7 +638,11 @@ namespace limber
 
 
   // Loads and sides work along the way of the step with the mean of their
-  // forces; what is spent on jumps of the strain is lost.
+  // forces; what is spent on jumps of the strain is lost. So is, in
+  // equilibrium, the work of forces that were out of balance when the step
+  // began: points that have crossed cells give theirs to other nodes, the ghost
+  // penalty begins anew, and what is loaded springs to its new place as if
+  // damped.
   template <int dim>
   void
   NewtonIntegrator<dim>::account(const Question &question,
@@ -651,7 +659,8 @@ namespace limber
     Ledger<dim> &ledger = parts.ledger;
     ledger.load_work += product(given, displacement);
     ledger.viscous += equations.ghost_energy();
-    const double factor = load_factor(time + step);
+    const double factor        = load_factor(time + step);
+    double       between_steps = 0;
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const int    d = k % dim;
@@ -662,7 +671,11 @@ namespace limber
         ledger.gravity_impulse[d] += step * weight;
         ledger.load_impulse[d] += step * load;
         if (!equations.is_held(k))
-          continue;
+          {
+            if (!in_motion)
+              between_steps += 0.5 * net[k] * displacement[k];
+            continue;
+          }
         // What the side gives, at the end and as the mean of the step
         double force = 0, mean = 0;
         if (in_motion)
@@ -676,6 +689,8 @@ namespace limber
         ledger.side_impulse[equations.side(k)][d] += step * force;
         ledger.boundary_work += mean * displacement[k];
       }
+    ledger.viscous += between_steps;
+    lost_between_steps += between_steps;
   }
 
 

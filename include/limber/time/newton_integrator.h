@@ -167,6 +167,7 @@ namespace limber
     StepExtremes extremes;
 
     double                      rest = 0; // unbalanced share of the forces
+    double                      lost_between_steps = 0; // J
     std::string                 obstacle; // why the last step failed
     unsigned long               steps = 0, iterations = 0, halvings = 0;
     unsigned long               corrections     = 0; // of all tries

@@ -260,6 +260,78 @@ TEST(NewtonSteps, WorkOfLoadsIsStored)
 
 
 
+namespace
+{
+  // A column that is pressed together from above by two fifths of E
+  const std::vector<std::string> pressed = {
+    "Loads/Gravity=0, 0",
+    "Loads/Face loads=weight",
+    "Loads/Face load weight/Body=column",
+    "Loads/Face load weight/Face=top",
+    "Loads/Face load weight/Traction=0; -6400",
+    "Body column/Locking treatment=cell",
+    "Method/Newton tolerance=1e-10"};
+
+  struct EnergyOfColumn
+  {
+    EnergyOfColumn(std::vector<std::string> changes, const double step)
+    {
+      changes.insert(changes.begin(), pressed.begin(), pressed.end());
+      changes.push_back("Method/Time step=" + digits(step));
+      SceneRun<2> run(column, changes);
+      run.totals(); // what it starts with
+      run.advance(step, std::lround(1 / step));
+      const auto totals = run.totals();
+      drift             = totals.energy_drift;
+      lost              = run.ledger.viscous / run.ledger.load_work;
+      std::printf("step %g s: drift %.2e, on record as lost %.2e\n",
+                  step,
+                  drift,
+                  lost);
+    }
+    double drift, lost;
+  };
+} // namespace
+
+
+
+// Loads work with the mean of the ends of a step: an error of second order,
+// where no point crosses a cell.
+TEST(NewtonSteps, WorkOfLoadsIsOfSecondOrder)
+{
+  const std::string    frame = "Body column/Frame=initial";
+  const EnergyOfColumn coarse({frame}, 0.1), fine({frame}, 0.05);
+  EXPECT_NEAR(coarse.drift / fine.drift, 4, 0.4);
+  EXPECT_LT(std::abs(fine.lost), 1e-8);
+}
+
+
+
+// Points that cross cells give their forces to other nodes, and what is loaded
+// springs to its new place, which costs energy whatever the step: a quarter of
+// the work here, an eighth where the column yields. That is on record, but for
+// a tenth of it; the tenth was chosen when .012 and .049 had been seen.
+TEST(NewtonSteps, WhatCrossingsCostIsOnRecord)
+{
+  const std::vector<std::string> elastic = {"Body column/Frame=current"};
+  std::vector<std::string>       plastic = elastic;
+  plastic.insert(plastic.end(),
+                 {"Body column/Material=j2",
+                  "Body column/J2/Density=100",
+                  "Body column/J2/Young's modulus=1.6e4",
+                  "Body column/J2/Poisson's ratio=0",
+                  "Body column/J2/Yield stress=1e3",
+                  "Body column/J2/Hardening modulus=1.6e3"});
+  for (const auto &changes : {elastic, plastic})
+    {
+      const EnergyOfColumn energy(changes, 0.025);
+      EXPECT_GT(energy.lost, 0.05);
+      EXPECT_LT(std::abs(energy.drift), 0.1 * energy.lost);
+    }
+}
+
+
+
 TEST(NewtonSteps, FewIterationsWhereABeamTurns)
 {
   SceneRun<2> run(held_strip,
