@@ -2,17 +2,25 @@
 #ifndef limber_time_newton_equations_h
 #define limber_time_newton_equations_h
 
-#include <limber/fem/mixed_solver.h>
+#include <limber/fem/linear_solver.h>
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
-#include <limber/time/numbered_nodes.h>
+#include <limber/time/ghost_penalty.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace limber
 {
+  template <int dim>
+  class AveragedVolumes;
+  template <int dim>
+  class NewtonTangent;
+
+
+
   /**
    * The equations of a step whose unknowns are the displacements of nodes in
    * it: nodes of occupied cells alone, dim equations each, in the order of
@@ -22,14 +30,8 @@ namespace limber
    * Each rank finds what its points resist with; then every rank knows the
    * equations of all and solves them, alike to the last bit.
    *
-   * Besides what the points resist with (TrialStress) there is a stiffness
-   * against jumps of the normal derivative across faces of cells next to the
-   * surface (ghost penalty; Sticko, Ludvigsson and Kreiss 2020, Coombs 2023),
-   *
-   *   energy  g E h/6  int [du/dn] . [du/dn] dA,
-   *
-   * without which nodes of cells that are hardly filled would resist some
-   * motions with nothing.
+   * Besides what the points resist with (TrialStress) there is the
+   * GhostPenalty in equilibrium.
    */
   template <int dim>
   class NewtonEquations
@@ -161,43 +163,21 @@ namespace limber
     accept(const std::vector<double> &displacement);
 
   private:
-    struct Matrix;
-
     // faster than iterations up to here
     static constexpr std::size_t default_direct = dim == 2 ? 60000 : 12000;
     // less work than conjugate gradients from here on: nu = .475
     static constexpr double default_mixed = 20;
-
-    // A face between two cells with points, near the surface
-    struct GhostFace
-    {
-      // equations of nodes / dim: along the normal, for each place across it
-      std::array<std::array<std::uint32_t, 3>, 1 << (dim - 1)> lines;
-      double                                                   stiffness; // N/m
-    };
 
     double
     modulus() const;
     void
     find_held();
     void
-    find_ghost_faces();
-    void
-    make_matrix();
-    void
-    add_ghost_forces(const std::vector<double> &displacement);
-    void
-    add_ghost_tangent();
-    void
     add_volume(std::size_t                                body,
                const std::array<std::uint32_t, 1 << dim> &numbers,
                CellResponse<dim>                         &response);
     void
     condense_volumes();
-    void
-    sum_tangent();
-    void
-    fill_held_rows();
     std::vector<double>
     rigid_motions() const;
     bool
@@ -207,18 +187,6 @@ namespace limber
     }
     unsigned int
     solve_condensed(NodalVector &solution, const NodalVector &right_side);
-    void
-    make_mixed_solver(const std::vector<double> &motions);
-    void
-    fill_pressure_matrix();
-    unsigned int
-    solve_mixed(NodalVector               &solution,
-                const NodalVector         &right_side,
-                const std::vector<double> &of_held);
-    void
-    add_to_matrix(const std::uint32_t *nodes_of_block,
-                  unsigned int         n_nodes,
-                  const double        *block);
     void
     spread(const std::vector<double> &displacement,
            std::vector<double>       &on_grid) const;
@@ -230,13 +198,17 @@ namespace limber
     SideConstraints<dim>                                 constraints;
     NumberedNodes<dim>                                   nodes;
     std::vector<unsigned char> held, side_of; // by equation
-    std::vector<GhostFace>     ghost_faces;
+    GhostPenalty<dim>          ghost;
     std::vector<double>        by_node, former_by_node; // displacements, m
     std::vector<double>        total_forces;
     double                     total_energy = 0, energy_of_jumps = 0, noise = 0;
-    std::unique_ptr<Matrix>    matrix;
-    unsigned long              n_linear_iterations = 0;
-    bool                       factorises_all      = false;
+    // what is in the matrix, and what is kept apart in mixed form
+    const std::unique_ptr<NewtonTangent<dim>>   tangent;
+    const std::unique_ptr<AveragedVolumes<dim>> volumes;
+    std::optional<LinearSolver>                 solver;
+    bool                                        is_factorised       = false;
+    unsigned long                               n_linear_iterations = 0;
+    bool                                        factorises_all      = false;
   };
 } // namespace limber
 

@@ -2,11 +2,9 @@
 #ifndef limber_time_newton_integrator_h
 #define limber_time_newton_integrator_h
 
-#include <limber/base/timing.h>
-#include <limber/time/newton_equations.h>
+#include <limber/time/loads.h>
+#include <limber/time/newton_method.h>
 #include <limber/time/relocation.h>
-
-#include <array>
 
 namespace limber
 {
@@ -81,26 +79,6 @@ namespace limber
     using Layout = NodeLayout<dim>;
     using Values = std::vector<double>; // by equation
 
-    enum Verb
-    {
-      number_nodes,
-      evaluate_forces,
-      assemble_tangent,
-      solve_equations,
-      move_points,
-      n_verbs
-    };
-
-    /** What Newton's method asks for in a step. */
-    struct Question
-    {
-      Values held;     // displacements of held components, m; else zero
-      Values external; // forces that do not depend on displacements, N
-      Values inertia;  // nodal masses times 4 / dt^2, kg/s^2
-      // displacement without acceleration, m
-      Values inertial_displacement;
-    };
-
     void
     measure_waves();
     void
@@ -111,23 +89,6 @@ namespace limber
     try_step(double time, double step);
     bool
     stays_with_ranks(const Values &displacement);
-    void
-    guess(const Question &question, Values &displacement);
-    bool
-    solve(const Question &question, bool search, Values &displacement);
-    double
-    unbalance(const Question &question,
-              const Values   &displacement,
-              Values         &left);
-    double
-    potential(const Question &question, const Values &displacement) const;
-    bool
-    improves(const Question &question,
-             const Values   &correction,
-             double          former_potential,
-             double          former_rest,
-             Values         &displacement,
-             Values         &left);
     Values
     loads_at(double time, Values *given);
     double
@@ -137,27 +98,23 @@ namespace limber
     void
     take_motion(const Values &displacement, const Values &new_velocity);
     void
-    account(const Question &question,
-            const Values   &displacement,
-            const Values   &new_velocity,
-            const Values   &given,
-            const Values   &net,
-            double          time,
-            double          step);
+    account(const StepQuestion &question,
+            const Values       &displacement,
+            const Values       &new_velocity,
+            const Values       &given,
+            const Values       &net,
+            double              time,
+            double              step);
     [[noreturn]] void
     fail(double time, double step) const;
-
-    void
-    lap(const Verb verb)
-    {
-      stopwatch.lap(seconds[verb]);
-    }
 
     const RunParts<dim>  parts;
     const bool           in_motion; // has inertia
     ExternalLoads<dim>   loads;
     Relocation<dim>      relocation;
     NewtonEquations<dim> equations;
+    NewtonClock          clock;
+    NewtonMethod<dim>    newton;
 
     Values masses, velocities; // of the nodes of the step, kg, m/s
 
@@ -166,14 +123,10 @@ namespace limber
     double       last_step = 0, wave_speed = 0;
     StepExtremes extremes;
 
-    double                      rest = 0; // unbalanced share of the forces
-    double                      lost_between_steps = 0; // J
-    std::string                 obstacle; // why the last step failed
-    unsigned long               steps = 0, iterations = 0, halvings = 0;
-    unsigned long               corrections     = 0; // of all tries
-    unsigned long               most_iterations = 0, last_iterations = 0;
-    Stopwatch                   stopwatch;
-    std::array<double, n_verbs> seconds{};
+    double        lost_between_steps = 0; // J
+    std::string   obstacle;               // why the last step failed
+    unsigned long steps = 0, iterations = 0, halvings = 0;
+    unsigned long most_iterations = 0;
   };
 } // namespace limber
 

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_averaged_volumes_h
+#define limber_time_averaged_volumes_h
+
+#include <limber/fem/mixed_solver.h>
+#include <limber/time/numbered_nodes.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * What the averaged volumes of cells resist with, kept apart from the matrix
+   * of NewtonEquations: each gets a pressure that is an unknown besides the
+   * displacements (doc/theory/implicit_steps.md, "What hardly changes its
+   * volume").
+   */
+  template <int dim>
+  class AveragedVolumes
+  {
+  public:
+    /** Of a body's points in a cell. */
+    struct Volume
+    {
+      std::size_t                         body = 0;
+      std::array<std::uint32_t, 1 << dim> numbers;
+      std::array<double, dim << dim>      row;       // 1/m
+      double                              stiffness; // not in the matrix, J
+      double                              kept;      // in the matrix, J
+      double                              shear;     // G times the volume, J
+    };
+
+    /** @p held: by equation. Both are those of the caller. */
+    AveragedVolumes(const NumberedNodes<dim>         &nodes,
+                    const std::vector<unsigned char> &held)
+      : nodes(nodes)
+      , held(held)
+    {}
+
+    void
+    clear();
+
+    void
+    add(const Volume &volume)
+    {
+      volumes.push_back(volume);
+    }
+
+    const std::vector<Volume> &
+    all() const
+    {
+      return volumes;
+    }
+
+    /** Each rank has added its own; collective. */
+    void
+    unite_ranks(MPI_Comm communicator);
+
+    /**
+     * The displacements; see MixedSolver. @p stiffness has to live until the
+     * next clear(), @p motions are rigid ones (make_multigrid()).
+     */
+    unsigned int
+    solve(const dealii::TrilinosWrappers::SparseMatrix &stiffness,
+          const std::vector<double>                    &motions,
+          const std::vector<double>                    &of_held,
+          const NodalVector                            &right_side,
+          NodalVector                                  &solution);
+
+  private:
+    void
+    make_solver(const dealii::TrilinosWrappers::SparseMatrix &stiffness,
+                const std::vector<double>                    &motions);
+    void
+    fill_pressure_matrix();
+
+    const NumberedNodes<dim>         &nodes;
+    const std::vector<unsigned char> &held;
+    std::vector<Volume>               volumes;
+    dealii::SparsityPattern           rows_pattern, pressure_pattern;
+    dealii::SparseMatrix<double>      rows, of_pressure;
+    std::vector<double>               compliance, kept;
+    std::optional<MixedSolver>        solver;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_newton_method_h
+#define limber_time_newton_method_h
+
+#include <limber/base/timing.h>
+#include <limber/time/newton_equations.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace limber
+{
+  /** What a step that is solved for spends its time on. */
+  enum class NewtonVerb
+  {
+    number_nodes,
+    evaluate_forces,
+    assemble_tangent,
+    solve_equations,
+    move_points
+  };
+
+
+
+  struct NewtonClock
+  {
+    void
+    lap(const NewtonVerb verb)
+    {
+      stopwatch.lap(seconds[static_cast<unsigned int>(verb)]);
+    }
+
+    Stopwatch             stopwatch;
+    std::array<double, 5> seconds{}; // by verb
+  };
+
+
+
+  /** What Newton's method asks for in a step; all by equation. */
+  struct StepQuestion
+  {
+    std::vector<double> held;     // displacements of held components, m; else 0
+    std::vector<double> external; // forces that do not depend on those, N
+    std::vector<double> inertia;  // what multiplies displacements, kg/s^2
+    // displacement without acceleration, m
+    std::vector<double> inertial_displacement;
+  };
+
+
+
+  /**
+   * The displacement of a step by Newton's method, at first with whole
+   * corrections, which take fewer iterations, then with a line search, which
+   * arrives more often (doc/theory/implicit_steps.md).
+   */
+  template <int dim>
+  class NewtonMethod
+  {
+  public:
+    /** @p tolerance: share of the forces that may be out of balance. Equations
+     * and clock are those of the caller. */
+    NewtonMethod(NewtonEquations<dim> &equations,
+                 const double          tolerance,
+                 NewtonClock          &clock)
+      : equations(equations)
+      , tolerance(tolerance)
+      , clock(clock)
+    {}
+
+    using Values = std::vector<double>; // by equation
+
+    /** Start as if nothing accelerated, where that is nearer to balance. */
+    void
+    guess(const StepQuestion &question, Values &displacement);
+
+    /** From the given displacement on; false with an obstacle(). */
+    bool
+    find(const StepQuestion &question, Values &displacement);
+
+    /** Why nothing was found. */
+    const std::string &
+    obstacle() const
+    {
+      return reason;
+    }
+
+    /** That led to the last displacement. */
+    unsigned long
+    iterations() const
+    {
+      return n_iterations;
+    }
+
+    /** Of all tries. */
+    unsigned long
+    corrections() const
+    {
+      return n_corrections;
+    }
+
+  private:
+    bool
+    solve(const StepQuestion &question, bool search, Values &displacement);
+    double
+    unbalance(const StepQuestion &question,
+              const Values       &displacement,
+              Values             &left);
+    double
+    potential(const StepQuestion &question, const Values &displacement) const;
+    bool
+    improves(const StepQuestion &question,
+             const Values       &correction,
+             double              former_potential,
+             double              former_rest,
+             Values             &displacement,
+             Values             &left);
+
+    NewtonEquations<dim> &equations;
+    const double          tolerance;
+    NewtonClock          &clock;
+    double                rest = 0; // unbalanced share of the forces
+    std::string           reason;
+    unsigned long         n_iterations = 0, n_corrections = 0;
+  };
+} // namespace limber
+
+#endif

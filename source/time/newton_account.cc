@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/newton_integrator.h>
+
+#include <numeric>
+
+namespace limber
+{
+  template <int dim>
+  double
+  NewtonIntegrator<dim>::load_factor(const double time) const
+  {
+    const Problem<dim> &problem = parts.problem;
+    return in_motion                    ? 1 :
+           problem.loads.factor.empty() ? time / problem.end_time :
+                                          problem.loads.factor.value({}, time);
+  }
+
+
+
+  // Forces on the nodes at a time, N; @p given are those of them that are not
+  // the weight, with what holds part of it while the load grows.
+  template <int dim>
+  typename NewtonIntegrator<dim>::Values
+  NewtonIntegrator<dim>::loads_at(const double time, Values *const given)
+  {
+    if (loads.any())
+      loads.add(parts.nodes, time);
+    const double              factor = load_factor(time);
+    const NumberedNodes<dim> &nodes  = equations.numbered_nodes();
+    Values                    result(equations.size());
+    if (loads.any())
+      {
+        for (std::size_t k = 0; k < equations.size(); ++k)
+          if (nodes.owns(k / dim))
+            result[k] = loads.on_node(nodes.on_grid()[k / dim])[k % dim];
+        nodes.sum(result);
+      }
+    if (given != nullptr)
+      given->resize(equations.size());
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      {
+        const double weight = masses[k] * parts.problem.loads.gravity[k % dim];
+        result[k]           = factor * (weight + result[k]);
+        if (given != nullptr)
+          (*given)[k] = result[k] - weight;
+      }
+    return result;
+  }
+
+
+
+  // Loads and sides work along the way of the step with the mean of their
+  // forces; what is spent on jumps of the strain is lost. So is, in
+  // equilibrium, the work of forces that were out of balance when the step
+  // began: points that have crossed cells give theirs to other nodes, the ghost
+  // penalty begins anew, and what is loaded springs to its new place as if
+  // damped.
+  template <int dim>
+  void
+  NewtonIntegrator<dim>::account(const StepQuestion &question,
+                                 const Values       &displacement,
+                                 const Values       &new_velocity,
+                                 const Values       &given,
+                                 const Values       &net,
+                                 const double        time,
+                                 const double        step)
+  {
+    // All ranks know the same of nodes; what is on record they sum up.
+    if (dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator) > 0)
+      return;
+    Ledger<dim> &ledger = parts.ledger;
+    ledger.load_work +=
+      std::inner_product(given.begin(), given.end(), displacement.begin(), 0.);
+    ledger.viscous += equations.ghost_energy();
+    const double factor        = load_factor(time + step);
+    double       between_steps = 0;
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      {
+        const int    d = k % dim;
+        const double weight =
+          factor * masses[k] * parts.problem.loads.gravity[d];
+        const double load =
+          in_motion ? given[k] : question.external[k] - weight;
+        ledger.gravity_impulse[d] += step * weight;
+        ledger.load_impulse[d] += step * load;
+        if (!equations.is_held(k))
+          {
+            if (!in_motion)
+              between_steps += 0.5 * net[k] * displacement[k];
+            continue;
+          }
+        // What the side gives, at the end and as the mean of the step
+        double force = 0, mean = 0;
+        if (in_motion)
+          force = mean = masses[k] * (new_velocity[k] - velocities[k]) / step -
+                         0.5 * (question.external[k] - equations.forces()[k]);
+        else
+          {
+            force = equations.forces()[k] - question.external[k];
+            mean  = 0.5 * (force - net[k]);
+          }
+        ledger.side_impulse[equations.side(k)][d] += step * force;
+        ledger.boundary_work += mean * displacement[k];
+      }
+    ledger.viscous += between_steps;
+    lost_between_steps += between_steps;
+  }
+
+
+
+#define INSTANTIATE(dim)                                                  \
+  template std::vector<double> NewtonIntegrator<dim>::loads_at(double,    \
+                                                               Values *); \
+  template void NewtonIntegrator<dim>::account(const StepQuestion &,      \
+                                               const Values &,            \
+                                               const Values &,            \
+                                               const Values &,            \
+                                               const Values &,            \
+                                               double,                    \
+                                               double);
+
+  INSTANTIATE(2)
+  INSTANTIATE(3)
+#undef INSTANTIATE
+} // namespace limber

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/time/newton_method.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace limber
+{
+  namespace
+  {
+    constexpr double infinite = std::numeric_limits<double>::infinity();
+
+    constexpr unsigned int most_newton_iterations = 20;
+    constexpr unsigned int most_searches          = 8; // of a line, by halves
+    constexpr double       sufficient_decrease    = 1e-4; // Armijo
+    // Where a body flies freely, inertia is a difference of numbers that are
+    // alike, and below this share of them nothing but round-off.
+    constexpr double known_share = 1e-6;
+
+
+
+    double
+    norm(const std::vector<double> &values)
+    {
+      return std::sqrt(
+        std::inner_product(values.begin(), values.end(), values.begin(), 0.));
+    }
+
+
+
+    double
+    product(const std::vector<double> &a, const std::vector<double> &b)
+    {
+      return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  NewtonMethod<dim>::find(const StepQuestion &question, Values &displacement)
+  {
+    const Values start = displacement;
+    if (solve(question, false, displacement))
+      return true;
+    displacement = start;
+    return solve(question, true, displacement);
+  }
+
+
+
+  // As if nothing accelerated, where that is nearer to balance than no
+  // displacement.
+  template <int dim>
+  void
+  NewtonMethod<dim>::guess(const StepQuestion &question, Values &displacement)
+  {
+    Values ahead = question.inertial_displacement;
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      if (equations.is_held(k))
+        ahead[k] = question.held[k];
+    Values left;
+    if (unbalance(question, ahead, left) <
+        unbalance(question, displacement, left))
+      displacement = ahead;
+  }
+
+
+
+  template <int dim>
+  double
+  NewtonMethod<dim>::unbalance(const StepQuestion &question,
+                               const Values       &displacement,
+                               Values             &left)
+  {
+    const bool admissible = equations.evaluate(displacement, nullptr);
+    clock.lap(NewtonVerb::evaluate_forces);
+    if (!admissible)
+      return infinite;
+    left.resize(equations.size());
+    double of_inertia = 0, of_momentum = 0;
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      {
+        const double inertia =
+          question.inertia[k] *
+          (displacement[k] - question.inertial_displacement[k]);
+        left[k] = equations.is_held(k) ?
+                    0 :
+                    question.external[k] - equations.forces()[k] - inertia;
+        of_inertia += inertia * inertia;
+        const double momentum =
+          question.inertia[k] * question.inertial_displacement[k];
+        of_momentum += momentum * momentum;
+      }
+    const double scale = std::max({norm(question.external),
+                                   norm(equations.forces()),
+                                   std::sqrt(of_inertia),
+                                   known_share * std::sqrt(of_momentum),
+                                   equations.round_off()});
+    return norm(left) / scale;
+  }
+
+
+
+  // Whose derivative is the unbalance
+  template <int dim>
+  double
+  NewtonMethod<dim>::potential(const StepQuestion &question,
+                               const Values       &displacement) const
+  {
+    double result =
+      equations.energy() - product(question.external, displacement);
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      {
+        const double way = displacement[k] - question.inertial_displacement[k];
+        result += 0.5 * question.inertia[k] * way * way;
+      }
+    return result;
+  }
+
+
+
+  // Newton's method from the given displacement on.
+  template <int dim>
+  bool
+  NewtonMethod<dim>::solve(const StepQuestion &question,
+                           const bool          search,
+                           Values             &displacement)
+  {
+    Values left, correction, former, of_held(equations.size());
+    n_iterations = 0;
+    rest         = unbalance(question, displacement, left);
+    while (true)
+      {
+        double remaining = 0; // of the way of held components
+        for (std::size_t k = 0; k < equations.size(); ++k)
+          if (equations.is_held(k))
+            {
+              of_held[k] = question.held[k] - displacement[k];
+              remaining  = std::max(remaining, std::abs(of_held[k]));
+            }
+        if (remaining == 0 && rest <= tolerance)
+          return true;
+        if (n_iterations == most_newton_iterations)
+          {
+            reason = "after " + std::to_string(n_iterations) + " iterations " +
+                     brief(rest) + " of the forces are out of balance";
+            return false;
+          }
+        ++n_iterations;
+        ++n_corrections;
+
+        const double before = potential(question, displacement);
+        equations.evaluate(displacement,
+                           &question.inertia,
+                           search || former.empty() ? nullptr : &former);
+        former = displacement;
+        clock.lap(NewtonVerb::assemble_tangent);
+        const bool solved = equations.solve(left, of_held, correction);
+        clock.lap(NewtonVerb::solve_equations);
+        if (!solved)
+          {
+            reason = "the equations have no unique solution";
+            return false;
+          }
+        // where forces nearly vanish, round-off of large ones remains
+        if (remaining == 0 && rest <= 1e-4 &&
+            norm(correction) <= 1e-11 * norm(displacement))
+          return true;
+        const bool any = remaining > 0 || !search;
+        if (!improves(question,
+                      correction,
+                      any ? infinite : before,
+                      any ? infinite : rest,
+                      displacement,
+                      left))
+          {
+            reason = rest == infinite ? "a point is turned inside out" :
+                                        "no direction lowers the energy";
+            return false;
+          }
+      }
+  }
+
+
+
+  // Goes along the correction until energy or unbalance are less; where these
+  // are infinite, until no point is turned inside out.
+  template <int dim>
+  bool
+  NewtonMethod<dim>::improves(const StepQuestion &question,
+                              const Values       &correction,
+                              const double        former_potential,
+                              const double        former_rest,
+                              Values             &displacement,
+                              Values             &left)
+  {
+    const double expected = product(left, correction);
+    const Values start    = displacement;
+    double       share    = 1;
+    for (unsigned int k = 0; k < most_searches; ++k, share /= 2)
+      {
+        for (std::size_t i = 0; i < start.size(); ++i)
+          displacement[i] = start[i] + share * correction[i];
+        rest = unbalance(question, displacement, left);
+        if (rest == infinite)
+          continue;
+        if (rest < 0.5 * former_rest ||
+            (expected > 0 &&
+             potential(question, displacement) <=
+               former_potential - sufficient_decrease * share * expected))
+          return true;
+      }
+    return false;
+  }
+
+
+
+  template class NewtonMethod<2>;
+  template class NewtonMethod<3>;
+} // namespace limber
