@@ -78,7 +78,7 @@ namespace limber
         return;
       }
 
-    make_multigrid(methods->multigrid, matrix, dim, rigid_motions, 2);
+    make_multigrid(methods->multigrid, matrix, dim, rigid_motions, {});
   }
 
 

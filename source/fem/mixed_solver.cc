@@ -15,10 +15,13 @@ namespace limber
     constexpr unsigned int most_iterations = 500;
     // of the residual, in the norm of the preconditioner
     constexpr double       accuracy         = 1e-8;
-    constexpr unsigned int smoother_sweeps  = 3;
     constexpr unsigned int chebyshev_degree = 20;
     // largest over smallest eigenvalue that the polynomial cares for
     constexpr double chebyshev_range = 300;
+    // Both by counting iterations: with A^-1 itself instead of the cycle there
+    // would be half as many.
+    const MultigridForm multigrid_form{4, "MGW", 1.5};
+    constexpr double    weight_of_pressure = 0.4;
 
     using Vector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 
@@ -58,7 +61,8 @@ namespace limber
             const double kept  = (*equations.kept)[c];
             const double share = 1 / (1 + kept * (*equations.compliance)[c]);
             double      &value = out.block(1)[c];
-            value = share * (share * value + kept * in.block(1)[c]);
+            value              = weight_of_pressure * share *
+                    (share * value + kept * in.block(1)[c]);
           }
       }
 
@@ -88,7 +92,7 @@ namespace limber
                    *equations.stiffness,
                    dim,
                    rigid_motions,
-                   smoother_sweeps);
+                   multigrid_form);
     Chebyshev::AdditionalData settings;
     settings.degree              = chebyshev_degree;
     settings.smoothing_range     = chebyshev_range;

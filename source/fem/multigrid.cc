@@ -11,13 +11,15 @@ namespace limber
                  const dealii::TrilinosWrappers::SparseMatrix &matrix,
                  const unsigned int                            dim,
                  const std::vector<double>                    &rigid_motions,
-                 const int                                     sweeps)
+                 const MultigridForm                          &form)
   {
     Teuchos::ParameterList settings;
     ML_Epetra::SetDefaults("SA", settings);
     settings.set("ML output", 0);
     settings.set("smoother: type", "Chebyshev");
-    settings.set("smoother: sweeps", sweeps);
+    settings.set("smoother: sweeps", form.sweeps);
+    settings.set("prec type", form.cycle);
+    settings.set("aggregation: damping factor", form.damping);
     settings.set("coarse: type", "Amesos-KLU");
     settings.set("PDE equations", int(dim));
     settings.set("null space: type", "pre-computed");

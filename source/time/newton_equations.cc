@@ -15,10 +15,10 @@ namespace limber
   namespace
   {
     // In mixed form the matrix keeps what volumes resist with in a material
-    // whose bulk modulus is that many shear moduli (nu = .29): multigrid then
+    // whose bulk modulus is that many shear moduli (nu = .35): multigrid then
     // sees one that is well compressible, and not the deviator alone. Found by
     // counting iterations.
-    constexpr double kept_bulk = 2;
+    constexpr double kept_bulk = 3;
   } // namespace
 
 

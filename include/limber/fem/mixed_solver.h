@@ -16,7 +16,7 @@ namespace limber
    *
    * which does not mind how little the volume gives in (C to zero). Minimal
    * residuals (MINRES; Paige and Saunders, SIAM J. Numer. Anal. 12, 1975) with
-   * one V-cycle of multigrid for A and a polynomial of Chebyshev in a sparse
+   * one W-cycle of multigrid for A and a polynomial of Chebyshev in a sparse
    * matrix for the pressures (block diagonal: Silvester and Wathen, SIAM J.
    * Numer. Anal. 31, 1994). For one rank.
    *

@@ -9,18 +9,27 @@
 
 namespace limber
 {
+  struct MultigridForm
+  {
+    int         sweeps  = 2;     // of the smoother (Chebyshev)
+    const char *cycle   = "MGV"; // ML's name: "MGV" or "MGW"
+    double      damping = 1.333; // of the smoothed prolongation
+  };
+
+
+
   /**
-   * One V-cycle of smoothed aggregation (ML) for a matrix of elasticity.
+   * One cycle of smoothed aggregation (ML) for a matrix of elasticity.
    * @p rigid_motions: values of each motion on the locally owned degrees of
    * freedom, one motion after the other, needed during this call alone;
-   * @p dim: components of a node; @p sweeps: of the smoother (Chebyshev).
+   * @p dim: components of a node.
    */
   void
   make_multigrid(dealii::TrilinosWrappers::PreconditionAMG    &multigrid,
                  const dealii::TrilinosWrappers::SparseMatrix &matrix,
                  unsigned int                                  dim,
                  const std::vector<double>                    &rigid_motions,
-                 int                                           sweeps);
+                 const MultigridForm                          &form);
 } // namespace limber
 
 #endif

@@ -94,7 +94,7 @@ TEST(NewtonSolvers, IterationsFindTheSameCorrection)
         EXPECT_EQ(factorised.equations.linear_iterations(), 0u);
         EXPECT_FALSE(mixed.equations.gave_up_iterating());
         EXPECT_GT(mixed.equations.linear_iterations(), 0u);
-        EXPECT_LE(mixed.equations.linear_iterations(), 60u);
+        EXPECT_LE(mixed.equations.linear_iterations(), 50u);
         EXPECT_TRUE(mixed.equations.is_mixed());
         EXPECT_FALSE(condensed.equations.is_mixed());
         if (nu <= 0.45)
@@ -137,7 +137,7 @@ TEST(NewtonSolvers, MixedFormOfCutCells)
                     difference(factorised.values, mixed.values));
         EXPECT_LT(difference(factorised.values, mixed.values), 1e-6);
         EXPECT_FALSE(mixed.equations.gave_up_iterating());
-        EXPECT_LE(mixed.equations.linear_iterations(), 75u);
+        EXPECT_LE(mixed.equations.linear_iterations(), 60u);
       }
 }
 
@@ -162,7 +162,7 @@ TEST(NewtonSolvers, MixedFormOnAFineGrid)
               mixed.equations.linear_iterations());
   EXPECT_LT(difference(factorised.values, mixed.values), 1e-6);
   EXPECT_FALSE(mixed.equations.gave_up_iterating());
-  EXPECT_LE(mixed.equations.linear_iterations(), 85u);
+  EXPECT_LE(mixed.equations.linear_iterations(), 56u);
 }
 
 
@@ -219,7 +219,7 @@ TEST(NewtonSolvers, MixedFormInSpace)
                   difference(factorised.values, mixed.values));
       EXPECT_LT(difference(factorised.values, mixed.values), 1e-6);
       EXPECT_FALSE(mixed.equations.gave_up_iterating());
-      EXPECT_LE(mixed.equations.linear_iterations(), 75u);
+      EXPECT_LE(mixed.equations.linear_iterations(), 60u);
     }
 }
 
