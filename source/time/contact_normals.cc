@@ -96,14 +96,34 @@ namespace limber
       for (unsigned int b = 0; b < parts.bodies.size(); ++b)
         for_each_batch(
           parts.bodies[b]->points.view(), [&](const CellBatch &batch) {
+            const auto &nodes =
+              CellFunctions<dim, decltype(degree)::value>::nodes_of(grid,
+                                                                    batch.cell);
+            if (!may_touch(nodes))
+              return;
             const std::size_t first = corners.size();
-            add_corners(b,
-                        CellFunctions<dim, decltype(degree)::value>::nodes_of(
-                          grid, batch.cell));
+            add_corners(b, nodes);
             if (corners.size() > first)
               neighbours.push_back({b, batch, first, corners.size()});
           });
     });
+  }
+
+
+
+  // One look without a branch per node, which nearly all batches end with.
+  template <int dim>
+  template <std::size_t n>
+  bool
+  Contact<dim>::may_touch(const std::array<std::uint32_t, n> &nodes) const
+  {
+    std::uint32_t found = 0;
+    for (const std::uint32_t node : nodes)
+      found |= first_of[node / Layout::stride];
+    if (hanging_of.size() > 0)
+      for (const std::uint32_t node : nodes)
+        found |= hanging_of[node / Layout::stride];
+    return found != 0;
   }
 
 
@@ -114,7 +134,7 @@ namespace limber
   Contact<dim>::add_corners(const unsigned int                  body,
                             const std::array<std::uint32_t, n> &nodes)
   {
-    const unsigned int field = parts.bodies[body]->description.nodal_field;
+    const unsigned int field = field_of(body);
     for (unsigned int k = 0; k < n; ++k)
       {
         const std::uint32_t node = nodes[k] / Layout::stride;
@@ -147,21 +167,20 @@ namespace limber
 
 
 
-  // begin(neighbours, field, points) gives what is done to each point of the
-  // batch, as work(p, volume).
+  // work(neighbours, points, 1 / density of their body)
   template <int dim>
-  template <class Begin>
+  template <class Work>
   void
-  Contact<dim>::for_each_neighbour(const Begin &begin)
+  Contact<dim>::for_each_neighbour(const Work &work)
   {
-    for (const Neighbours &some : neighbours)
+    for (std::size_t k = 0; k < neighbours.size();)
       {
-        MaterialBody<dim>   &body            = *parts.bodies[some.body];
-        const PointView<dim> points          = body.points.view();
-        const double         inverse_density = 1 / body.stress->density();
-        auto work = begin(some, body.description.nodal_field, points);
-        for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
-          work(p, points.mass[p] * inverse_density);
+        const unsigned int   body   = neighbours[k].body;
+        const PointView<dim> points = parts.bodies[body]->points.view();
+        const double         inverse_density =
+          1 / parts.bodies[body]->stress->density();
+        for (; k < neighbours.size() && neighbours[k].body == body; ++k)
+          work(neighbours[k], points, inverse_density);
       }
   }
 
@@ -220,24 +239,27 @@ namespace limber
   {
     const GridView<dim> grid = parts.nodes.view();
     with_degree(grid, [&](const auto degree) {
+      using Functions = CellFunctions<dim, decltype(degree)::value>;
       for_each_neighbour([&](const Neighbours     &some,
-                             const unsigned int    field,
-                             const PointView<dim> &points) {
-        CellFunctions<dim, decltype(degree)::value> functions(grid,
-                                                              some.batch.cell);
-        return [&, functions, field](const std::size_t p,
-                                     const double      volume) mutable {
-          functions.go_to(points, p);
-          for (std::size_t c = some.first; c < some.last; ++c)
-            {
-              Touch  &touch = touches[corners[c].touch];
-              Vector &gradient =
-                field == touch.a ? touch.gradient_a : touch.gradient_b;
+                             const PointView<dim> &points,
+                             const double          inverse_density) {
+        Functions                        functions(grid, some.batch.cell);
+        std::array<Vector, Functions::n> of_nodes; // of the cell
+        for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
+          {
+            const double volume = points.mass[p] * inverse_density;
+            functions.go_to(points, p);
+            for (int k = 0; k < Functions::n; ++k)
               for (int d = 0; d < dim; ++d)
-                gradient[d] +=
-                  volume * corners[c].share * functions.slope(corners[c].k, d);
-            }
-        };
+                of_nodes[k][d] += volume * functions.slope(k, d);
+          }
+        for (std::size_t c = some.first; c < some.last; ++c)
+          {
+            Touch &touch = touches[corners[c].touch];
+            (field_of(some.body) == touch.a ? touch.gradient_a :
+                                              touch.gradient_b) +=
+              corners[c].share * of_nodes[corners[c].k];
+          }
       });
     });
     share(gradients, [this](const std::size_t t) {
@@ -275,26 +297,14 @@ namespace limber
         separations[t].direction = {{of_a, -1. * of_b, unit(of_a - of_b)}};
       }
     for_each_neighbour([&](const Neighbours     &some,
-                           const unsigned int    field,
-                           const PointView<dim> &points) {
-      return [&, field](const std::size_t p, const double volume) {
-        const double half_edge = half_edge_of<dim>(volume);
-        for (std::size_t c = some.first; c < some.last; ++c)
-          {
-            Separation &separation = separations[corners[c].touch];
-            const bool  is_a       = field == touches[corners[c].touch].a;
-            for (unsigned int k = 0; k < separation.direction.size(); ++k)
-              {
-                double along = 0;
-                for (int d = 0; d < dim; ++d)
-                  along += points.place[d][p] * separation.direction[k][d];
-                double &furthest =
-                  is_a ? separation.furthest_a[k] : separation.furthest_b[k];
-                furthest =
-                  std::max(furthest, (is_a ? along : -along) + half_edge);
-              }
-          }
-      };
+                           const PointView<dim> &points,
+                           const double          inverse_density) {
+      half_edges.clear();
+      for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
+        half_edges.push_back(
+          half_edge_of<dim>(points.mass[p] * inverse_density));
+      for (std::size_t c = some.first; c < some.last; ++c)
+        extend(some, points, corners[c]);
     });
     share(extents, [this](const std::size_t t) {
       std::array<double *, 6> slots;
@@ -319,6 +329,34 @@ namespace limber
             }
         touches[t].points_touch = largest <= 0;
       }
+  }
+
+
+
+  // How far the points of a batch go along the directions of a touch.
+  template <int dim>
+  void
+  Contact<dim>::extend(const Neighbours     &some,
+                       const PointView<dim> &points,
+                       const Corner         &corner)
+  {
+    Separation &separation = separations[corner.touch];
+    const bool  is_a       = field_of(some.body) == touches[corner.touch].a;
+    auto       &furthest = is_a ? separation.furthest_a : separation.furthest_b;
+    auto        extent   = furthest;
+    auto        direction = separation.direction;
+    if (!is_a)
+      for (Vector &n : direction)
+        n *= -1;
+    for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
+      for (unsigned int k = 0; k < direction.size(); ++k)
+        {
+          double along = half_edges[p - some.batch.begin];
+          for (int d = 0; d < dim; ++d)
+            along += points.place[d][p] * direction[k][d];
+          extent[k] = std::max(extent[k], along);
+        }
+    furthest = extent;
   }
 
 

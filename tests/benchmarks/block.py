@@ -59,7 +59,7 @@ FINE = {"2d": ["Grid/Cells=1984, 1984", "End time=0.00025"],
 def run(limber, scene, settings=(), ranks=1):
     with tempfile.TemporaryDirectory() as folder:
         command = ["mpirun", "-np", str(ranks), limber,
-                   str(TOP / "prm/benchmarks" / f"block_{scene}.prm"),
+                   str(TOP / "prm/benchmarks" / f"{scene}.prm"),
                    "--output-directory", folder + "/run"]
         for setting in settings:
             command += ["--set", setting]
@@ -96,7 +96,7 @@ def main():
         found = {name: [] for name in variants}
         for _ in range(runs):
             for name, (settings, ranks) in variants.items():
-                found[name].append(run(limber, scene, settings, ranks))
+                found[name].append(run(limber, f"block_{scene}", settings, ranks))
         for name, summaries in found.items():
             cost = [s["ns_per_point_step"] for s in summaries]
             wall = [s["wall_seconds"] for s in summaries]
@@ -104,7 +104,7 @@ def main():
                   f"{min(cost):6.1f} median {statistics.median(cost):6.1f}"
                   f"   wall s: best {min(wall):.3f} "
                   f"median {statistics.median(wall):.3f}", flush=True)
-        memory = run(limber, scene, FINE[scene])
+        memory = run(limber, f"block_{scene}", FINE[scene])
         print(f"{scene} {memory['points']} points: "
               f"{memory['bytes_per_point']:.0f} bytes per point", flush=True)
 

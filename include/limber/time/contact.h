@@ -163,18 +163,31 @@ namespace limber
       return laws[a * n_fields + b];
     }
 
+    unsigned int
+    field_of(const unsigned int body) const
+    {
+      return parts.bodies[body]->description.nodal_field;
+    }
+
     void
     find_nodes();
     void
     find_neighbours();
     template <std::size_t n>
+    bool
+    may_touch(const std::array<std::uint32_t, n> &nodes) const;
+    template <std::size_t n>
     void
     add_corners(unsigned int body, const std::array<std::uint32_t, n> &nodes);
     void
     add_corner(unsigned int field, std::uint32_t node, unsigned int k, double);
-    template <class Begin>
     void
-    for_each_neighbour(const Begin &begin);
+    extend(const Neighbours     &some,
+           const PointView<dim> &points,
+           const Corner &);
+    template <class Work>
+    void
+    for_each_neighbour(const Work &work);
     template <class SlotsOf>
     void
     share(SharedSlots &slots, const SlotsOf &slots_of);
@@ -205,6 +218,7 @@ namespace limber
     std::vector<Neighbours>  neighbours;
     std::vector<Corner>      corners;     // of the neighbours
     std::vector<Separation>  separations; // of the touches
+    std::vector<double>      half_edges;  // m, of the points of a batch
     SharedSlots              gradients{2 * dim, false}, extents{6, true};
   };
 } // namespace limber
