@@ -17,7 +17,7 @@ namespace
   /** A block of water of these edges (cells of 1 m), in space on all sides. */
   template <int dim>
   std::string
-  block(const std::string &upper)
+  water_block(const std::string &upper)
   {
     const std::string cells = dim == 2 ? "8, 8" : "6, 6, 6";
     std::string       sides;
@@ -152,7 +152,7 @@ namespace
   void
   expect_symmetric(const std::string &upper)
   {
-    const EquationsOfStep<dim> step(block<dim>(upper));
+    const EquationsOfStep<dim> step(water_block<dim>(upper));
     const auto                 S = step.matrix();
     for (std::size_t i = 0; i < S.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
@@ -166,7 +166,7 @@ namespace
   void
   expect_silence(const std::string &upper)
   {
-    EquationsOfStep<dim> step(block<dim>(upper));
+    EquationsOfStep<dim> step(water_block<dim>(upper));
     using Place       = dealii::Point<dim>;
     const double seen = step.largest_flux(
       [](const Place &x) { return int(x[0]) % 2 == int(x[1]) % 2 ? 1. : -1.; });
@@ -191,7 +191,7 @@ namespace
   void
   expect_compact(const std::string &upper, const dealii::Point<dim> &centre)
   {
-    const EquationsOfStep<dim> step(block<dim>(upper),
+    const EquationsOfStep<dim> step(water_block<dim>(upper),
                                     {"Body water/Chequerboard control=1"});
     const auto                 S     = step.matrix();
     const auto                &cells = step.water().cells;
@@ -228,7 +228,7 @@ namespace
   expect_masters_in_equations()
   {
     using Record = PressureCells<2>::Record;
-    const EquationsOfStep<2> step(block<2>("5.3, 4.6"), two_sizes);
+    const EquationsOfStep<2> step(water_block<2>("5.3, 4.6"), two_sizes);
     const auto               S     = step.matrix();
     const auto              &water = step.water();
     const NodeTable<2>      &table = step.run.nodes.table;
@@ -290,7 +290,7 @@ TEST(PressureSystem, IsSymmetricOverLevels)
 {
   auto changes = two_sizes;
   changes[0]   = "Body water/Chequerboard control=1";
-  const EquationsOfStep<2> step(block<2>("5.3, 4.6"), changes);
+  const EquationsOfStep<2> step(water_block<2>("5.3, 4.6"), changes);
   const auto               S = step.matrix();
   for (std::size_t i = 0; i < S.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -330,7 +330,7 @@ TEST(PressureSystem, DivergencesSumUpToTheFluxThroughTheSurface)
 {
   using Layout = NodeLayout<2>;
   EquationsOfStep<2> step(
-    block<2>("6, 5"),
+    water_block<2>("6, 5"),
     {"Body water/Initial velocity=0.02*x*y; 0.02*sin(x)*y*y"});
   double volume = 0, change = 0;
   for (std::size_t p = 0; p < step.run.points().size; ++p)
