@@ -11,11 +11,8 @@ namespace limber
 {
   namespace
   {
-    // Residual in the volume of a cell over this volume in a step as long as
-    // motion allows: this times rho h^2/dt^2 is a 4e6th of rho g h where
-    // gravity limits the step. In shorter steps it is less, down to a
-    // hundredth: the divergence of the velocity stays as small.
-    constexpr double accuracy = 1e-8, least_share = 0.01;
+    // Residual in the volume of a cell over this volume
+    constexpr double accuracy = 1e-10;
 
     // So often cells without pressure may get it again; then they only lose it,
     // so that it ends.
@@ -84,8 +81,7 @@ namespace limber
         solver.set_pattern(system.equations);
       }
     system.assemble(end, step, share);
-    const double residual =
-      accuracy * std::max(share, least_share) * system.scale();
+    const double residual   = accuracy * system.scale();
     unsigned int iterations = 0;
     unsigned int solved     = 0;
     do
