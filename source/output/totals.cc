@@ -200,9 +200,6 @@ namespace limber
     start.gravitational_energy    = all.gravitational_energy;
     start.momentum                = all.momentum;
 
-    // What stresses and velocities of the size of round-off hold: a body at
-    // rest that nothing has moved yet does not drift.
-    const double eps = std::numeric_limits<double>::epsilon();
     for (unsigned int b = 0; b < state.bodies.size(); ++b)
       {
         const MaterialBody<dim> &body = *state.bodies[b];
@@ -210,8 +207,7 @@ namespace limber
           dealii::Utilities::MPI::max(body.stress->wave_speed_squared(
                                         body.points.view()),
                                       state.grid.communicator);
-        start.energy_scale +=
-          totals.bodies[b].mass * wave_speed_squared * std::pow(64 * eps, 2);
+        start.stiffness += totals.bodies[b].mass * wave_speed_squared;
       }
   }
 
@@ -235,9 +231,24 @@ namespace limber
     totals.load_work            = ledger.load_work;
     totals.side_impulse         = ledger.side_impulse;
     totals.obstacles            = ledger.obstacles;
+    start.energy_scale =
+      std::max(start.energy_scale, energy_of_round_off(state.step));
     balance_energy(ledger, totals);
     balance_momentum(ledger, sums.absolute_momentum(), totals);
     return totals;
+  }
+
+
+
+  // What strains and velocities of the size of round-off hold, where each step
+  // adds its own: a body at rest that nothing has moved yet does not drift.
+  template <int dim>
+  double
+  Balance<dim>::energy_of_round_off(const unsigned long steps) const
+  {
+    const double strain =
+      (64. + steps) * std::numeric_limits<double>::epsilon();
+    return start.stiffness * strain * strain;
   }
 
 

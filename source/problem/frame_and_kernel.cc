@@ -291,9 +291,6 @@ namespace limber
       if (problem.grid.levels > 0)
         return say("'linear', as splines need cells of one size "
                    "('Grid/Levels')");
-      if (!root.subsection("Contact").list("Pairs").empty())
-        return say("'linear', which loses least where bodies touch "
-                   "('Contact/Pairs')");
       for (const auto &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);

@@ -194,8 +194,7 @@ namespace limber
     void
     check_method(const Section &root, const Problem<dim> &problem)
     {
-      const Section method = root.subsection("Method"),
-                    loads  = root.subsection("Loads");
+      const Section method = root.subsection("Method");
       if (has_domains(problem.grid.kernel))
         refuse(method, "Kernel", "'Kernel = linear' or 'quadratic'");
       if (problem.method.integration != TimeIntegration::explicit_steps)
@@ -203,10 +202,6 @@ namespace limber
       if (problem.method.transfer != Transfer::flip &&
           problem.method.transfer != Transfer::pic)
         refuse(method, "Transfer", "'Transfer = flip'");
-      if (problem.loads.body_force)
-        refuse(loads, "Body force", "'Gravity' instead");
-      if (!problem.loads.faces.empty())
-        refuse(loads, "Face loads", "no face loads");
     }
 
 
@@ -218,9 +213,6 @@ namespace limber
       for (const Body<dim> &body : problem.bodies)
         {
           const Section section = root.subsection("Body " + body.name);
-          if (body.treatment == Projection::node ||
-              body.treatment == Projection::hybrid)
-            refuse(section, "Locking treatment", "'Locking treatment = cell'");
           if (body.hourglass_control > 0)
             refuse(section, "Hourglass control", "'Hourglass control = 0'");
           if (body.chequerboard_control > 0)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/dual_domain.h>
 #include <limber/interpolation/support.h>
+#include <limber/time/contact.h>
 #include <limber/time/loads.h>
 
 namespace limber
@@ -62,6 +63,7 @@ namespace limber
     : problem(problem)
     , grid(grid)
     , bodies(bodies)
+    , forces(n_nodal_fields(problem))
   {
     for (const FaceLoad<dim> &load : problem.loads.faces)
       for (auto &body : bodies)
@@ -86,7 +88,8 @@ namespace limber
   ExternalLoads<dim>::reinit()
   {
     if (any())
-      forces.reinit(grid.nodes().n() * dim);
+      for (LazyArray<double> &of_field : forces)
+        of_field.reinit(grid.nodes().n() * dim);
     exchange_pieces();
   }
 
@@ -127,29 +130,21 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::give(const PointView<dim>         &points,
-                           const std::size_t             p,
-                           const dealii::Tensor<1, dim> &force)
-  {
-    const Support<dim> at = support(grid, points, p);
-    for (int i = 0; i < at.n; ++i)
-      for (int d = 0; d < dim; ++d)
-        forces[at.node[i] * dim + d] += at.value[i] * force[d];
-  }
-
-
-
-  template <int dim>
-  void
   ExternalLoads<dim>::add_body_force(const MaterialBody<dim> &body,
                                      const double             time)
   {
-    const PointView<dim> points = body.points.view();
+    const PointView<dim> points   = body.points.view();
+    LazyArray<double>   &of_nodes = forces[body.description.nodal_field];
     for (std::size_t p = 0; p < points.size; ++p)
-      give(points,
-           p,
-           points.mass[p] *
-             problem.loads.body_force->vector(position(points, p), time));
+      {
+        const dealii::Tensor<1, dim> force =
+          points.mass[p] *
+          problem.loads.body_force->vector(position(points, p), time);
+        const Support<dim> at = support(grid, points, p);
+        for (int i = 0; i < at.n; ++i)
+          for (int d = 0; d < dim; ++d)
+            of_nodes[at.node[i] * dim + d] += at.value[i] * force[d];
+      }
   }
 
 
@@ -158,8 +153,9 @@ namespace limber
   void
   ExternalLoads<dim>::add_face_load(LoadedFace<dim> &face, const double time)
   {
-    const FaceLoad<dim> &load   = face.load;
-    const PointView<dim> points = face.body.points.view();
+    const FaceLoad<dim> &load     = face.load;
+    const PointView<dim> points   = face.body.points.view();
+    LazyArray<double>   &of_nodes = forces[face.body.description.nodal_field];
     for (const auto &[p, piece] : face.here())
       {
         const dealii::Tensor<1, dim> force =
@@ -175,7 +171,7 @@ namespace limber
             for (int d = 0; d < dim; ++d)
               weight += at.gradient[i][d] * arm[d];
             for (int d = 0; d < dim; ++d)
-              forces[at.node[i] * dim + d] += weight * force[d];
+              of_nodes[at.node[i] * dim + d] += weight * force[d];
           }
       }
   }
@@ -194,6 +190,7 @@ namespace limber
     for (LoadedFace<dim> &face : faces)
       {
         const PointView<dim> points = face.body.points.view();
+        const unsigned int   field  = face.body.description.nodal_field;
         for (const auto &[p, piece] : face.here())
           {
             const Support<dim>     at = support(grid, points, p);
@@ -202,7 +199,8 @@ namespace limber
               for (int d = 0; d < dim; ++d)
                 for (int e = 0; e < dim; ++e)
                   velocity_gradient[d][e] +=
-                    nodes.record(at.node[i])[slot + d] * at.gradient[i][e];
+                    nodes.record(field, at.node[i])[slot + d] *
+                    at.gradient[i][e];
             if (mean_gradients != nullptr)
               {
                 const double own = own_share<dim>(
@@ -233,42 +231,56 @@ namespace limber
   void
   ExternalLoads<dim>::add(NodalFields<dim> &nodes, const double time)
   {
-    for (const std::uint32_t node : nodes.active_nodes())
-      for (int d = 0; d < dim; ++d)
-        forces[node * dim + d] = 0;
+    for (LazyArray<double> &of_nodes : forces)
+      for (const std::uint32_t node : nodes.active_nodes())
+        for (int d = 0; d < dim; ++d)
+          of_nodes[node * dim + d] = 0;
     if (problem.loads.body_force)
       for (const auto &body : bodies)
         add_body_force(*body, time);
     for (LoadedFace<dim> &face : faces)
       add_face_load(face, time);
 
-    // As for the nodes themselves: hanging nodes give to their masters.
+    for (unsigned int field = 0; field < forces.size(); ++field)
+      {
+        complete(nodes, forces[field]);
+        for (const std::uint32_t node : nodes.active_nodes())
+          for (int d = 0; d < dim; ++d)
+            nodes.record(field, node)[NodeLayout<dim>::force + d] +=
+              forces[field][node * dim + d];
+      }
+  }
+
+
+
+  // As for the nodes themselves: hanging nodes give to their masters.
+  template <int dim>
+  void
+  ExternalLoads<dim>::complete(const NodalFields<dim> &nodes,
+                               LazyArray<double>      &of_nodes)
+  {
     for (const HangingNode &hanging : grid.nodes().hanging)
       for (int d = 0; d < dim; ++d)
         {
-          double &from = forces[hanging.node * dim + d];
+          double &from = of_nodes[hanging.node * dim + d];
           for (const auto &[master, weight] : hanging.masters)
-            forces[master * dim + d] += weight * from;
+            of_nodes[master * dim + d] += weight * from;
           from = 0;
         }
-    exchange.start(nodes.node_plan(), forces.data(), 0, dim);
-    exchange.finish(forces.data());
-
-    for (const std::uint32_t node : nodes.active_nodes())
-      for (int d = 0; d < dim; ++d)
-        nodes.record(node)[NodeLayout<dim>::force + d] +=
-          forces[node * dim + d];
+    exchange.start(nodes.node_plan(), of_nodes.data(), 0, dim);
+    exchange.finish(of_nodes.data());
   }
 
 
 
   template <int dim>
   dealii::Tensor<1, dim>
-  ExternalLoads<dim>::on_node(const std::uint32_t node) const
+  ExternalLoads<dim>::on_node(const unsigned int  field,
+                              const std::uint32_t node) const
   {
     dealii::Tensor<1, dim> result;
     for (int d = 0; d < dim; ++d)
-      result[d] = forces[node * dim + d];
+      result[d] = forces[field][node * dim + d];
     return result;
   }
 

@@ -227,7 +227,7 @@ namespace limber
             continue;
           dealii::Tensor<1, dim> force;
           if (loaded)
-            force = loads.on_node(node);
+            force = loads.on_node(parts.nodes.selected_field(), node);
           parts.ledger.load_impulse += step * force;
           for (int d = 0; d < dim; ++d)
             {

@@ -32,7 +32,7 @@ namespace limber
       {
         for (std::size_t k = 0; k < equations.size(); ++k)
           if (nodes.owns(k / dim))
-            result[k] = loads.on_node(nodes.on_grid()[k / dim])[k % dim];
+            result[k] = loads.on_node(0, nodes.on_grid()[k / dim])[k % dim];
         nodes.sum(result);
       }
     if (given != nullptr)

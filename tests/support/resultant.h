@@ -39,8 +39,8 @@ namespace limber
             place_of_node(cell, i);
       for (const std::uint32_t node : run.nodes.active_nodes())
         {
-          force += loads.on_node(node);
-          moment += outer_product(places.at(node), loads.on_node(node));
+          force += loads.on_node(0, node);
+          moment += outer_product(places.at(node), loads.on_node(0, node));
         }
     }
 

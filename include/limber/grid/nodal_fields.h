@@ -39,6 +39,11 @@ namespace limber
     /** Let view(), record() and sums speak of a field, until told otherwise. */
     void
     select(unsigned int field);
+    unsigned int
+    selected_field() const
+    {
+      return selected;
+    }
 
     /** Call work() with each field selected; the first remains it. */
     template <class Work>

@@ -75,6 +75,7 @@ namespace limber
     double                 strain_energy        = 0;
     double                 gravitational_energy = 0;
     dealii::Tensor<1, dim> momentum;
+    double                 stiffness = 0; // sum of mass c^2, J
     // largest so far: J, kg m/s
     double energy_scale   = 0;
     double momentum_scale = 0;
@@ -121,6 +122,8 @@ namespace limber
     }
 
   private:
+    double
+    energy_of_round_off(unsigned long steps) const;
     void
     balance_energy(const Ledger<dim> &ledger, Totals<dim> &totals);
     void

@@ -58,9 +58,9 @@ namespace limber
     void
     restore(const Pieces &pieces);
 
-    /** The sum of the forces on a node since the last add(), N. */
+    /** The sum of the forces on a node of a field, of the last add(), N. */
     dealii::Tensor<1, dim>
-    on_node(std::uint32_t node) const;
+    on_node(unsigned int field, std::uint32_t node) const;
 
   private:
     void
@@ -68,16 +68,14 @@ namespace limber
     void
     add_face_load(LoadedFace<dim> &face, double time);
     void
-    give(const PointView<dim>         &points,
-         std::size_t                   p,
-         const dealii::Tensor<1, dim> &force);
+    complete(const NodalFields<dim> &nodes, LazyArray<double> &of_nodes);
 
     const Problem<dim>                              &problem;
     const BackgroundGrid<dim>                       &grid;
     std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
     std::vector<LoadedFace<dim>>                     faces;
-    LazyArray<double>                                forces; // dim per node, N
-    RecordExchange                                   exchange{dim};
+    std::vector<LazyArray<double>> forces; // of fields: dim per node, N
+    RecordExchange                 exchange{dim};
   };
 } // namespace limber
 

@@ -49,6 +49,24 @@ namespace limber::test
 
 
 
+  /** Each step adds its own round-off to strains and velocities. */
+  TEST(Totals, RoundOffOfManyStepsIsNoDrift)
+  {
+    SampleRun<2> run(false);
+    Balance<2>   balance(run.state);
+    const auto   points = run.points().view();
+    const double wave_speed =
+      std::sqrt(run.state.bodies[0]->stress->wave_speed_squared(points));
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.velocity[0][p] =
+        500 * std::numeric_limits<double>::epsilon() * wave_speed;
+    EXPECT_GT(balance.evaluate(run.state).energy_drift, 0.9);
+    run.state.step = 2000;
+    EXPECT_LT(balance.evaluate(run.state).energy_drift, 0.1);
+  }
+
+
+
   /** Free fall: what gravity does is accounted for, a loss is noticed. */
   TEST(Totals, BalanceClosesInFreeFallAndTellsALossFromADrift)
   {

@@ -224,6 +224,20 @@ TEST(Contact, WhatSticksAcrossFieldsIsOneField)
         set Young's modulus = 2e6
         set Poisson's ratio = 0
       end
+    end
+    subsection Loads
+      set Body force = 2*x; -y
+      set Face loads = push, squeeze
+      subsection Face load push
+        set Body = left
+        set Face = left
+        set Traction = 300; 0
+      end
+      subsection Face load squeeze
+        set Body = right
+        set Face = right
+        set Pressure = 500
+      end
     end)";
   for (const std::string &order : stress_update_orders)
     {
@@ -246,6 +260,10 @@ TEST(Contact, WhatSticksAcrossFieldsIsOneField)
           for (std::size_t k = 0; k < p.size(); ++k)
             EXPECT_NEAR((p[k] - q[k]).norm(), 0, 1e-13);
         }
+      // as are the loads on them
+      const auto of_one = one->totals(), of_several = several->totals();
+      EXPECT_NEAR(of_one.load_work, of_several.load_work, 1e-13);
+      EXPECT_GT(std::abs(of_one.load_work), 1e-3);
       // and they have all been moved
       EXPECT_GT(several->totals().bodies[1].momentum[0], 0.01);
     }
