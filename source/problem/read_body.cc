@@ -2,7 +2,6 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
-#include <limber/problem/point_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -25,18 +24,20 @@ namespace limber
         "with splines.");
       declare_word(parameters,
                    "Placement",
-                   "regular",
+                   "auto",
                    placement_words(),
                    "How the points are placed at the start.");
-      parameters.declare("Points along edges",
-                         "",
-                         admissible::positive_integers(
-                           dim, false, dim == 2 ? "40, 10" : "40, 10, 10")
-                           .or_empty(),
-                         "With the placement 'fitted': number of points along "
-                         "the edges of the box or block in each of its "
-                         "directions; empty: as many as the longest edge "
-                         "needs for 'Points per cell edge'.");
+      parameters.declare(
+        "Points along edges",
+        "",
+        admissible::positive_integers(dim,
+                                      false,
+                                      dim == 2 ? "40, 10" : "40, 10, 10")
+          .or_empty(),
+        "With the placement 'fitted', which 'auto' then is: "
+        "number of points along the edges of the box or block in each of its "
+        "directions; empty: as many as the longest edge "
+        "needs for 'Points per cell edge'.");
       declare_constants(parameters);
       parameters.declare("Initial velocity",
                          for_each_direction(dim, "0", "; "),
@@ -176,119 +177,6 @@ namespace limber
                              to_text(grid.lower) + " to " +
                              to_text(grid.upper) + "; or move the body.");
         }
-    }
-
-
-
-    template <int dim>
-    void
-    read_points(const Section              &section,
-                const GridDescription<dim> &grid,
-                Body<dim>                  &body)
-    {
-      const std::string   entry = "Points per cell edge";
-      std::vector<double> points;
-      if (section.text(entry) != "auto")
-        points = section.numbers(entry);
-      else
-        // With two splines creep some ten times as much with every crossing.
-        points = {is_spline(grid.kernel) && !body.is_liquid &&
-                      body.frame == Frame::current ?
-                    3. :
-                    2.};
-      for (unsigned int d = 0; d < dim; ++d)
-        body.points_per_cell_edge[d] =
-          static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
-      body.placement = read_word(section, "Placement", placement_words());
-    }
-
-
-
-    /** Points of a list are where they are, and as large as they are. */
-    template <int dim>
-    void
-    check_point_list(const Section              &section,
-                     const GridDescription<dim> &grid,
-                     const Body<dim>            &body)
-    {
-      if (dynamic_cast<const PointListShape<dim> *>(body.shape.get()) ==
-          nullptr)
-        return;
-      if (body.placement != Placement::regular)
-        throw InputError("The placement " +
-                         in_quotes(section.text("Placement")) + " in " +
-                         section.where("Placement") +
-                         " has no effect on a point list, which says where "
-                         "each point is. Usually the shape was changed. Set "
-                         "'Placement = regular'.");
-      if (grid.levels > 0)
-        throw InputError("The point list in " + section.where("Shape") +
-                         " does not go with 'Grid/Levels', which need to know "
-                         "what cells points were made for. Set 'Levels = 0', "
-                         "or fill a shape with points.");
-    }
-
-
-
-    /** Spacings of points that the longest edge of a direction has room for. */
-    template <int dim>
-    unsigned int
-    parts_of_edges(const BlockShape<dim>      &block,
-                   const unsigned int          direction,
-                   const Body<dim>            &body,
-                   const GridDescription<dim> &grid)
-    {
-      double longest = 0;
-      for (unsigned int i = 0; i < block.vertices.size(); ++i)
-        {
-          const auto edge =
-            block.vertices[i | 1 << direction] - block.vertices[i];
-          double square = 0;
-          for (unsigned int d = 0; d < dim; ++d)
-            {
-              const double spacing = (grid.upper[d] - grid.lower[d]) /
-                                     (grid.cells[d] << grid.levels) /
-                                     body.points_per_cell_edge[d];
-              square += edge[d] / spacing * edge[d] / spacing;
-            }
-          longest = std::max(longest, std::sqrt(square));
-        }
-      // Decimal fractions need not meet exactly.
-      return std::lround(std::clamp(std::ceil(longest - 1e-6), 1., 1e9));
-    }
-
-
-
-    template <int dim>
-    void
-    read_lattice(const Section              &section,
-                 const GridDescription<dim> &grid,
-                 Body<dim>                  &body)
-    {
-      const auto *block =
-        dynamic_cast<const BlockShape<dim> *>(body.shape.get());
-      const bool fitted = body.placement == Placement::fitted;
-      if (fitted && block == nullptr)
-        throw InputError("The placement 'fitted' in " +
-                         section.where("Placement") +
-                         " needs the corners of a box or block, but 'Shape' "
-                         "is " +
-                         in_quotes(section.text("Shape")) +
-                         ". Set 'Placement = cut', or give the body "
-                         "another shape.");
-      const std::string entry = "Points along edges";
-      if (!fitted && !section.is_empty(entry))
-        throw InputError("The numbers " + in_quotes(section.text(entry)) +
-                         " in " + section.where(entry) +
-                         " have no effect with the placement " +
-                         in_quotes(section.text("Placement")) +
-                         ". Usually that was not changed along with them. Set "
-                         "'Placement = fitted'.");
-      if (block != nullptr)
-        for (unsigned int d = 0; d < dim; ++d)
-          body.lattice[d] = section.is_empty(entry) ?
-                              parts_of_edges(*block, d, body, grid) :
-                              section.numbers(entry)[d];
     }
 
 
@@ -532,9 +420,7 @@ namespace limber
     for (auto &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);
-        read_points(section, problem.grid, body);
-        check_point_list(section, problem.grid, body);
-        read_lattice(section, problem.grid, body);
+        read_placement(section, body, problem);
         read_treatment(section, body, problem);
       }
   }

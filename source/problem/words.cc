@@ -164,6 +164,11 @@ namespace limber
   placement_words()
   {
     static const Words<Placement> words = {
+      {"auto",
+       Placement::automatic,
+       "'regular', but for boxes and blocks of solids on cells of one size: "
+       "'cut' if their faces run across the cells, 'fitted' if these do not "
+       "and 'regular' would miss the volume by more than 2 %"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
       {"jittered", Placement::jittered, "regular, moved at random"},

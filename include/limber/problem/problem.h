@@ -31,11 +31,12 @@ namespace limber
 {
   enum class Placement
   {
-    regular,  // cell edges divided evenly, points at the centres of the parts
-    gauss,    // Gauss-Legendre places, weights into the masses
-    jittered, // regular, moved at random by up to a quarter of the spacing
-    cut,      // regular, but the surface cuts parts, see seed()
-    fitted    // a lattice in the natural coordinates of a box or block
+    automatic, // chosen by what the body is, when the scene is read
+    regular,   // cell edges divided evenly, points at the centres of the parts
+    gauss,     // Gauss-Legendre places, weights into the masses
+    jittered,  // regular, moved at random by up to a quarter of the spacing
+    cut,       // regular, but the surface cuts parts, see seed()
+    fitted     // a lattice in the natural coordinates of a box or block
   };
 
   /** What happens to the scatter of a history within a cell. */

@@ -202,6 +202,15 @@ namespace limber
                      const Problem<dim> &problem,
                      Body<dim>          &body);
 
+  // Where the points of bodies are (source/problem/read_placement.cc)
+
+  /** How many points a body has, and where; its shape and kernel are known. */
+  template <int dim>
+  void
+  read_placement(const Section &section,
+                 Body<dim>     &body,
+                 Problem<dim>  &problem);
+
   // Contact of bodies (source/problem/read_contact.cc)
 
   void

@@ -282,7 +282,7 @@ namespace
      {"Body beam/Shape=ball", "Body beam/Placement=fitted"},
      {"'fitted'", "'ball'", "Placement = cut"}},
     {"PointsAlongEdgesOfCells",
-     {"Body beam/Points along edges=3, 3"},
+     {"Body beam/Points along edges=3, 3", "Body beam/Placement=regular"},
      {"'3, 3'", "'regular'", "Placement = fitted"}},
     {"FormulaShapeWithoutFormula",
      {"Body beam/Shape=formula"},

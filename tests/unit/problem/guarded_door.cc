@@ -240,6 +240,7 @@ TEST(GuardedDoor, WhatDoesNotFitIsRefused)
               {"points", "'Body soil & rock', 'Points per cell edge = "});
   // one cell holds more places than the body has points
   expect_said(said_of_size({"Body soil & rock/Box/Upper corner=1e-9, 1e-9",
+                            "Body soil & rock/Placement=regular",
                             "Body soil & rock/Points per cell edge=100000"}),
               {"points", "Points per cell edge"});
   expect_said(said_of_size({"Body soil & rock/Placement=fitted",

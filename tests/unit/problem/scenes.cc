@@ -250,6 +250,56 @@ TEST(Scenes, DensityIsNotControlledWhereThereIsNoRoom)
 
 
 
+// Parts of the lattice of 'regular' are in or out as a whole, so that others
+// fill a block whose faces do not lie in it.
+TEST(Scenes, PlacementFollowsTheFaces)
+{
+  const auto placement = [](const std::vector<std::string> &changes) {
+    return read_problem<2>(scene_of(R"(
+      set Bodies = block
+      subsection Body block
+        set Points per cell edge = 2
+        subsection Newtonian fluid
+          set Bulk modulus = 1e6
+        end
+      end
+      subsection Grid
+        set Lower corner = -0.3, 0
+        set Upper corner = 1.7, 2
+        set Cells = 20, 20
+      end)",
+                                    changes))
+      .bodies[0]
+      .placement;
+  };
+  EXPECT_EQ(placement({}), Placement::regular);
+  EXPECT_EQ(placement({"Body block/Box/Lower corner=0.05, 0.1"}),
+            Placement::regular);
+  EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.06"}), // 1 %
+            Placement::regular);
+  EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12"}), // 2.3 %
+            Placement::fitted);
+  EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12",
+                       "Body block/Material=newtonian fluid"}),
+            Placement::regular);
+  EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12",
+                       "Body block/Placement=jittered"}),
+            Placement::jittered);
+  EXPECT_EQ(placement({"Body block/Points along edges=20, 20"}),
+            Placement::fitted);
+  const std::string tilted =
+    "Body block/Block/Corners=0.5, 0.1; 1, 0.6; 0.5, 1.1; 0, 0.6";
+  EXPECT_EQ(placement({"Body block/Shape=block", tilted}), Placement::cut);
+  EXPECT_EQ(placement({"Body block/Shape=block",
+                       tilted,
+                       "Method/Kernel=cpdi",
+                       "Body block/Frame=current"}),
+            Placement::fitted);
+  EXPECT_EQ(placement({"Body block/Shape=ball"}), Placement::regular);
+}
+
+
+
 TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 {
   const Problem<3> problem = read_problem<3>(scene_of(R"(

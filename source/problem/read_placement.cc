@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/point_list.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    template <int dim>
+    void
+    read_points(const Section              &section,
+                const GridDescription<dim> &grid,
+                Body<dim>                  &body)
+    {
+      const std::string   entry = "Points per cell edge";
+      std::vector<double> points;
+      if (section.text(entry) != "auto")
+        points = section.numbers(entry);
+      else
+        // With two splines creep some ten times as much with every crossing.
+        points = {is_spline(grid.kernel) && !body.is_liquid &&
+                      body.frame == Frame::current ?
+                    3. :
+                    2.};
+      for (unsigned int d = 0; d < dim; ++d)
+        body.points_per_cell_edge[d] =
+          static_cast<unsigned int>(points[points.size() == 1 ? 0 : d]);
+      body.placement = read_word(section, "Placement", placement_words());
+    }
+
+
+
+    /** Points of a list are where they are, and as large as they are. */
+    template <int dim>
+    void
+    check_point_list(const Section              &section,
+                     const GridDescription<dim> &grid,
+                     const Body<dim>            &body)
+    {
+      if (dynamic_cast<const PointListShape<dim> *>(body.shape.get()) ==
+          nullptr)
+        return;
+      if (body.placement != Placement::regular)
+        throw InputError("The placement " +
+                         in_quotes(section.text("Placement")) + " in " +
+                         section.where("Placement") +
+                         " has no effect on a point list, which says where "
+                         "each point is. Usually the shape was changed. Set "
+                         "'Placement = regular'.");
+      if (grid.levels > 0)
+        throw InputError("The point list in " + section.where("Shape") +
+                         " does not go with 'Grid/Levels', which need to know "
+                         "what cells points were made for. Set 'Levels = 0', "
+                         "or fill a shape with points.");
+    }
+
+
+
+    /** Distance of the points of 'regular', m. */
+    template <int dim>
+    double
+    spacing_along(const unsigned int          direction,
+                  const Body<dim>            &body,
+                  const GridDescription<dim> &grid)
+    {
+      return grid.finest_edge(direction) / body.points_per_cell_edge[direction];
+    }
+
+
+
+    /** Spacings of points that the longest edge of a direction has room for. */
+    template <int dim>
+    unsigned int
+    parts_of_edges(const BlockShape<dim>      &block,
+                   const unsigned int          direction,
+                   const Body<dim>            &body,
+                   const GridDescription<dim> &grid)
+    {
+      double longest = 0;
+      for (unsigned int i = 0; i < block.vertices.size(); ++i)
+        {
+          const auto edge =
+            block.vertices[i | 1 << direction] - block.vertices[i];
+          double square = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              const double spacing = spacing_along(d, body, grid);
+              square += edge[d] / spacing * edge[d] / spacing;
+            }
+          longest = std::max(longest, std::sqrt(square));
+        }
+      // Decimal fractions need not meet exactly.
+      return std::lround(std::clamp(std::ceil(longest - 1e-6), 1., 1e9));
+    }
+
+
+
+    /** Whether all faces lie across the axes. */
+    template <int dim>
+    bool
+    is_upright(const BlockShape<dim> &block)
+    {
+      const Corners<dim> box = block.bounding_box();
+      for (unsigned int d = 0; d < dim; ++d)
+        for (unsigned int i = 0; i < block.vertices.size(); ++i)
+          if (std::abs(block.vertices[i][d] -
+                       (i >> d & 1 ? box.second[d] : box.first[d])) >
+              1e-6 * (box.second[d] - box.first[d]))
+            return false;
+      return true;
+    }
+
+
+
+    /** Volume of the parts of 'regular' in an upright block over its own. */
+    template <int dim>
+    double
+    filled_by_regular(const BlockShape<dim>      &block,
+                      const Body<dim>            &body,
+                      const GridDescription<dim> &grid)
+    {
+      constexpr double   tolerance = 1e-6; // places on a face are inside
+      const Corners<dim> box       = block.bounding_box();
+      double             result    = 1;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double spacing = spacing_along(d, body, grid);
+          const double first   = std::ceil(
+            (box.first[d] - grid.lower[d]) / spacing - 0.5 - tolerance);
+          const double last = std::floor(
+            (box.second[d] - grid.lower[d]) / spacing - 0.5 + tolerance);
+          result *=
+            (last - first + 1) * spacing / (box.second[d] - box.first[d]);
+        }
+      return result;
+    }
+
+
+
+    /** Mass, weight and stiffness that 'regular' may err by, of a block. */
+    constexpr double least_misfill = 0.02;
+
+
+
+    // Parts of 'regular' are in or out as a whole: a block may be too thick
+    // by one of them, or too thin. A lattice of its own that runs across the
+    // cells fills them unevenly, and such a body is too soft; domains need it.
+    template <int dim>
+    void
+    choose_placement(const Section &section,
+                     Body<dim>     &body,
+                     Problem<dim>  &problem)
+    {
+      if (body.placement != Placement::automatic)
+        return;
+      body.placement = Placement::regular;
+      const auto *block =
+        dynamic_cast<const BlockShape<dim> *>(body.shape.get());
+      if (block == nullptr)
+        return;
+      const auto choose = [&](const Placement    placement,
+                              const std::string &word,
+                              const std::string &reason) {
+        body.placement = placement;
+        problem.notes.push_back("Body " + in_quotes(body.name) +
+                                ": placement 'auto' is " + in_quotes(word) +
+                                ", as " + reason + ".");
+      };
+      if (!section.is_empty("Points along edges"))
+        return choose(Placement::fitted,
+                      "fitted",
+                      "'Points along edges' are given");
+      const bool upright = is_upright(*block);
+      if (body.is_liquid || problem.grid.levels > 0 ||
+          (upright && std::abs(filled_by_regular(*block, body, problem.grid) -
+                               1) <= least_misfill))
+        return;
+      if (upright || has_domains(problem.grid.kernel))
+        choose(Placement::fitted,
+               "fitted",
+               "the points of 'regular' would miss its volume by more than two "
+               "per cent");
+      else
+        choose(Placement::cut, "cut", "its faces run across the cells");
+    }
+
+
+
+    template <int dim>
+    void
+    read_lattice(const Section              &section,
+                 const GridDescription<dim> &grid,
+                 Body<dim>                  &body)
+    {
+      const auto *block =
+        dynamic_cast<const BlockShape<dim> *>(body.shape.get());
+      const bool fitted = body.placement == Placement::fitted;
+      if (fitted && block == nullptr)
+        throw InputError("The placement 'fitted' in " +
+                         section.where("Placement") +
+                         " needs the corners of a box or block, but 'Shape' "
+                         "is " +
+                         in_quotes(section.text("Shape")) +
+                         ". Set 'Placement = cut', or give the body "
+                         "another shape.");
+      const std::string entry = "Points along edges";
+      if (!fitted && !section.is_empty(entry))
+        throw InputError("The numbers " + in_quotes(section.text(entry)) +
+                         " in " + section.where(entry) +
+                         " have no effect with the placement " +
+                         in_quotes(section.text("Placement")) +
+                         ". Usually that was not changed along with them. Set "
+                         "'Placement = fitted'.");
+      if (block != nullptr)
+        for (unsigned int d = 0; d < dim; ++d)
+          body.lattice[d] = section.is_empty(entry) ?
+                              parts_of_edges(*block, d, body, grid) :
+                              section.numbers(entry)[d];
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  read_placement(const Section &section, Body<dim> &body, Problem<dim> &problem)
+  {
+    read_points(section, problem.grid, body);
+    choose_placement(section, body, problem);
+    check_point_list(section, problem.grid, body);
+    read_lattice(section, problem.grid, body);
+  }
+
+
+
+  template void
+  read_placement(const Section &, Body<2> &, Problem<2> &);
+  template void
+  read_placement(const Section &, Body<3> &, Problem<3> &);
+} // namespace limber
