@@ -118,6 +118,27 @@ namespace limber
 
 
 
+    /** Whether faces across the axes lie where parts of 'regular' end. */
+    template <int dim>
+    bool
+    is_in_lattice(const BlockShape<dim>      &block,
+                  const Body<dim>            &body,
+                  const GridDescription<dim> &grid)
+    {
+      const Corners<dim> box = block.bounding_box();
+      for (unsigned int d = 0; d < dim; ++d)
+        for (const double face : {box.first[d], box.second[d]})
+          {
+            const double parts =
+              (face - grid.lower[d]) / spacing_along(d, body, grid);
+            if (std::abs(parts - std::round(parts)) > 1e-6)
+              return false;
+          }
+      return true;
+    }
+
+
+
     /** Volume of the parts of 'regular' in an upright block over its own. */
     template <int dim>
     double
@@ -176,16 +197,21 @@ namespace limber
         return choose(Placement::fitted,
                       "fitted",
                       "'Points along edges' are given");
+      if (body.is_liquid || problem.grid.levels > 0)
+        return;
       const bool upright = is_upright(*block);
-      if (body.is_liquid || problem.grid.levels > 0 ||
-          (upright && std::abs(filled_by_regular(*block, body, problem.grid) -
-                               1) <= least_misfill))
+      // Bodies side by side need their faces where they are.
+      const bool suits =
+        problem.bodies.size() > 1 ?
+          is_in_lattice(*block, body, problem.grid) :
+          std::abs(filled_by_regular(*block, body, problem.grid) - 1) <=
+            least_misfill;
+      if (upright && suits)
         return;
       if (upright || has_domains(problem.grid.kernel))
         choose(Placement::fitted,
                "fitted",
-               "the points of 'regular' would miss its volume by more than two "
-               "per cent");
+               "its faces do not lie between the points of 'regular'");
       else
         choose(Placement::cut, "cut", "its faces run across the cells");
     }

@@ -168,7 +168,8 @@ namespace limber
        Placement::automatic,
        "'regular', but for boxes and blocks of solids on cells of one size: "
        "'cut' if their faces run across the cells, 'fitted' if these do not "
-       "and 'regular' would miss the volume by more than 2 %"},
+       "and 'regular' would miss the volume by more than 2 %, or, with "
+       "several bodies, the faces"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
       {"jittered", Placement::jittered, "regular, moved at random"},
