@@ -243,6 +243,11 @@ namespace limber
       put_into_bins(c);
     bins.table  = bin_table.data();
     bins.blocks = bin_blocks.data();
+    if (has_domains(description.kernel) && bins.one_per_cell)
+      {
+        bin_nodes  = nodes_of_bins(bins, geometry);
+        bins.nodes = bin_nodes.data();
+      }
   }
 
 

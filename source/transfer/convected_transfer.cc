@@ -30,6 +30,31 @@ namespace limber
 
 
 
+    /** J sigma R^-T times the mass over the density: what acts on the changes
+     * of functions along the edges k, by [k]. */
+    template <int dim>
+    __attribute__((always_inline)) inline auto
+    forces_along_edges(const SmallMatrix<dim, PointPack<dim>> &t,
+                       const SmallMatrix<dim, PointPack<dim>> &inverse,
+                       const PointPack<dim>                   &V)
+    {
+      std::array<std::array<PointPack<dim>, dim>, dim> result;
+#pragma GCC unroll 3
+      for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 3
+        for (int d = 0; d < dim; ++d)
+          {
+            PointPack<dim> sum = t[d][0] * inverse[k][0];
+#pragma GCC unroll 3
+            for (int e = 1; e < dim; ++e)
+              sum += t[d][e] * inverse[k][e];
+            result[k][d] = -V * sum;
+          }
+      return result;
+    }
+
+
+
     template <int dim, bool momentum, bool force>
     std::size_t
     give(const PointView<dim> &points,
@@ -37,34 +62,25 @@ namespace limber
          const GiveToGrid     &what)
     {
       using Layout = NodeLayout<dim>;
-      using Number = PointPack<dim>;
-      // mass, force and momentum lie next to each other
-      using Window = RecordWindow<dim,
-                                  momentum ? Layout::mass : Layout::force,
-                                  momentum ? 1 + 2 * dim : dim>;
-      using Record = typename Window::Lanes;
-      using Slots  = std::array<Number, Window::width>;
+      using Window =
+        std::conditional_t<momentum, MotionWindow<dim>, ForceWindow<dim>>;
 
       return for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim> &cell = grid.cells[batch.cell];
         for_each_pack<dim>(
           batch, [&](const auto &lanes) __attribute__((always_inline)) {
-            const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
-            const Number             mass = lanes.load(points.mass);
-            std::array<Record, ConvectedPack<dim>::n_points> alike;
-            std::array<decltype(alike), dim>                 along;
+            ConvectedPack<dim>   domains(points, grid, batch.cell, lanes);
+            const PointPack<dim> mass =
+              lanes.only_active(lanes.load(points.mass));
+            std::array<PointPack<dim>, Window::width> given;
+            set_zero(given);
             if constexpr (momentum)
               {
-                Slots slots;
-                set_zero(slots);
-                slots[Window::lane_of(Layout::mass)] = mass;
+                given[Window::lane_of(Layout::mass)] = mass;
                 for (int d = 0; d < dim; ++d)
-                  slots[Window::lane_of(Layout::momentum + d)] =
+                  given[Window::lane_of(Layout::momentum + d)] =
                     mass * lanes.load(points.velocity[d]);
-                alike = records_of<Record>(slots);
               }
-            else
-              set_zero(alike);
             if constexpr (force)
               {
                 const DomainMean<dim> projected_pressure(
@@ -72,29 +88,21 @@ namespace limber
                   what.projected_pressure,
                   cell,
                   batch.cell);
-                const auto   t = kirchhoff_stress<dim>(points,
+                const auto t = kirchhoff_stress<dim>(points,
                                                      cell,
                                                      projected_pressure,
                                                      lanes);
-                const Number V = what.inverse_density * mass;
-#pragma GCC unroll 3
-                for (int k = 0; k < dim; ++k)
-                  {
-                    Slots slots;
-                    set_zero(slots);
-#pragma GCC unroll 3
-                    for (int d = 0; d < dim; ++d)
-                      {
-                        Number sum{};
-#pragma GCC unroll 3
-                        for (int e = 0; e < dim; ++e)
-                          sum -= t[d][e] * domains.inverse[k][e];
-                        slots[Window::lane_of(Layout::force + d)] = V * sum;
-                      }
-                    along[k] = records_of<Record>(slots);
-                  }
+                domains.template give_with_changes<Window>(
+                  given,
+                  forces_along_edges<dim>(t,
+                                          domains.inverse(),
+                                          what.inverse_density * mass));
               }
-            domains.template give<Window, momentum, force>(alike, along);
+            else
+              {
+                domains.find_means();
+                domains.template give<Window>(given);
+              }
           });
       });
     }
@@ -125,33 +133,39 @@ namespace limber
   {
     using Layout = NodeLayout<dim>;
     using Number = PointPack<dim>;
-    using Pack   = ConvectedPack<dim>;
-    // velocity increment and, right behind it, the new velocity
-    using Window = RecordWindow<dim, Layout::increment, 2 * dim>;
-    using Remap  = RecordWindow<dim, Layout::remapped, dim>;
-    using Fields = FieldsOnPack<dim, Window>;
+    using Remap  = RemapWindow<dim>;
+    static_assert(Layout::velocity == Layout::increment + dim);
     VelocityFindings<dim> found;
     Number                displacement{};
     for_each_batch(points, [&](const CellBatch &batch) {
       for_each_pack<dim>(
         batch, [&](const auto &lanes) __attribute__((always_inline)) {
-          const Pack   domains(points, grid, batch.cell, lanes);
-          const Fields fields(domains);
-          take_velocity<dim>(points, lanes, fields, what.flip_share, found);
+          ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
+          domains.find_means();
+          const auto fields = domains.template take<2 * dim>(Layout::increment);
+          take_velocity<dim>(
+            points, lanes, &fields[0], &fields[dim], what.flip_share, found);
           if (what.remap)
             {
+              const Number mass = lanes.only_active(lanes.load(points.mass));
               std::array<Number, Remap::width> momentum;
               set_zero(momentum);
               for (int d = 0; d < dim; ++d)
                 momentum[Remap::lane_of(Layout::remapped + d)] =
-                  lanes.load(points.mass) * lanes.load(points.velocity[d]);
-              const auto given = records_of<typename Remap::Lanes>(momentum);
-              domains.template give<Remap, true, false>(given, {});
+                  mass * lanes.load(points.velocity[d]);
+              domains.template give<Remap>(momentum);
             }
           if (what.move != 0)
-            displacement =
-              larger(displacement,
-                     move_domains(domains, lanes, fields, what.move));
+            {
+              FieldOnPack<dim> velocity;
+              domains.take_field(Layout::moving_velocity, velocity);
+              displacement = larger(displacement,
+                                    move_domains<dim>(domains,
+                                                      lanes,
+                                                      domains.inverse(),
+                                                      velocity,
+                                                      what.move));
+            }
         });
     });
     VelocitySummary result;
@@ -170,33 +184,26 @@ namespace limber
                             const bool            remapped,
                             double *const         records)
   {
-    using Layout     = NodeLayout<dim>;
-    using Number     = PointPack<dim>;
-    const auto sweep = [&](const auto first) {
-      using Fields =
-        FieldsOnPack<dim, RecordWindow<dim, decltype(first)::value, dim>>;
-      for_each_batch(points, [&](const CellBatch &batch) {
-        const CellGeometry<dim> &cell = grid.cells[batch.cell];
-        Sums                     sums;
-        for_each_pack<dim>(batch, [&](const auto &lanes) {
-          const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
-          const Fields             fields(domains);
-          Number                   divergence{};
-          for (int d = 0; d < dim; ++d)
-            divergence += fields.slope(domains.inverse, first() + d, d);
-          for (int i = 0; i < lanes.n; ++i)
-            sums.add(natural_place(points, cell, lanes.first + i),
-                     points.mass[lanes.first + i],
-                     divergence[i]);
-        });
-        sums.add_to(cell, batch.cell, records);
+    using Layout            = NodeLayout<dim>;
+    const unsigned int slot = remapped ? Layout::remapped : Layout::velocity;
+    for_each_batch(points, [&](const CellBatch &batch) {
+      const CellGeometry<dim> &cell = grid.cells[batch.cell];
+      Sums                     sums;
+      for_each_pack<dim>(batch, [&](const auto &lanes) {
+        const ConvectedPack<dim> domains(points, grid, batch.cell, lanes);
+        FieldOnPack<dim>         velocity;
+        domains.take_field(slot, velocity);
+        const auto     inverse = domains.inverse();
+        PointPack<dim> divergence{};
+        for (int d = 0; d < dim; ++d)
+          divergence += velocity.slope(inverse, d, d);
+        for (int i = 0; i < lanes.n; ++i)
+          sums.add(natural_place(points, cell, lanes.first + i),
+                   points.mass[lanes.first + i],
+                   divergence[i]);
       });
-    };
-    using Slot = unsigned int;
-    if (remapped)
-      sweep(std::integral_constant<Slot, Layout::remapped>());
-    else
-      sweep(std::integral_constant<Slot, Layout::velocity>());
+      sums.add_to(cell, batch.cell, records);
+    });
   }
 
 

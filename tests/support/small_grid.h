@@ -164,6 +164,8 @@ namespace limber
           }
         bins.table        = bin_table.data();
         bins.one_per_cell = true;
+        bin_nodes         = nodes_of_bins(bins, cells);
+        bins.nodes        = bin_nodes.data();
         nodes.resize(n_nodes * NodeLayout<dim>::stride);
         occupied.resize(n_cells);
         means.resize(n_vertices * NodalMeanLayout::stride);
@@ -312,7 +314,7 @@ namespace limber
       std::vector<double>            nodes, means, sums, next_sums;
       std::vector<std::uint32_t>     turn_of_sums;
       std::uint32_t                  turn = 1; // of the present sums
-      std::vector<std::uint32_t>     bin_table, entered;
+      std::vector<std::uint32_t>     bin_table, bin_nodes, entered;
       std::vector<std::uint8_t>      occupied;
       BinView<dim>                   bins;
       bool                           left = false;

@@ -345,6 +345,30 @@ namespace limber
     return a > b ? a : b;
   }
 
+  /** The smaller of two, lane by lane. */
+  template <class Number>
+  inline Number
+  smaller(const Number &a, const Number &b)
+  {
+    return a < b ? a : b;
+  }
+
+
+
+  /** The larger of @p a and zero, for which GCC compares and selects unless it
+   * knows no zero. */
+  template <class Number>
+  __attribute__((always_inline)) inline Number
+  positive_part(const Number &a)
+  {
+    Number zero{};
+#ifdef __AVX__
+    if constexpr (pack_width<Number> <= widest_pack) // in one register
+      __asm__("" : "+x"(zero));
+#endif
+    return larger(a, zero);
+  }
+
 
 
   template <class Number>
@@ -598,11 +622,13 @@ namespace limber
     __attribute__((always_inline)) inline Pack<width>
     fold(const Pack<width> &x, const Pack<width> &y)
     {
+      // The first is a selection, which goes where additions go, and not to the
+      // one unit that shuffles.
       typename PackType<width>::mask first, second;
       for (int i = 0; i < width; ++i)
         {
-          first[i]  = (i & half) ? width + (i ^ half) : i;
-          second[i] = (i & half) ? width + i : (i ^ half);
+          first[i]  = (i & half) ? width + i : i;
+          second[i] = (i & half) ? width + (i ^ half) : (i ^ half);
         }
       return __builtin_shuffle(x, y, first) + __builtin_shuffle(x, y, second);
     }
@@ -625,6 +651,26 @@ namespace limber
       return four(0);
     else
       return internal::fold<w, 4>(four(0), four(4));
+  }
+
+
+
+  /** The same of half as many packs as they have lanes. */
+  __attribute__((always_inline)) inline Pack<4>
+  sums_over_lanes(const std::array<Pack<8>, 4> &a)
+  {
+    const auto folded = internal::fold<8, 2>(internal::fold<8, 1>(a[0], a[1]),
+                                             internal::fold<8, 1>(a[2], a[3]));
+    return __builtin_shufflevector(folded, folded, 0, 1, 2, 3) +
+           __builtin_shufflevector(folded, folded, 4, 5, 6, 7);
+  }
+
+  __attribute__((always_inline)) inline Pack<2>
+  sums_over_lanes(const std::array<Pack<4>, 2> &a)
+  {
+    const auto folded = internal::fold<4, 1>(a[0], a[1]);
+    return __builtin_shufflevector(folded, folded, 0, 1) +
+           __builtin_shufflevector(folded, folded, 2, 3);
   }
 
 

@@ -167,7 +167,7 @@ namespace limber
 
     // Tables, by local number
     std::vector<CellGeometry<dim>> geometry;
-    std::vector<std::uint32_t>     bin_table, bin_blocks;
+    std::vector<std::uint32_t>     bin_table, bin_blocks, bin_nodes;
     BinView<dim>                   bins;
     double                         smallest_edge = 0; // m, over all ranks
     // Cells that other ranks hold as well

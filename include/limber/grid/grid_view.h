@@ -103,6 +103,11 @@ namespace limber
     // Blocks one after the other, of so many places along each edge
     const std::uint32_t *blocks   = nullptr;
     std::int64_t         per_edge = 1;
+    // Where each bin is a cell and points have domains, offsets of the records
+    // of the nodes of all bins, one more along each direction; `no_node` where
+    // there is none. Four can be read from each place. Else null
+    static constexpr std::uint32_t no_node = 0xffffffffu;
+    const std::uint32_t           *nodes   = nullptr;
 
     std::uint32_t
     cell_at(const std::array<double, dim> &x) const
@@ -185,6 +190,36 @@ namespace limber
       return (dim == 2 ? 2 : 4) * d + e;
     }
   };
+
+
+
+  /** The table BinView::nodes. */
+  template <int dim>
+  std::vector<std::uint32_t>
+  nodes_of_bins(const BinView<dim>                   &bins,
+                const std::vector<CellGeometry<dim>> &cells)
+  {
+    std::int64_t n_bins = 1, n_nodes = 1;
+    for (int d = 0; d < dim; ++d)
+      {
+        n_bins *= bins.n[d];
+        n_nodes *= bins.n[d] + 1;
+      }
+    std::vector<std::uint32_t> result(n_nodes + 3, BinView<dim>::no_node);
+    for (std::int64_t bin = 0; bin < n_bins; ++bin)
+      if (bins.table[bin] != invalid_cell)
+        for (int i = 0; i < 1 << dim; ++i)
+          {
+            std::int64_t place = 0, stride = 1, rest = bin;
+            for (int d = 0; d < dim; ++d, stride *= bins.n[d - 1] + 1)
+              {
+                place += stride * (rest % bins.n[d] + (i >> d & 1));
+                rest /= bins.n[d];
+              }
+            result[place] = cells[bins.table[bin]].node[i];
+          }
+    return result;
+  }
 
 
 

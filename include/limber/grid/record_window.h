@@ -24,7 +24,8 @@ namespace limber
       first + width <= NodeLayout<dim>::stride ?
         first :
         NodeLayout<dim>::stride - width;
-    static_assert(first + n_slots <= start + width);
+    static constexpr unsigned int n_used = first + n_slots - start;
+    static_assert(n_used <= width);
     using Lanes =
       std::conditional_t<width <= widest_pack, Pack<int(width)>, SplitPack>;
 
@@ -48,17 +49,6 @@ namespace limber
         return {lower, upper};
       else
         return joined(lower, upper);
-    }
-
-    /** And back: those from lane @p first on that fill a narrow pack. */
-    template <class Half, class Record>
-    __attribute__((always_inline)) inline Half
-    half_of(const Record &record, const int first)
-    {
-      if constexpr (std::is_same_v<Record, SplitPack>)
-        return first == 0 ? record.lower : record.upper;
-      else
-        return some_lanes<Half>(record, first);
     }
   } // namespace internal
 
@@ -107,39 +97,35 @@ namespace limber
 
 
 
-  /** And back: the values of some slots of one record for each point. */
-  template <class Number, class Record>
-  __attribute__((always_inline)) inline std::array<Number, pack_width<Record>>
-  slots_of(const std::array<Record, pack_width<Number>> &records)
+  /**
+   * Add the sums over the points of a pack of what each gives, by slots of a
+   * window, to a record, from the first slot of the window on. What is beyond
+   * @p n_used may be left out.
+   */
+  template <std::size_t n_used, class Number, std::size_t width>
+  __attribute__((always_inline)) inline void
+  add_sums(const std::array<Number, width> &given, double *const slots)
   {
-    constexpr int         n_points = pack_width<Number>, n = pack_width<Record>;
-    std::array<Number, n> result;
-    if constexpr (n == n_points)
+    constexpr std::size_t n_points = pack_width<Number>;
+    if constexpr (2 * width == n_points)
       {
-        result = records;
-        transpose<n>(result);
+        const auto sums = sums_over_lanes(given);
+        store(load<Pack<int(width)>>(slots) + sums, slots);
       }
-    else if constexpr (n == 2 * n_points)
-      for (int half = 0; half < 2; ++half)
-        {
-          std::array<Number, n_points> block;
-          for (int p = 0; p < n_points; ++p)
-            block[p] = internal::half_of<Number>(records[p], half * n_points);
-          transpose<n_points>(block);
-          for (int i = 0; i < n_points; ++i)
-            result[half * n_points + i] = block[i];
-        }
     else
-      {
-        static_assert(2 * n == n_points);
-        std::array<Number, n_points> padded;
-        for (int p = 0; p < n_points; ++p)
-          padded[p] = doubled(records[p]);
-        transpose<n_points>(padded);
-        for (int i = 0; i < n; ++i)
-          result[i] = padded[i];
-      }
-    return result;
+#pragma GCC unroll 2
+      for (std::size_t first = 0; first < n_used; first += n_points)
+        if (n_used - first == 1)
+          slots[first] += sum(given[first]);
+        else
+          {
+            std::array<Number, n_points> some;
+#pragma GCC unroll 8
+            for (std::size_t i = 0; i < n_points; ++i)
+              some[i] = given[first + i];
+            store(load<Number>(slots + first) + sums_over_lanes(some),
+                  slots + first);
+          }
   }
 } // namespace limber
 

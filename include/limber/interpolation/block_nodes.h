@@ -7,9 +7,10 @@
 namespace limber
 {
   /**
-   * Blocks of 2^dim cells around the points of a pack, one for each, where all
-   * cells are alike: the 3^dim nodes whose functions a domain no longer than a
-   * cell can see.
+   * The block of cells that the domains of the points of a pack reach into,
+   * where all cells are alike: points are in one cell and no domain is longer
+   * than that, so that a block has up to three cells along a direction, of
+   * which each domain sees two at most. At least two, as for the sake of sides.
    */
   template <int dim>
   class BlockNodes
@@ -18,166 +19,60 @@ namespace limber
     using Number                  = PointPack<dim>;
     using Vector                  = std::array<Number, dim>;
     static constexpr int n_points = pack_width<Number>;
-    static constexpr int n_nodes  = dim == 2 ? 9 : 27;
-    static constexpr int n_cells  = 1 << dim;
+    static constexpr int longest  = 4; // nodes along a direction
+    static constexpr int n_nodes  = dim == 2 ? 16 : 64; // and in all
 
     /**
-     * Find the blocks of the first @p n points, which are in @p cell. In cells,
-     * points are @p at from the lower corner of the bins, and afterwards from
-     * the lower corners of their blocks, and nothing of their domains is
-     * farther than @p half from them. False if a point has none.
+     * Find the block of points that are in @p cell, at the natural coordinates
+     * @p xi; nothing of their domains is farther than @p half, of 0.5 at most,
+     * from them. False if there is none.
      */
-    __attribute__((always_inline)) bool
-    find(const GridView<dim> &grid,
-         const std::uint32_t  cell,
-         const int            n,
-         Vector              &at,
-         const Vector        &half)
-    {
-      const BinView<dim> &bins = grid.bins;
-      if (rarely(!bins.one_per_cell))
-        return find_of_size(grid, grid.cells[cell], n, at, half);
-      Number index = Number{};
-#pragma GCC unroll 3
-      for (int d = dim - 1; d >= 0; --d)
-        {
-          if (bins.n[d] < 2)
-            return false;
-          const double last  = static_cast<double>(bins.n[d] - 2);
-          const Number lower = at[d] - half[d];
-          const Number inner = lower > 0. ? lower : Number{};
-          const Number block =
-            rounded_down(inner < last ? inner : broadcast<Number>(last));
-          at[d] -= block;
-          store(at[d] + half[d], end[d]);
-          index = index * static_cast<double>(bins.n[d]) + block;
-        }
-
-      const auto bin = to_integers(index);
-      for (int p = 0; p < n; ++p)
-#pragma GCC unroll 8
-        for (int c = 0; c < n_cells; ++c)
-          {
-            std::int64_t offset = c & 1;
-            if (c & 2)
-              offset += bins.n[0];
-            if (c & 4)
-              offset += bins.n[0] * bins.n[1];
-            const std::uint32_t there = bins.table[bin[p] + offset];
-            if (rarely(there == invalid_cell))
-              return false;
-            blocks[p][c] = &grid.cells[there].node;
-          }
-      return true;
-    }
-
-    /** Whether nothing of point p reaches the last nodes along d. */
     bool
-    ends_before(const int p, const int d, const int digit) const
-    {
-      return digit == 2 && end[d][p] <= 1;
-    }
+    find(const GridView<dim> &grid,
+         std::uint32_t        cell,
+         const Vector        &xi,
+         const Vector        &half);
 
-    /** The record of node i of the block of point p. */
-    __attribute__((always_inline)) std::uint32_t
-    record(const int p, const int i) const
-    {
-      return (*blocks[p][cell_with_node(i)])[node_in_cell(i)];
-    }
-
-    /** Call work(i, record) for the nodes of the block of point p. */
+    /** Call work(i, record) for each node: its number, and where its record is.
+     */
     template <class Work>
     __attribute__((always_inline)) void
-    for_nodes(const int p, const Work &work) const
+    for_nodes(const Work &work) const
     {
-#pragma GCC unroll 9
-      for (int row = 0; row < n_nodes / 3; ++row)
-        {
-          if (ends_before(p, 1, row % 3) ||
-              (dim == 3 && ends_before(p, dim - 1, row / 3)))
-            continue;
-#pragma GCC unroll 3
-          for (int i = 3 * row; i < 3 * row + 3; ++i)
-            work(i, record(p, i));
-        }
+      for (int k = 0; k < n[2]; ++k)
+        for (int j = 0; j < n[1]; ++j)
+          for (int i = row_begin(j, k), end = i + n[0]; i < end; ++i)
+            work(i, records[i]);
     }
+
+    /** The number of the first node of a row. */
+    static int
+    row_begin(const int j, const int k)
+    {
+      return longest * (longest * k + j);
+    }
+
+    std::array<int, 3> n; // nodes along each direction
+    // Where the cell of the points begins in the block: 0, 1
+    std::array<double, dim> cell_begin;
+    // Where the two cells that a point sees begin, likewise
+    Vector start;
+    // Whether a domain reaches beyond a side of the grid there
+    std::array<bool, dim> reaches_beyond;
+    // of the nodes, the first direction running fastest, in rows of `longest`
+    std::array<std::uint32_t, n_nodes> records;
 
   private:
-    /** Where cells have several sizes: blocks of cells of the size of this. */
-    __attribute__((noinline)) bool
-    find_of_size(const GridView<dim>     &grid,
-                 const CellGeometry<dim> &geometry,
-                 const int                n,
-                 Vector                  &at,
-                 const Vector            &half)
-    {
-      const BinView<dim> &bins = grid.bins;
-      Vector              first;
-      for (int d = 0; d < dim; ++d)
-        {
-          const double last =
-            std::round(static_cast<double>(bins.n[d]) *
-                       geometry.inverse_edge[d] / bins.inverse_edge[d]) -
-            2;
-          if (last < 0)
-            return false;
-          const Number lower = at[d] - half[d];
-          const Number inner = lower > 0. ? lower : Number{};
-          first[d] =
-            rounded_down(inner < last ? inner : broadcast<Number>(last));
-          at[d] -= first[d];
-          store(at[d] + half[d], end[d]);
-        }
-      for (int p = 0; p < n; ++p)
-        for (int c = 0; c < n_cells; ++c)
-          {
-            std::array<double, dim> middle;
-            for (int d = 0; d < dim; ++d)
-              middle[d] = bins.lower[d] + (first[d][p] + (c >> d & 1) + 0.5) /
-                                            geometry.inverse_edge[d];
-            const std::uint32_t there = bins.cell_at(middle);
-            if (there == invalid_cell)
-              return false;
-            const double ratio =
-              grid.cells[there].inverse_edge[0] / geometry.inverse_edge[0];
-            if (ratio > 1.5 || ratio < 0.75)
-              return false;
-            blocks[p][c] = &grid.cells[there].node;
-          }
-      return true;
-    }
+    /** Place of the first cell in the lattice of cells of one size. */
+    using Place = std::array<std::int64_t, 3>;
 
-    /** The place of node i of a block along d: 0, 1, 2. */
-    static constexpr int
-    digit(const int i, const int d)
-    {
-      return i / (d == 0 ? 1 : d == 1 ? 3 : 9) % 3;
-    }
+    bool
+    read_records(const BinView<dim> &bins, const Place &first);
 
-    /** The cell of the block that has node i, and which of its nodes that is.
-     */
-    static constexpr int
-    cell_with_node(const int i)
-    {
-      int result = 0;
-      for (int d = 0; d < dim; ++d)
-        result |= (digit(i, d) == 2) << d;
-      return result;
-    }
-
-    static constexpr int
-    node_in_cell(const int i)
-    {
-      int result = 0;
-      for (int d = 0; d < dim; ++d)
-        result |= (digit(i, d) != 0) << d;
-      return result;
-    }
-
-    // Of each point the records of the nodes of the cells of its block, and
-    // where in it the domain ends, in cells
-    const std::array<std::uint32_t, n_cells> *blocks[n_points][n_cells];
-    alignas(64) double end[dim][n_points];
+    bool
+    collect_records(const GridView<dim>     &grid,
+                    const CellGeometry<dim> &geometry,
+                    const Place             &first);
   };
 } // namespace limber
 

@@ -44,6 +44,16 @@ namespace limber
         set_pieces(grid);
     }
 
+    /** Call work(piece, i, record) for the nodes of all pieces. */
+    template <class Work>
+    void
+    for_nodes(const GridView<dim> &grid, const Work &work) const
+    {
+      for (int n = 0; n < n_pieces; ++n)
+        for (int i = 0; i < Linear<dim>::n_nodes; ++i)
+          work(pieces[n], i, grid.nodes + grid.cells[pieces[n].cell].node[i]);
+    }
+
     int                          n_pieces = 0;
     std::array<Piece, n_corners> pieces;
 

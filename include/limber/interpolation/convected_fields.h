@@ -71,38 +71,6 @@ namespace limber
 
 
 
-  /**
-   * What a point gives to the nodes: @p alike with N_i, along[k] with the
-   * change of N_i along edge k (null: nothing).
-   */
-  template <class Window, int dim>
-  __attribute__((always_inline)) inline void
-  give_to_nodes(const GridView<dim>          &grid,
-                const ConvectedDomain<dim>   &domain,
-                const typename Window::Lanes &alike,
-                const typename Window::Lanes *along)
-  {
-    using Lanes = typename Window::Lanes;
-    for (int n = 0; n < domain.n_pieces; ++n)
-      {
-        const auto              &piece = domain.pieces[n];
-        const CellGeometry<dim> &cell  = grid.cells[piece.cell];
-#pragma GCC unroll 8
-        for (int i = 0; i < Linear<dim>::n_nodes; ++i)
-          {
-            double *const record = grid.nodes + cell.node[i] + Window::start;
-            Lanes         sum = load<Lanes>(record) + piece.weight[i] * alike;
-            if (along != nullptr)
-#pragma GCC unroll 8
-              for (int k = 0; k < dim; ++k)
-                sum += piece.along[k][i] * along[k];
-            store(sum, record);
-          }
-      }
-  }
-
-
-
   /** Have the cells that corners of these points have entered take part. */
   template <int dim>
   __attribute__((noinline)) void

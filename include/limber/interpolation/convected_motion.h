@@ -22,25 +22,24 @@ namespace limber
 
   /**
    * New velocities of a pack, v = alpha (v + sum N dv) + (1 - alpha) sum N v
-   * with alpha = @p flip_share.
+   * with alpha = @p flip_share, from the means of dv and v (m/s).
    */
-  template <int dim, class Fields, class Lanes>
+  template <int dim, class Lanes>
   __attribute__((always_inline)) inline void
   take_velocity(const PointView<dim>  &points,
                 const Lanes           &lanes,
-                const Fields          &fields,
+                const PointPack<dim>  *increment,
+                const PointPack<dim>  *new_velocity,
                 const double           flip_share,
                 VelocityFindings<dim> &found)
   {
-    using Layout = NodeLayout<dim>;
     using Number = PointPack<dim>;
     Number squared{}, kept_squared{};
     for (int d = 0; d < dim; ++d)
       {
-        const Number flip =
-          lanes.load(points.velocity[d]) + fields.value(Layout::increment + d);
+        const Number flip = lanes.load(points.velocity[d]) + increment[d];
         const Number velocity =
-          flip + (1 - flip_share) * (fields.value(Layout::velocity + d) - flip);
+          flip + (1 - flip_share) * (new_velocity[d] - flip);
         lanes.store(velocity, points.velocity[d]);
         kept_squared += flip * flip;
         squared += velocity * velocity;
@@ -175,27 +174,29 @@ namespace limber
 
 
   /**
-   * The same for a pack, whose @p velocity (m/s) is the mean over domains: what
-   * moves those that turn inside out.
+   * The same for a pack with the @p velocity of the grid, whose means over
+   * domains move those that turn inside out.
    */
   template <int dim, class Lanes>
   __attribute__((noinline)) std::array<PointPack<dim>, dim>
-  carry_hexahedra(const ConvectedPack<dim>              &domains,
-                  const Lanes                           &lanes,
-                  const std::array<PointPack<dim>, dim> &velocity,
-                  const double                           step)
+  carry_hexahedra(const ConvectedPack<dim> &domains,
+                  const Lanes              &lanes,
+                  const FieldOnPack<dim>   &velocity,
+                  const double              step)
   {
     if (rarely(!domains.has_corners()))
       return carry_corners_one_by_one<dim>(domains, lanes.first, lanes.n, step);
     using Shape = Hexahedron<dim, PointPack<dim>>;
     Shape      shape;
-    const auto middle   = shape.set_corners(domains.moved_corners(step));
-    const auto centroid = shape.find_centroid();
+    const auto middle =
+      shape.set_corners(domains.moved_corners(velocity, step));
+    const auto                      centroid = shape.find_centroid();
     std::array<PointPack<dim>, dim> shift;
     for (int d = 0; d < dim; ++d)
       {
-        shift[d] = lanes.only_active(
-          shape.smallest > 0. ? middle[d] + centroid[d] : step * velocity[d]);
+        shift[d] =
+          lanes.only_active(shape.smallest > 0. ? middle[d] + centroid[d] :
+                                                  step * velocity.value[d]);
         for (int k = 0; k < dim; ++k)
           lanes.store(shape.edges[d][k], domains.points.domain[d * dim + k]);
         for (int t = 0; t < Shape::n_twists; ++t)
@@ -208,15 +209,16 @@ namespace limber
 
 
   /**
-   * Carry the domains of a pack along: R += @p step grad v R, step in s. Boxes
-   * of fixed size stay.
+   * Carry the domains of a pack along: R += @p step grad v R, step in s, with
+   * R^-1. Boxes of fixed size stay.
    */
-  template <int dim, class Fields, class Lanes>
+  template <int dim, class Lanes>
   __attribute__((always_inline)) inline void
-  carry_domains(const ConvectedPack<dim> &domains,
-                const Lanes              &lanes,
-                const Fields             &fields,
-                const double              step)
+  carry_domains(const ConvectedPack<dim>               &domains,
+                const Lanes                            &lanes,
+                const SmallMatrix<dim, PointPack<dim>> &inverse,
+                const FieldOnPack<dim>                 &velocity,
+                const double                            step)
   {
     using Number                 = PointPack<dim>;
     const PointView<dim> &points = domains.points;
@@ -229,10 +231,8 @@ namespace limber
 #pragma GCC unroll 3
       for (int e = 0; e < dim; ++e)
         {
-          R[d][e] = lanes.load(points.domain[d * dim + e]);
-          slope[d][e] =
-            step *
-            fields.slope(domains.inverse, NodeLayout<dim>::velocity + d, e);
+          R[d][e]     = lanes.load(points.domain[d * dim + e]);
+          slope[d][e] = step * velocity.slope(inverse, d, e);
         }
 #pragma GCC unroll 3
     for (int d = 0; d < dim; ++d)
@@ -332,29 +332,28 @@ namespace limber
 
 
   /**
-   * Move the points of a pack with the new velocity of the grid over @p step
-   * (s), and have their domains follow. Returns the displacement over the edge
-   * of their cell.
+   * Move the points of a pack with the @p velocity of the grid over @p step
+   * (s), and have their domains follow, with R^-1. Returns the displacement
+   * over the edge of their cell.
    */
-  template <int dim, class Fields, class Lanes>
+  template <int dim, class Lanes>
   __attribute__((always_inline)) inline PointPack<dim>
-  move_domains(const ConvectedPack<dim> &domains,
-               const Lanes              &lanes,
-               const Fields             &fields,
-               const double              step)
+  move_domains(const ConvectedPack<dim>               &domains,
+               const Lanes                            &lanes,
+               const SmallMatrix<dim, PointPack<dim>> &inverse,
+               const FieldOnPack<dim>                 &velocity,
+               const double                            step)
   {
     const PointView<dim>           &points = domains.points;
     const GridView<dim>            &grid   = domains.grid;
     std::array<PointPack<dim>, dim> shift;
-    for (int d = 0; d < dim; ++d)
-      shift[d] = fields.value(NodeLayout<dim>::velocity + d);
     if (rarely(points.domain_form == DomainForm::hexahedron))
-      shift = carry_hexahedra<dim>(domains, lanes, shift, step);
+      shift = carry_hexahedra<dim>(domains, lanes, velocity, step);
     else
       {
         for (int d = 0; d < dim; ++d)
-          shift[d] = lanes.only_active(step * shift[d]);
-        carry_domains(domains, lanes, fields, step);
+          shift[d] = lanes.only_active(step * velocity.value[d]);
+        carry_domains<dim>(domains, lanes, inverse, velocity, step);
       }
     const auto moved =
       move_points<dim>(points, grid, domains.cell, lanes, shift);

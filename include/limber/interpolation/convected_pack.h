@@ -8,24 +8,49 @@
 
 namespace limber
 {
+  /** A vector field of the grid on the domains of a pack (convected.h). */
+  template <int dim>
+  struct FieldOnPack
+  {
+    using Number = PointPack<dim>;
+    using Vector = std::array<Number, dim>;
+
+    /** Derivative of component d along axis e, with R^-1. */
+    Number
+    slope(const SmallMatrix<dim, Number> &inverse,
+          const int                       d,
+          const int                       e) const
+    {
+      Number result = change[0][d] * inverse[0][e];
+#pragma GCC unroll 3
+      for (int k = 1; k < dim; ++k)
+        result += change[k][d] * inverse[k][e];
+      return result;
+    }
+
+    Vector                       value;      // u
+    std::array<Vector, dim>      change;     // u,k
+    std::array<Vector, 1 << dim> at_corners; // where there are; not of boxes
+  };
+
+
+
   /**
    * The domains of the points of a pack (convected.h) and the functions of the
-   * nodes on them. Where all cells are alike, or those around, a domain no
-   * longer than one lies in a block of 2^dim cells: the functions of its 3^dim
-   * nodes are computed with the points as lanes, for the same formula whichever
-   * cells the corners are in. A pack with other domains is done point by point.
+   * nodes on them. Where all cells are alike, or those around, domains no
+   * longer than one lie in one block of cells: the functions of its nodes are
+   * computed with the points as lanes, for the same formula whichever cells
+   * the corners are in. A pack with other domains is done point by point.
    */
   template <int dim>
   class ConvectedPack
   {
   public:
     using Number                   = PointPack<dim>;
+    using Vector                   = std::array<Number, dim>;
+    using Matrix                   = SmallMatrix<dim, Number>;
     static constexpr int n_points  = pack_width<Number>;
     static constexpr int n_corners = 1 << dim;
-
-    /** A record of nodal slots for each point; those beyond mean nothing. */
-    template <class Window>
-    using Records = std::array<typename Window::Lanes, n_points>;
 
     /** Of points that are in @p cell. */
     template <class Lanes>
@@ -41,16 +66,14 @@ namespace limber
       , first(lanes.first)
       , n(lanes.n)
     {
-      Vector at; // from the lower corner of the bins, in cells
+      Vector xi;
       for (int d = 0; d < dim; ++d)
-        at[d] = (lanes.load(points.position[d]) - grid.bins.lower[d]) *
+        xi[d] = (lanes.load(points.position[d]) - grid.cells[cell].origin[d]) *
                 inverse_edge[d];
-      fits = points.has_boxes() ? set_boxes(at, lanes) :
+      fits = points.has_boxes() ? set_boxes(xi, lanes) :
              rarely(points.domain_form == DomainForm::hexahedron) ?
-                                  set_hexahedra(at, lanes) :
-                                  set_edges(at, lanes);
-      if (rarely(!fits))
-        invert_one_by_one();
+                                  set_hexahedra(xi, lanes) :
+                                  set_edges(xi, lanes);
     }
 
     const PointView<dim> &points;
@@ -60,58 +83,92 @@ namespace limber
     // 1/m; of all cells, or where these have several sizes of that of the pack
     const std::array<double, dim> &inverse_edge;
 
-    SmallMatrix<dim, Number> inverse; // R^-1, 1/m, of R as it counts
+    /** R^-1, 1/m, of R as it counts. */
+    __attribute__((always_inline)) Matrix
+    inverse() const
+    {
+      if (rarely(!fits))
+        return inverse_one_by_one();
+      if (points.has_boxes())
+        {
+          Matrix result;
+#pragma GCC unroll 3
+          for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 3
+            for (int d = 0; d < dim; ++d)
+              result[k][d] = k == d ? inverse_edge[d] / edges[d][d] : Number{};
+          return result;
+        }
+      const auto   cof = cofactor<dim>(edges);
+      const Number one = 1. / determinant<dim>(edges);
+      Matrix       result;
+#pragma GCC unroll 3
+      for (int k = 0; k < dim; ++k)
+#pragma GCC unroll 3
+        for (int d = 0; d < dim; ++d)
+          result[k][d] = cof[d][k] * (one * inverse_edge[d]);
+      return result;
+    }
 
-    /** u and u,k (convected.h) of fields in the slots of the window. */
+    /** Before take() and give(), which see nothing but means. */
+    void
+    find_means()
+    {
+      if (rarely(!fits))
+        return;
+      points.has_boxes() ? on_boxes.find_means(block) :
+                           at_corners.find_means(block);
+    }
+
+    /** The fields in n slots of the nodal records from @p slot on, u. */
+    template <int n_slots>
+    std::array<Number, n_slots>
+    take(const unsigned int slot) const
+    {
+      if (rarely(!fits))
+        return take_one_by_one<n_slots>(slot);
+      return functions().template take<n_slots>(block, grid.nodes, slot);
+    }
+
+    /** Add N_i times what points give, by slots of the window, to the nodes. */
     template <class Window>
-    __attribute__((always_inline)) void
-    take(Records<Window> &mean, std::array<Records<Window>, dim> &along) const
+    void
+    give(const std::array<Number, Window::width> &given) const
     {
-      using Record = typename Window::Lanes;
       if (rarely(!fits))
-        return take_one_by_one<Window>(mean, along);
-      const auto each = [&](const auto &functions)
-        __attribute__((always_inline))
-      {
-        for (int p = 0; p < n; ++p)
-          {
-            std::array<Record, dim> change;
-            functions.template take<Window>(
-              block, grid.nodes, p, mean[p], change);
-            for (int k = 0; k < dim; ++k)
-              along[k][p] = change[k];
-          }
-      };
-      points.has_boxes() ? each(on_boxes) : each(at_corners);
+        return give_one_by_one<Window>(given, nullptr);
+      functions().template give<Window>(block, grid.nodes, given);
     }
 
-    /** Add N_i @p alike and the changes of N_i times @p along to the nodes. */
-    template <class Window, bool has_alike, bool has_along>
-    __attribute__((always_inline)) void
-    give(const Records<Window>                  &alike,
-         const std::array<Records<Window>, dim> &along) const
+    /** The vector field from @p slot on, u and u,k. */
+    void
+    take_field(const unsigned int slot, FieldOnPack<dim> &field) const
     {
-      using Record = typename Window::Lanes;
       if (rarely(!fits))
-        return give_one_by_one<Window, has_along>(alike, along);
-      const auto each = [&](const auto &functions)
-        __attribute__((always_inline))
-      {
-        for (int p = 0; p < n; ++p)
-          {
-            std::array<Record, dim> own;
-            for (int k = 0; has_along && k < dim; ++k)
-              own[k] = along[k][p];
-            functions.template give<Window, has_alike, has_along>(
-              block, grid.nodes, p, alike[p], own);
-          }
-      };
-      points.has_boxes() ? each(on_boxes) : each(at_corners);
+        return take_field_one_by_one(slot, field);
+      if (points.has_boxes())
+        return on_boxes.take_with_changes(
+          block, grid.nodes, slot, field.value, field.change);
+      at_corners.take_at_corners(block, grid.nodes, slot, field.at_corners);
+      at_corners.combine(field.at_corners, field.value, field.change);
     }
 
-    using Vector = std::array<Number, dim>;
+    /** Add N_i times @p given and, to the forces, the changes of N_i times
+     * @p along to the nodes. */
+    template <class Window>
+    void
+    give_with_changes(const std::array<Number, Window::width> &given,
+                      const std::array<Vector, dim>           &along) const
+    {
+      if (rarely(!fits))
+        return give_one_by_one<Window>(given, &along);
+      points.has_boxes() ? on_boxes.template give_with_changes<Window>(
+                             block, grid.nodes, given, along) :
+                           at_corners.template give_with_changes<Window>(
+                             block, grid.nodes, given, along);
+    }
 
-    /** Whether velocity_at_corners() is there: hexahedra, all in blocks. */
+    /** Whether moved_corners() is there: hexahedra, all in a block. */
     bool
     has_corners() const
     {
@@ -120,32 +177,33 @@ namespace limber
 
     /**
      * Where the corners of the hexahedra are, from their points (m), once they
-     * have moved for the time @p step (s) with the velocity of the grid there.
+     * have moved for the time @p step (s) with the velocity @p field there.
      */
     std::array<Vector, n_corners>
-    moved_corners(const double step) const
+    moved_corners(const FieldOnPack<dim> &field, const double step) const
     {
-      auto result = at_corners.at_corners(block,
-                                          grid.nodes,
-                                          n,
-                                          NodeLayout<dim>::moving_velocity);
+      std::array<Vector, n_corners> result;
       for (int c = 0; c < n_corners; ++c)
         for (int d = 0; d < dim; ++d)
           result[c][d] =
-            (at_corners.corner(c, d) - place[d]) / inverse_edge[d] +
-            step * result[c][d];
+            offsets[c][d] / inverse_edge[d] + step * field.at_corners[c][d];
       return result;
     }
 
   private:
-    using Matrix = SmallMatrix<dim, Number>;
+    const MeanFunctions<dim> &
+    functions() const
+    {
+      if (points.has_boxes())
+        return on_boxes;
+      return at_corners;
+    }
 
     /** Convected domains; false if one is none for a block. */
     template <class Lanes>
     __attribute__((always_inline)) bool
-    set_edges(Vector &at, const Lanes &lanes)
+    set_edges(const Vector &xi, const Lanes &lanes)
     {
-      Matrix edges, in_cells;
       Vector half;
       Number box    = broadcast<Number>(flattest_domain);
       auto   fitted = box > 0.;
@@ -156,25 +214,24 @@ namespace limber
 #pragma GCC unroll 3
           for (int k = 0; k < dim; ++k)
             {
-              edges[d][k]    = lanes.load(points.domain[d * dim + k]);
-              in_cells[d][k] = edges[d][k] * inverse_edge[d];
-              half[d] += magnitude(in_cells[d][k]);
+              edges[d][k] =
+                lanes.load(points.domain[d * dim + k]) * inverse_edge[d];
+              half[d] += magnitude(edges[d][k]);
             }
           fitted &= half[d] <= 0.5;
           box *= half[d];
         }
-      if (rarely(!all(fitted & (determinant<dim>(in_cells) > box))) ||
-          !block.find(grid, cell, n, at, half))
+      if (rarely(!all(fitted & (determinant<dim>(edges) > box))) ||
+          !block.find(grid, cell, xi, half))
         return false;
-      invert(edges);
-      at_corners.set(at, in_cells);
+      at_corners.set(block, xi, edges);
       return true;
     }
 
     /** Hexahedra; out of the way of the others. */
     template <class Lanes>
     __attribute__((noinline)) bool
-    set_hexahedra(Vector at, const Lanes &lanes)
+    set_hexahedra(const Vector &xi, const Lanes &lanes)
     {
       Hexahedron<dim, Number> shape; // in cells
       for (int d = 0; d < dim; ++d)
@@ -200,22 +257,18 @@ namespace limber
         }
       fitted &= shape.smallest > box;
       fitted &= determinant<dim>(shape.edges) > box;
-      if (rarely(!all(fitted)) || !block.find(grid, cell, n, at, half))
+      if (rarely(!all(fitted)) || !block.find(grid, cell, xi, half))
         return false;
-      auto edges = shape.edges;
-      for (int d = 0; d < dim; ++d)
-        for (int k = 0; k < dim; ++k)
-          edges[d][k] /= inverse_edge[d];
-      invert(edges);
-      at_corners.set(at, shape);
-      place = at;
+      edges   = shape.edges;
+      offsets = shape.offsets;
+      at_corners.set(block, xi, shape);
       return true;
     }
 
     /** Boxes along the axes. */
     template <class Lanes>
     __attribute__((always_inline)) bool
-    set_boxes(Vector &at, const Lanes &lanes)
+    set_boxes(const Vector &xi, const Lanes &lanes)
     {
       Vector half;
 #pragma GCC unroll 3
@@ -228,29 +281,15 @@ namespace limber
                                always_inline)) { return lanes.load(array); }) *
                              inverse_edge[d],
                            broadcast<Number>(smallest_half_box));
-          half[d] = half[d] < largest_half_box ?
-                      half[d] :
-                      broadcast<Number>(largest_half_box);
+          half[d] = smaller(half[d], broadcast<Number>(largest_half_box));
 #pragma GCC unroll 3
           for (int k = 0; k < dim; ++k)
-            inverse[k][d] = k == d ? inverse_edge[d] / half[d] : Number{};
+            edges[d][k] = k == d ? half[d] : Number{};
         }
-      if (!block.find(grid, cell, n, at, half))
+      if (!block.find(grid, cell, xi, half))
         return false;
-      on_boxes.set(at, half);
+      on_boxes.set(block, xi, half);
       return true;
-    }
-
-    __attribute__((always_inline)) void
-    invert(const Matrix &edges)
-    {
-      const auto   cof = cofactor<dim>(edges);
-      const Number one = 1. / determinant<dim>(edges);
-#pragma GCC unroll 3
-      for (int k = 0; k < dim; ++k)
-#pragma GCC unroll 3
-        for (int d = 0; d < dim; ++d)
-          inverse[k][d] = cof[d][k] * one;
     }
 
     // One by one: seldom, and out of the way.
@@ -261,9 +300,10 @@ namespace limber
       return ConvectedDomain<dim>(points, grid, cell, first + p);
     }
 
-    __attribute__((noinline, cold)) void
-    invert_one_by_one()
+    __attribute__((noinline, cold)) Matrix
+    inverse_one_by_one() const
     {
+      Matrix result;
       for (int p = 0; p < n_points; ++p)
         {
           const auto one =
@@ -271,98 +311,71 @@ namespace limber
               .inverse();
           for (int k = 0; k < dim; ++k)
             for (int d = 0; d < dim; ++d)
-              inverse[k][d][p] = one[k][d];
+              result[k][d][p] = one[k][d];
         }
+      return result;
+    }
+
+    template <int n_slots>
+    __attribute__((noinline, cold)) std::array<Number, n_slots>
+    take_one_by_one(const unsigned int slot) const
+    {
+      std::array<Number, n_slots> result;
+      set_zero(result);
+      for (int p = 0; p < n; ++p)
+        domain_of(p).for_nodes(
+          grid, [&](const auto &piece, const int i, const double *const node) {
+            for (int s = 0; s < n_slots; ++s)
+              result[s][p] += piece.weight[i] * node[slot + s];
+          });
+      return result;
+    }
+
+    __attribute__((noinline, cold)) void
+    take_field_one_by_one(const unsigned int slot,
+                          FieldOnPack<dim>  &field) const
+    {
+      set_zero(field.value);
+      set_zero(field.change);
+      for (int p = 0; p < n; ++p)
+        domain_of(p).for_nodes(
+          grid, [&](const auto &piece, const int i, const double *const node) {
+            for (int d = 0; d < dim; ++d)
+              {
+                field.value[d][p] += piece.weight[i] * node[slot + d];
+                for (int k = 0; k < dim; ++k)
+                  field.change[k][d][p] += piece.along[k][i] * node[slot + d];
+              }
+          });
     }
 
     template <class Window>
     __attribute__((noinline, cold)) void
-    take_one_by_one(Records<Window>                  &mean,
-                    std::array<Records<Window>, dim> &along) const
+    give_one_by_one(const std::array<Number, Window::width> &given,
+                    const std::array<Vector, dim> *const     along) const
     {
+      using Layout = NodeLayout<dim>;
       for (int p = 0; p < n; ++p)
-        {
-          const FieldsOnDomain<dim, Window> fields(domain_of(p), grid);
-          mean[p] = fields.mean;
-          for (int k = 0; k < dim; ++k)
-            along[k][p] = fields.along[k];
-        }
-    }
-
-    template <class Window, bool has_along>
-    __attribute__((noinline, cold)) void
-    give_one_by_one(const Records<Window>                  &alike,
-                    const std::array<Records<Window>, dim> &along) const
-    {
-      for (int p = 0; p < n; ++p)
-        {
-          std::array<typename Window::Lanes, dim> own;
-          for (int k = 0; k < dim; ++k)
-            own[k] = along[k][p];
-          give_to_nodes<Window>(grid,
-                                domain_of(p),
-                                alike[p],
-                                has_along ? own.data() : nullptr);
-        }
+        domain_of(p).for_nodes(
+          grid, [&](const auto &piece, const int i, double *const node) {
+            for (unsigned int s = 0; s < Window::width; ++s)
+              node[Window::start + s] += piece.weight[i] * given[s][p];
+            for (int k = 0; along != nullptr && k < dim; ++k)
+              for (int d = 0; d < dim; ++d)
+                node[Layout::force + d] +=
+                  piece.along[k][i] * (*along)[k][d][p];
+          });
     }
 
     const std::size_t first;
     const int         n;
-    bool              fits; // every domain, in a block
+    bool              fits; // every domain, in one block
 
+    Matrix               edges; // R as it counts, in cells, where they fit
     BlockNodes<dim>      block;
-    BoxFunctions<dim>    on_boxes;   // of one form of domains or ...
-    CornerFunctions<dim> at_corners; // ... of the others
-    Vector               place; // of hexahedra only: in the block, in cells
-  };
-
-
-
-  /** Fields of the grid on the domains of a pack, in the slots of a window. */
-  template <int dim, class Window>
-  class FieldsOnPack
-  {
-    using Pack   = ConvectedPack<dim>;
-    using Number = typename Pack::Number;
-
-  public:
-    __attribute__((always_inline)) FieldsOnPack(const Pack &domains)
-    {
-      typename Pack::template Records<Window>                  of_mean;
-      std::array<typename Pack::template Records<Window>, dim> of_change;
-      set_zero(of_mean);
-      for (auto &records : of_change)
-        set_zero(records);
-      domains.template take<Window>(of_mean, of_change);
-      mean = slots_of<Number>(of_mean);
-      for (int k = 0; k < dim; ++k)
-        change[k] = slots_of<Number>(of_change[k]);
-    }
-
-    /** u of the field in that slot. */
-    const Number &
-    value(const unsigned int slot) const
-    {
-      return mean[Window::lane_of(slot)];
-    }
-
-    /** Derivative along axis e of the field in that slot, with R^-1. */
-    Number
-    slope(const SmallMatrix<dim, Number> &inverse,
-          const unsigned int              slot,
-          const int                       e) const
-    {
-      Number result = change[0][Window::lane_of(slot)] * inverse[0][e];
-#pragma GCC unroll 3
-      for (int k = 1; k < dim; ++k)
-        result += change[k][Window::lane_of(slot)] * inverse[k][e];
-      return result;
-    }
-
-  private:
-    using Slots = std::array<Number, Window::width>;
-    Slots                  mean;
-    std::array<Slots, dim> change;
+    BoxFunctions<dim>    on_boxes;         // of one form of domains or ...
+    CornerFunctions<dim> at_corners;       // ... of the others
+    std::array<Vector, n_corners> offsets; // of corners of hexahedra, in cells
   };
 } // namespace limber
 

@@ -759,9 +759,9 @@ namespace
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const ConvectedDomain<dim> domain(points, grid, points.cell[p], p);
-        const FieldsOnDomain<dim, Window>       fields(domain, grid);
-        const auto                              inverse = domain.inverse();
-        std::array<typename Window::Lanes, dim> along{};
+        const FieldsOnDomain<dim, Window> fields(domain, grid);
+        const auto                        inverse = domain.inverse();
+        SmallMatrix<dim, double>          along{};
         for (int d = 0; d < dim; ++d)
           for (int e = 0; e < dim; ++e)
             {
@@ -771,11 +771,14 @@ namespace
               of_points += power;
               scale += std::abs(power);
               for (int k = 0; k < dim; ++k)
-                along[k][Window::lane_of(Layout::force + d)] +=
-                  stress * inverse[k][e];
+                along[k][d] += stress * inverse[k][e];
             }
-        const typename Window::Lanes nothing{};
-        give_to_nodes<Window, dim>(grid, domain, nothing, along.data());
+        domain.for_nodes(
+          grid, [&](const auto &piece, const int i, double *const record) {
+            for (int k = 0; k < dim; ++k)
+              for (int d = 0; d < dim; ++d)
+                record[Layout::force + d] += piece.along[k][i] * along[k][d];
+          });
       }
     run.nodes.start_sum(Layout::force, Layout::force + dim);
     run.nodes.finish_sum();

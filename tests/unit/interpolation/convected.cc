@@ -522,8 +522,8 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
 
 
 
-// A pack of domains in blocks of cells and the same one by one: where bins are
-// finer than cells nobody looks for blocks.
+// A pack of domains in blocks of cells, whose nodes are read from the table or
+// found by cells, and the same one by one, where the table knows no node.
 TYPED_TEST(ConvectedDomains, GiveAndTakeTheSameInBlocksAsOneByOne)
 {
   constexpr int dim   = TestFixture::dim;
@@ -539,10 +539,20 @@ TYPED_TEST(ConvectedDomains, GiveAndTakeTheSameInBlocksAsOneByOne)
   take.flip_share      = 0.9;
   std::vector<std::vector<double>> results;
   std::vector<std::uint32_t>       entered;
-  for (const bool in_blocks : {true, false})
+  const std::vector<std::uint32_t> no_nodes(this->grid.bin_nodes.size(),
+                                            BinView<dim>::no_node);
+  enum class Way
+  {
+    table,
+    cells,
+    one_by_one
+  };
+  for (const Way way : {Way::table, Way::cells, Way::one_by_one})
     {
-      this->grid.bins.one_per_cell = in_blocks;
-      this->grid.nodes             = wanted;
+      this->grid.bins.one_per_cell = way != Way::cells;
+      this->grid.bins.nodes =
+        way == Way::table ? this->grid.bin_nodes.data() : no_nodes.data();
+      this->grid.nodes = wanted;
       std::fill(this->grid.occupied.begin(), this->grid.occupied.end(), 0);
       this->grid.entered.clear();
       this->domains     = edges;
@@ -565,17 +575,20 @@ TYPED_TEST(ConvectedDomains, GiveAndTakeTheSameInBlocksAsOneByOne)
         }
       results.push_back(all);
       std::sort(this->grid.entered.begin(), this->grid.entered.end());
-      if (in_blocks)
+      if (way == Way::table)
         entered = this->grid.entered;
       else
         EXPECT_EQ(this->grid.entered, entered);
     }
-  ASSERT_EQ(results[0].size(), results[1].size());
-  for (std::size_t k = 0; k < results[0].size(); ++k)
-    ASSERT_NEAR(results[0][k],
-                results[1][k],
-                1e-12 + 1e-12 * std::abs(results[0][k]))
-      << k;
+  for (const auto &others : {results[1], results[2]})
+    {
+      ASSERT_EQ(results[0].size(), others.size());
+      for (std::size_t k = 0; k < results[0].size(); ++k)
+        ASSERT_NEAR(results[0][k],
+                    others[k],
+                    1e-12 + 1e-12 * std::abs(results[0][k]))
+          << k;
+    }
   EXPECT_GT(entered.size(), 5u);
 }
 
@@ -609,11 +622,14 @@ TYPED_TEST(ConvectedDomains, GiveNoNegativeMass)
             smallest[p] = std::min(smallest[p], half);
           }
     }
+  const std::vector<std::uint32_t> no_nodes(this->grid.bin_nodes.size(),
+                                            BinView<dim>::no_node);
   for (const bool in_blocks : {true, false})
     for (std::size_t alone = 0; alone < points.size;
          alone += TestFixture::has_twists ? 7 : 1) // which are slow one by one
       {
-        this->grid.bins.one_per_cell = in_blocks;
+        this->grid.bins.nodes =
+          in_blocks ? this->grid.bin_nodes.data() : no_nodes.data();
         std::fill(this->grid.nodes.begin(), this->grid.nodes.end(), 0.);
         for (std::size_t p = 0; p < points.size; ++p)
           points.mass[p] = p == alone ? 1 : 0;

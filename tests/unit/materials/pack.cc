@@ -172,10 +172,10 @@ TEST(Packs, TakeTheirLanesTwice)
 
 namespace
 {
-  /** From slots to records and back, with @p width points. */
+  /** From slots to records, with @p width points. */
   template <int width, int n_slots>
   void
-  expect_slots_to_return()
+  expect_records()
   {
     using Number = Pack<width>;
     std::array<Number, n_slots> slots;
@@ -186,13 +186,6 @@ namespace
     for (int p = 0; p < width; ++p)
       for (int s = 0; s < n_slots; ++s)
         EXPECT_EQ(records[p][s], 10. * s + p);
-    if constexpr (n_slots <= width)
-      {
-        const auto back = slots_of<Number>(records);
-        for (int s = 0; s < n_slots; ++s)
-          for (int p = 0; p < width; ++p)
-            EXPECT_EQ(back[s][p], slots[s][p]);
-      }
   }
 } // namespace
 
@@ -200,9 +193,9 @@ namespace
 
 TEST(Packs, OfSlotsBecomeRecordsOfPoints)
 {
-  expect_slots_to_return<4, 2>();
-  expect_slots_to_return<4, 4>();
-  expect_slots_to_return<4, 8>();
-  expect_slots_to_return<8, 4>();
-  expect_slots_to_return<8, 8>();
+  expect_records<4, 2>();
+  expect_records<4, 4>();
+  expect_records<4, 8>();
+  expect_records<8, 4>();
+  expect_records<8, 8>();
 }
