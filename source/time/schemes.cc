@@ -69,7 +69,8 @@ namespace limber
     account_loads(Layout::strain_velocity);
     move_as_strained();
     interpolate_hanging();
-    update_stress_and_move(step);
+    // one field to look up where both are the same
+    update_stress_and_move(step, !moves_as_strained);
   }
 
 
@@ -88,7 +89,7 @@ namespace limber
     account_loads(Layout::strain_velocity);
     centre_velocity();
     interpolate_hanging();
-    update_stress_and_move(0.5 * step);
+    update_stress_and_move(0.5 * step, true);
   }
 
 

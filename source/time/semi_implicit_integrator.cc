@@ -136,7 +136,7 @@ namespace limber
     if (lightest_solid > 0)
       strain_by_heavy_nodes();
     this->interpolate_hanging();
-    this->update_stress_and_move(this->step);
+    this->update_stress_and_move(this->step, true);
   }
 
 

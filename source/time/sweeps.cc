@@ -175,11 +175,12 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::update_stress_and_move(const double length)
+  ExplicitIntegrator<dim>::update_stress_and_move(const double length,
+                                                  const bool   remapped)
   {
     StressSweep what;
     what.step     = length;
-    what.remapped = true;
+    what.remapped = remapped;
     what.move     = step;
     strain(what);
   }
@@ -288,7 +289,7 @@ namespace limber
   template void
   ExplicitIntegrator<2>::update_stress(double);
   template void
-  ExplicitIntegrator<2>::update_stress_and_move(double);
+  ExplicitIntegrator<2>::update_stress_and_move(double, bool);
   template void
   ExplicitIntegrator<2>::g2p_update_stress_and_move();
   template void
@@ -312,7 +313,7 @@ namespace limber
   template void
   ExplicitIntegrator<3>::update_stress(double);
   template void
-  ExplicitIntegrator<3>::update_stress_and_move(double);
+  ExplicitIntegrator<3>::update_stress_and_move(double, bool);
   template void
   ExplicitIntegrator<3>::g2p_update_stress_and_move();
   template void

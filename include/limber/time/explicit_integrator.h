@@ -126,7 +126,7 @@ namespace limber
     void
     update_stress(double length);
     void
-    update_stress_and_move(double length);
+    update_stress_and_move(double length, bool remapped);
     void
     g2p_update_stress_and_move();
     void
