@@ -513,13 +513,15 @@ namespace limber
   {
     if (!moves_as_strained)
       return;
-    for (const std::uint32_t node : parts.nodes.active_nodes())
-      {
-        double *const record = parts.nodes.record(node);
-        std::copy_n(record + Layout::strain_velocity,
-                    dim,
-                    record + Layout::moving_velocity);
-      }
+    parts.nodes.for_each_field([&]() {
+      for (const std::uint32_t node : parts.nodes.active_nodes())
+        {
+          double *const record = parts.nodes.record(node);
+          std::copy_n(record + Layout::strain_velocity,
+                      dim,
+                      record + Layout::moving_velocity);
+        }
+    });
     lap(Verb::advance_nodes);
   }
 
