@@ -20,7 +20,7 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
-             (layout.crossings ? 1 : 0) +
+             (layout.crossings ? 1 : 0) + (layout.reach ? 1 : 0) +
              n_domain_components(layout.domains, dim) +
              (layout.initial_frame ? dim * dim : 0) +
              (layout.has_reference() ? dim : 0);
@@ -132,6 +132,8 @@ namespace limber
         array = fields[f++].data();
     if (layout.crossings)
       result.crossings = fields[f++].data();
+    if (layout.reach)
+      result.reach = fields[f++].data();
     result.domain_form = layout.domains;
     for (unsigned int k = 0, n = n_domain_components(layout.domains, dim);
          k < n;
@@ -209,6 +211,8 @@ namespace limber
     numbered("affine", layout.affine ? dim * dim : 0);
     if (layout.crossings)
       names.push_back("crossings");
+    if (layout.reach)
+      names.push_back("reach");
     numbered("domain", n_domain_components(layout.domains, dim));
     numbered("deformation gradient", layout.initial_frame ? dim * dim : 0);
     if (layout.has_reference())
@@ -565,6 +569,8 @@ namespace limber
         for (double *const component : points.domain)
           if (component != nullptr)
             component[p] /= 2;
+        if (points.reach != nullptr)
+          points.reach[p] /= 2;
         ++size_classes[p];
         for (unsigned int child = 1; child < n_children; ++child, ++last)
           {
@@ -596,7 +602,8 @@ namespace limber
   void
   MaterialPoints<dim>::join(const std::vector<std::vector<std::size_t>> &sets)
   {
-    double *const mass = view().mass;
+    const PointView<dim> points = view();
+    double *const        mass   = points.mass;
     for (const auto &set : sets)
       {
         double all = 0;
@@ -613,6 +620,8 @@ namespace limber
             field[set[0]] += sum / all;
           }
         mass[set[0]] = all;
+        if (points.reach != nullptr)
+          points.reach[set[0]] *= 2;
         --size_classes[set[0]];
         for (std::size_t i = 1; i < set.size(); ++i)
           cell[set[i]] = invalid_cell;

@@ -8,8 +8,10 @@
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 #include <limber/simulation/set_up.h>
+#include <limber/time/contact_geometry.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace limber
 {
@@ -94,6 +96,7 @@ namespace limber
       layout.volumetric    = stress->volumetric();
       layout.affine        = problem.method.transfer == Transfer::apic;
       layout.crossings     = !body.is_liquid && body.frame == Frame::current;
+      layout.reach         = !problem.obstacles.empty() && !body.is_liquid;
       layout.domains       = domain_form(kernel);
       layout.initial_frame = body.frame == Frame::initial;
       layout.size_class    = grid.has_levels();
@@ -111,6 +114,39 @@ namespace limber
 
 
 
+    // Of the points of a lattice one in each row has its end of the row next to
+    // the surface: its material ends there. Others stand for a cube.
+    template <int dim>
+    void
+    set_reach(const Shape<dim>                                        &shape,
+              const std::function<double(const dealii::Point<dim> &)> &density,
+              MaterialPoints<dim>                                     &points)
+    {
+      const PointView<dim> view = points.view();
+      if (view.reach == nullptr)
+        return;
+      for (std::size_t p = 0; p < view.size; ++p)
+        {
+          dealii::Point<dim> place;
+          for (int d = 0; d < dim; ++d)
+            place[d] = view.position[d][p];
+          const double half_edge =
+            half_edge_of<dim>(view.mass[p] / density(place));
+          view.reach[p] = half_edge;
+          if (const auto surface = shape.signed_distance(place))
+            {
+              double along_row = 0;
+              for (int d = 0; d < dim; ++d)
+                along_row = std::max(along_row, std::abs(surface->normal[d]));
+              const double depth = -surface->value;
+              if (depth > 0 && depth < 2 * half_edge * along_row)
+                view.reach[p] = depth;
+            }
+        }
+    }
+
+
+
     template <int dim>
     void
     fill_with_points(const Problem<dim>        &problem,
@@ -118,15 +154,13 @@ namespace limber
                      MaterialBody<dim>         &body)
     {
       const InitialState<dim> initial(problem, body.description, *body.stress);
-      seed<dim>(
-        body.description,
-        grid,
-        [&](const dealii::Point<dim> &place) {
-          return body.description.density() /
-                 body.stress->volume_ratio_at(initial.at(place));
-        },
-        body.points);
+      const auto              density = [&](const dealii::Point<dim> &place) {
+        return body.description.density() /
+               body.stress->volume_ratio_at(initial.at(place));
+      };
+      seed<dim>(body.description, grid, density, body.points);
       set_initial_state(problem, body);
+      set_reach<dim>(*body.description.shape, density, body.points);
 
       if (body.points.n_global() == 0)
         throw InputError("The body '" + body.description.name +

@@ -108,6 +108,23 @@ namespace limber
       return state.history[0];
     }
 
+    /**
+     * Surfaces of the material across the unit vector n are sqrt(n . b . n)
+     * times as far apart as without stress, b = J^(2/3) be.
+     */
+    template <int dim>
+    double
+    stretch_along(const State<dim, double>      &state,
+                  const std::array<double, dim> &n) const
+    {
+      const auto be     = isochoric::strain<dim>(state.history);
+      double     square = 0;
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          square += n[i] * be[i][j] * n[j];
+      return std::cbrt(state.history[0]) * std::sqrt(square);
+    }
+
     template <class Number>
     Number
     volumetric_energy(const Number &J) const

@@ -225,7 +225,7 @@ namespace limber
    *  - initialise(): the state at rest under a given pressure;
    *  - start_under(), admits(), where it does not take pressure: the state
    * under a given Cauchy stress, and whether the law may be in it;
-   *  - volume_ratio(), strain_energy(), volumetric_energy(),
+   *  - volume_ratio(), stretch_along(), strain_energy(), volumetric_energy(),
    *    wave_speed_squared() of a state; dynamic_viscosity();
    *  - is_elastic, whether the stress follows from the deformation alone;
    *  - is_plastic, whether it flows plastically: elastic coefficients then say

@@ -160,6 +160,21 @@ namespace limber
       return 1. - state.pressure / bulk_modulus;
     }
 
+    /** exp(n . eps . n): positive, whatever the strain. */
+    template <int dim>
+    double
+    stretch_along(const State<dim, double>      &state,
+                  const std::array<double, dim> &n) const
+    {
+      const auto matrix = full_matrix<dim>(state.deviator);
+      double     stress = 0; // n . s . n
+      for (int i = 0; i < dim; ++i)
+        for (int j = 0; j < dim; ++j)
+          stress += n[i] * matrix[i][j] * n[j];
+      return std::exp(stress / (2 * shear_modulus) -
+                      state.pressure / (3 * bulk_modulus));
+    }
+
     template <class Number>
     Number
     volumetric_energy(const Number &pressure) const

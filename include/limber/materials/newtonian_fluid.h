@@ -152,6 +152,15 @@ namespace limber
       return state.history[0];
     }
 
+    /** A liquid keeps no shape. */
+    template <int dim>
+    double
+    stretch_along(const State<dim, double> &state,
+                  const std::array<double, dim> &) const
+    {
+      return std::pow(state.history[0], 1. / dim);
+    }
+
     /** J p, Pa; exact also where the bulk modulus is very large. */
     double
     kirchhoff_pressure(const double J) const

@@ -21,6 +21,7 @@ namespace limber
     int          volumetric = -1; // history variable; -1: the pressure
     bool         affine     = false;
     bool         crossings  = false;            // how many cells it has entered
+    bool         reach      = false;            // how far its material goes
     DomainForm   domains    = DomainForm::none; // GIMP, CPDI
     bool         reference  = false; // reference position, for displacements
     bool         size_class = false; // the level of cells they are made for
@@ -275,8 +276,8 @@ namespace limber
     const PointLayout          layout;
 
     // Position, velocity, mass, pressure, deviator, history, affine part,
-    // crossings, domain, deformation gradient; the reference position, if there
-    // is one, comes last.
+    // crossings, reach, domain, deformation gradient; the reference position,
+    // if there is one, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;

@@ -90,6 +90,9 @@ namespace limber
     double        *volumetric = nullptr;
     std::uint32_t *cell       = nullptr; // of the place
     double        *crossings  = nullptr; // cells entered since the start
+    // From the point to where its material ends towards an obstacle, m
+    // (time/obstacle_contact.h)
+    double *reach = nullptr;
 
     /** Whether the functions of the grid are those of the initial places. */
     bool

@@ -124,6 +124,14 @@ namespace limber
         volume_ratio[p] = law.template volume_ratio<dim>(state_of(points, p));
     }
 
+    double
+    stretch_along(const PointView<dim>          &points,
+                  const std::size_t              p,
+                  const std::array<double, dim> &direction) const override
+    {
+      return law.template stretch_along<dim>(state_of(points, p), direction);
+    }
+
     unsigned int
     n_history() const override
     {

@@ -190,6 +190,16 @@ namespace limber
     virtual void
     volume_ratio(const PointView<dim> &points, double *volume_ratio) const = 0;
 
+    /**
+     * How much wider the material at point p is along a unit vector, between
+     * surfaces across it, than without stress. What has flowed plastically
+     * tells its elastic part.
+     */
+    virtual double
+    stretch_along(const PointView<dim>          &points,
+                  std::size_t                    p,
+                  const std::array<double, dim> &direction) const = 0;
+
     virtual unsigned int
     n_history() const = 0;
     /** Where the variables that have names begin in the history. */

@@ -3,6 +3,7 @@
 #define limber_time_obstacle_contact_h
 
 #include <limber/points/cell_batch.h>
+#include <limber/time/contact_impulses.h>
 #include <limber/time/integrator.h>
 
 #include <vector>
@@ -10,26 +11,30 @@
 namespace limber
 {
   /**
-   * Contact of bodies with rigid obstacles (Obstacle): that of two bodies
-   * (Contact) of which one has infinitely more mass. A point touches an
-   * obstacle if its distance from it is at most half its edge, phi(x_p) <= R_p.
-   * A node of whose mass half (0.35 with quadratic, 0.2 with cubic splines) is
-   * that of such points has the normal
+   * Contact of bodies with rigid obstacles (Obstacle) where the material of
+   * their points ends (ContactImpulses). With the distance phi(x_p) of a point
+   * from the obstacle, n = grad phi, and R_p, how far the material of the point
+   * goes towards it, the gap
    *
-   *   n = sum m_p N_i(x_p) grad phi(x_p) / |...|
+   *   g_p = phi(x_p) - R_p
    *
-   * over them, and there material presses if its new velocity approaches that
-   * of the obstacle, w = v - v_o, w . n < 0. Then it gets the impulse
+   * must not become negative. It grows by w . n, the velocity against the
+   * obstacle at the surface,
    *
-   *   J = m (-(w . n) n - s),
+   *   w = v(x_p) - R_p grad v(x_p) n - v_o = sum_i a_pi v_i - v_o,
+   *   a_pi = N_i(x_p) - R_p n . grad N_i(x_p),
    *
-   * with the sliding velocity s, or as much of it that m |s| is mu J_n
-   * (Coulomb). What presses in the new velocity does so in every other one of
-   * the step. The velocity of the obstacle is that of its way over the step, so
-   * that its place and that of what it pushes stay together.
+   * which is therefore at least -g_p / dt. The impulse that this takes acts at
+   * the surface, so that the stress reaches it. What has gone in nevertheless
+   * comes out slowly.
    *
-   * The distance of points rather than of nodes decides, as nodes inside the
-   * obstacle have mass up to a cell before anything touches it.
+   * R_p is the stretch across the surface times what it is without: the
+   * distance of the point from the surface of its body where it is the last of
+   * its row there, half the edge of its cube else.
+   *
+   * What presses in the new velocity does so in every other one of the step.
+   * The velocity of the obstacle is that of its way over the step, so that its
+   * place and that of what it pushes stay together.
    */
   template <int dim>
   class ObstacleContact
@@ -54,7 +59,7 @@ namespace limber
 
     /**
      * Hold the velocity at @p slot as the new one is going to be held, that is
-     * (p + dt f) / m, with the force in the records.
+     * (p + dt f) / m + dt g, with the force in the records.
      */
     void
     hold_before(unsigned int slot, double step);
@@ -77,46 +82,24 @@ namespace limber
   private:
     using Layout = NodeLayout<dim>;
     using Vector = dealii::Tensor<1, dim>;
+    using Place  = typename ContactImpulses<dim>::Place;
 
-    enum class State
-    {
-      free,
-      sliding,
-      sticking
-    };
-
-    /** A node of a field of which enough touches an obstacle. */
+    /** What the ledger wants to know of an impulse. */
     struct Touch
     {
-      std::uint32_t node;
-      unsigned int  field, obstacle;
-      Vector        normal;   // out of the obstacle
-      Vector        velocity; // of the obstacle at the node, m/s
-      Vector        arm;      // from the centre of the obstacle, m
-      State         state = State::free;
-      // Of the exchange, for the ledger: velocity against the obstacle as it
-      // has been brought, and sliding afterwards, m/s; impulse of friction
-      Vector brought, slides, rubbing;
+      unsigned int obstacle;
+      Vector       arm;      // from the centre of the obstacle, m
+      Vector       increase; // of velocity without contact, m/s
+      // Velocity against the obstacle, m/s: brought or given back; the new one
+      Vector brought, after;
+      Vector held; // impulse that holds what is brought, kg m/s
     };
 
-    /** Sums at nodes over the points of a field that touch an obstacle. */
-    struct Sums
+    /** Where obstacles are at the ends of a step. */
+    struct Way
     {
-      // sum m_p N_i times the normals at the points, the place of the node, 1
-      static constexpr unsigned int normal = 0;
-      static constexpr unsigned int place  = dim;
-      static constexpr unsigned int weight = 2 * dim;
-      static constexpr unsigned int stride = 2 * dim + 1;
-
-      LazyArray<double> records;
-      RecordExchange    exchange{stride};
+      ObstaclePlace<dim> before, after;
     };
-
-    const Obstacle<dim> &
-    obstacle(const Touch &touch) const
-    {
-      return parts.problem.obstacles[touch.obstacle];
-    }
 
     void
     check_start() const;
@@ -127,42 +110,21 @@ namespace limber
               unsigned int              obstacle,
               const ObstaclePlace<dim> &place,
               std::uint32_t             cell);
-    void
-    add_points(unsigned int              body,
-               unsigned int              obstacle,
-               const ObstaclePlace<dim> &place,
-               Sums                     &some);
     template <int degree>
     void
-    add_points_of_degree(unsigned int              body,
-                         unsigned int              obstacle,
-                         const ObstaclePlace<dim> &place,
-                         Sums                     &some);
+    find_points(unsigned int body, const std::vector<Way> &ways, double step);
     void
-    find_places();
-    void
-    give_to_masters(Sums &some) const;
-    void
-    add_touches(unsigned int field,
-                unsigned int obstacle,
-                double       time,
-                double       step,
-                const Sums  &some);
+    account(const Place  &place,
+            const Touch  &touch,
+            const Vector &relative,
+            const Vector &held,
+            double        share);
 
-    State
-    decide(const Touch &touch, const Vector &velocity) const;
-    template <class Work>
-    void
-    for_each_held(unsigned int slot, const Work &work);
-    void
-    exchange(Touch &touch);
-
-    const RunParts<dim> parts;
-    std::vector<double> half_edge; // largest of the points of a body, m
-    std::vector<Sums>   sums;      // of an obstacle and a field
-    std::vector<Touch>  touches;
-    // Of nodes, dim numbers each, m; only where some may hang
-    LazyArray<double> places;
+    const RunParts<dim>  parts;
+    std::vector<double>  edge; // largest of the points of a body, m
+    ContactImpulses<dim> impulses;
+    std::vector<Touch>   touches;              // of each impulse
+    bool                 holds_before = false; // in this step
     // From the middles of cells when they asked, m, 0 where nobody has; and
     // where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;

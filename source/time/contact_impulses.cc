@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/node_vector.h>
+#include <limber/time/contact_geometry.h>
+#include <limber/time/contact_impulses.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    // After four, what is pressed and what rolls does what it does after
+    // sixteen.
+    constexpr unsigned int n_passes = 4;
+  } // namespace
+
+
+
+  template <int dim>
+  ContactImpulses<dim>::ContactImpulses(NodalFields<dim> &nodes)
+    : nodes(nodes)
+    , given(nodes.n_fields())
+    , expected(nodes.n_fields())
+  {
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::reinit()
+  {
+    const std::size_t n = nodes.table.n();
+    clear();
+    for (Given &of_field : given)
+      of_field.records.reinit(n * Given::stride);
+    for (auto &velocities : expected)
+      velocities.reinit(n * dim);
+    hanging.clear();
+    if (!nodes.table.hanging.empty())
+      hanging.resize(n);
+    for (std::size_t k = 0; k < nodes.table.hanging.size(); ++k)
+      hanging[nodes.table.hanging[k].node] = k + 1;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::clear()
+  {
+    for (Given &of_field : given)
+      {
+        for (const std::uint32_t node : of_field.nodes)
+          of_field.records[node * Given::stride + Given::mass] = 0;
+        of_field.nodes.clear();
+      }
+    places.clear();
+    shares.clear();
+    any_place = false;
+  }
+
+
+
+  template <int dim>
+  typename ContactImpulses<dim>::Place &
+  ContactImpulses<dim>::add_place()
+  {
+    places.emplace_back();
+    places.back().begin = places.back().end = shares.size();
+    return places.back();
+  }
+
+
+
+  // The velocity of a hanging node is that of its masters.
+  template <int dim>
+  void
+  ContactImpulses<dim>::add_share(const unsigned int  field,
+                                  const std::uint32_t node,
+                                  const double        share)
+  {
+    if (share == 0)
+      return;
+    if (!hanging.empty() && hanging[node] > 0)
+      for (const auto &[master, weight] :
+           nodes.table.hanging[hanging[node] - 1].masters)
+        shares.push_back({master, field, weight * share});
+    else
+      shares.push_back({node, field, share});
+    places.back().end = shares.size();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::finish_adding()
+  {
+    any_place =
+      dealii::Utilities::MPI::max<unsigned int>(places.empty() ? 0 : 1,
+                                                nodes.grid.communicator) > 0;
+    if (!any_place)
+      return;
+    const auto mass = [this](const Share &share) -> double & {
+      return given[share.field]
+        .records[share.node * Given::stride + Given::mass];
+    };
+    for (const Place &place : places)
+      for (std::size_t k = place.begin; k < place.end; ++k)
+        mass(shares[k]) += std::abs(shares[k].value) * place.mass;
+    for (Given &of_field : given)
+      {
+        of_field.exchange.start(nodes.node_plan(),
+                                of_field.records.data(),
+                                Given::mass,
+                                Given::mass + 1);
+        of_field.exchange.finish(of_field.records.data());
+        for (const std::uint32_t node : nodes.active_nodes())
+          if (of_field.records[node * Given::stride + Given::mass] > 0)
+            of_field.nodes.push_back(node);
+      }
+    for (Place &place : places)
+      {
+        double sum = 0;
+        for (std::size_t k = place.begin; k < place.end; ++k)
+          sum += std::abs(shares[k].value) * mass(shares[k]) /
+                 nodes.record(shares[k].field, shares[k].node)[Layout::mass];
+        place.relaxation = place.mass / sum;
+      }
+  }
+
+
+
+  template <int dim>
+  typename ContactImpulses<dim>::Vector
+  ContactImpulses<dim>::at(const Place &place, const unsigned int slot) const
+  {
+    Vector result;
+    for (std::size_t k = place.begin; k < place.end; ++k)
+      result +=
+        shares[k].value *
+        vector_in<dim>(nodes.record(shares[k].field, shares[k].node) + slot);
+    return result;
+  }
+
+
+
+  template <int dim>
+  template <class Velocity>
+  typename ContactImpulses<dim>::Vector
+  ContactImpulses<dim>::relative_velocity(const Place    &place,
+                                          const Velocity &velocity) const
+  {
+    Vector result = -place.velocity;
+    for (std::size_t k = place.begin; k < place.end; ++k)
+      result += shares[k].value *
+                vector_in<dim>(velocity(shares[k].field, shares[k].node));
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::give(const Place &place, const Vector &impulse)
+  {
+    for (std::size_t k = place.begin; k < place.end; ++k)
+      {
+        double *const record = given[shares[k].field].records.data() +
+                               std::size_t(shares[k].node) * Given::stride +
+                               Given::momentum;
+        for (int d = 0; d < dim; ++d)
+          record[d] += shares[k].value * impulse[d];
+      }
+  }
+
+
+
+  // add(field, node, change of velocity)
+  template <int dim>
+  template <class Add>
+  void
+  ContactImpulses<dim>::add_given(const Add &add)
+  {
+    for (unsigned int field = 0; field < given.size(); ++field)
+      {
+        double *const records = given[field].records.data();
+        given[field].exchange.start(nodes.node_plan(),
+                                    records,
+                                    Given::momentum,
+                                    Given::momentum + dim);
+        given[field].exchange.finish(records);
+        for (const std::uint32_t node : given[field].nodes)
+          {
+            double *const momentum =
+              records + std::size_t(node) * Given::stride + Given::momentum;
+            add(field,
+                node,
+                vector_in<dim>(momentum) /
+                  nodes.record(field, node)[Layout::mass]);
+            std::fill_n(momentum, dim, 0.);
+          }
+      }
+  }
+
+
+
+  // From the impulses that places have and the velocity has.
+  template <int dim>
+  template <class Velocity, class Add>
+  void
+  ContactImpulses<dim>::press(const Velocity &velocity, const Add &add)
+  {
+    for (unsigned int pass = 0; pass < n_passes; ++pass)
+      {
+        for (Place &place : places)
+          {
+            const Vector relative = relative_velocity(place, velocity);
+            const Vector wanted =
+              place.impulse +
+              place.relaxation * (place.least * place.normal - relative);
+            const double pressing = std::max(0., wanted * place.normal);
+            Vector       along    = along_surface(wanted, place.normal);
+            const double rubbing  = along.norm();
+            // not mu J_n where mu may be infinite and J_n zero
+            const double most = pressing > 0 ? place.friction * pressing : 0;
+            place.sticks      = pressing > 0 && rubbing <= most;
+            if (rubbing > most)
+              along *= most / rubbing;
+            const Vector impulse = pressing * place.normal + along;
+            give(place, impulse - place.impulse);
+            place.impulse = impulse;
+          }
+        add_given(add);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::expect(const double step, const Vector &gravity)
+  {
+    for (Place &place : places)
+      place.impulse = 0;
+    const auto velocity = [this](const unsigned int  field,
+                                 const std::uint32_t node) {
+      return expected[field].data() + std::size_t(node) * dim;
+    };
+    for (unsigned int field = 0; field < given.size(); ++field)
+      for (const std::uint32_t node : given[field].nodes)
+        {
+          const double *const record = nodes.record(field, node);
+          store_vector<dim>((vector_in<dim>(record + Layout::momentum) +
+                             step * vector_in<dim>(record + Layout::force)) /
+                                record[Layout::mass] +
+                              step * gravity,
+                            velocity(field, node));
+        }
+    press(velocity,
+          [&](const unsigned int  field,
+              const std::uint32_t node,
+              const Vector       &change) {
+            for (int d = 0; d < dim; ++d)
+              velocity(field, node)[d] += change[d];
+          });
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::exchange()
+  {
+    const auto add = [this](const unsigned int  field,
+                            const std::uint32_t node,
+                            const Vector       &change) {
+      double *const record = nodes.record(field, node);
+      for (int d = 0; d < dim; ++d)
+        {
+          record[Layout::velocity + d] += change[d];
+          record[Layout::increment + d] += change[d];
+        }
+    };
+    for (const Place &place : places)
+      give(place, place.impulse);
+    add_given(add);
+    press(
+      [this](const unsigned int field, const std::uint32_t node) {
+        return nodes.record(field, node) + Layout::velocity;
+      },
+      add);
+  }
+
+
+
+  template <int dim>
+  const std::vector<typename ContactImpulses<dim>::Vector> &
+  ContactImpulses<dim>::hold(const unsigned int slot)
+  {
+    holding.assign(places.size(), Vector());
+    const auto velocity = [&](const unsigned int  field,
+                              const std::uint32_t node) {
+      return nodes.record(field, node) + slot;
+    };
+    for (unsigned int pass = 0; pass < n_passes; ++pass)
+      {
+        for (std::size_t p = 0; p < places.size(); ++p)
+          {
+            const Place &place = places[p];
+            if (!place.presses())
+              continue;
+            Vector lacking =
+              place.least * place.normal - relative_velocity(place, velocity);
+            if (!place.sticks)
+              lacking -= along_surface(lacking, place.normal);
+            const Vector impulse = place.relaxation * lacking;
+            give(place, impulse);
+            holding[p] += impulse;
+          }
+        add_given([&](const unsigned int  field,
+                      const std::uint32_t node,
+                      const Vector       &change) {
+          for (int d = 0; d < dim; ++d)
+            velocity(field, node)[d] += change[d];
+        });
+      }
+    return holding;
+  }
+
+
+
+  template class ContactImpulses<2>;
+  template class ContactImpulses<3>;
+} // namespace limber
