@@ -72,16 +72,7 @@ namespace limber
     void
     go_to(const PointView<dim> &points, const std::size_t p)
     {
-      go_to(natural_place(points, cell, p));
-    }
-
-    /**
-     * Go to a place with these natural coordinates, beyond the cell as well:
-     * there are the polynomials of this cell.
-     */
-    void
-    go_to(const std::array<double, dim> &xi)
-    {
+      const auto xi = natural_place(points, cell, p);
       for (int d = 0; d < dim; ++d)
         if constexpr (degree == 1)
           {
