@@ -74,21 +74,17 @@ namespace limber
 
 
 
-  // The velocity of a hanging node is that of its masters.
   template <int dim>
   void
   ContactImpulses<dim>::add_share(const unsigned int  field,
                                   const std::uint32_t node,
                                   const double        share)
   {
-    if (share == 0)
-      return;
-    if (!hanging.empty() && hanging[node] > 0)
-      for (const auto &[master, weight] :
-           nodes.table.hanging[hanging[node] - 1].masters)
-        shares.push_back({master, field, weight * share});
-    else
-      shares.push_back({node, field, share});
+    if (share != 0)
+      for_each_master(node,
+                      [&](const std::uint32_t master, const double weight) {
+                        shares.push_back({master, field, weight * share});
+                      });
     places.back().end = shares.size();
   }
 

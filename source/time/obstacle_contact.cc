@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/node_vector.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact_geometry.h>
 #include <limber/time/obstacle_contact.h>
@@ -18,6 +19,22 @@ namespace limber
     // Of what has gone in, what comes out in a step, and of R_p at most.
     constexpr double out      = 0.1;
     constexpr double most_out = 0.02;
+
+    // Of the mass of a node that holds a liquid, what has to touch. Splines see
+    // more points beyond those that touch.
+    double
+    least_touching_share(const KernelKind kernel)
+    {
+      switch (kernel)
+        {
+          case KernelKind::quadratic:
+            return 0.35;
+          case KernelKind::cubic:
+            return 0.2;
+          default:
+            return 0.5;
+        }
+    }
 
 
 
@@ -43,6 +60,7 @@ namespace limber
   ObstacleContact<dim>::ObstacleContact(const RunParts<dim> &parts)
     : parts(parts)
     , impulses(parts.nodes)
+    , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
     , cell_distance(parts.problem.obstacles.size())
   {
     parts.ledger.obstacles.resize(parts.problem.obstacles.size());
@@ -71,6 +89,11 @@ namespace limber
     touches.clear();
     for (auto &distances : cell_distance)
       distances.reinit(std::size_t(parts.grid.n_cells()) * (1 + dim));
+    for (const auto &body : parts.bodies)
+      if (body->description.is_liquid)
+        for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
+          sums[o * parts.nodes.n_fields() + body->description.nodal_field]
+            .records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
   }
 
 
@@ -90,10 +113,12 @@ namespace limber
         ways.push_back({ObstaclePlace<dim>(obstacle, time),
                         ObstaclePlace<dim>(obstacle, time + step)});
       }
+    clear_sums();
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
       with_degree(parts.nodes.view(), [&](const auto degree) {
         find_points<decltype(degree)::value>(b, ways, step);
       });
+    add_nodes(ways, step);
     impulses.finish_adding();
   }
 
@@ -143,9 +168,9 @@ namespace limber
                                     const std::vector<Way> &ways,
                                     const double            step)
   {
-    const GridView<dim>  grid   = parts.nodes.view();
-    const PointView<dim> points = parts.bodies[body]->points.view();
-    const unsigned int   field  = parts.bodies[body]->description.nodal_field;
+    const GridView<dim>  grid      = parts.nodes.view();
+    const PointView<dim> points    = parts.bodies[body]->points.view();
+    const bool           is_liquid = parts.bodies[body]->description.is_liquid;
     const StressUpdate<dim>  &stress          = *parts.bodies[body]->stress;
     const double              inverse_density = 1 / stress.density();
     std::vector<unsigned int> asked; // obstacles
@@ -168,64 +193,179 @@ namespace limber
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           dealii::Point<dim> x;
-          Vector             velocity;
           for (int d = 0; d < dim; ++d)
-            {
-              x[d]        = points.position[d][p];
-              velocity[d] = points.velocity[d][p];
-            }
-          const double unstretched =
-            points.reach != nullptr ?
-              points.reach[p] :
-              half_edge_of<dim>(points.mass[p] * inverse_density);
+            x[d] = points.position[d][p];
           for (const unsigned int o : asked)
             {
               const SignedDistance<dim> distance = ways[o].before.distance(x);
               if (distance.value > 2 * edge[body])
                 continue;
-              std::array<double, dim> normal;
-              for (int d = 0; d < dim; ++d)
-                normal[d] = distance.normal[d];
-              const double reach =
-                unstretched * stress.stretch_along(points, p, normal);
-              Vector against;
-              if (parts.problem.obstacles[o].moves())
-                against =
-                  (ways[o].after.place_of(ways[o].before.start_of(x)) - x) /
-                  step;
-              const double gap = distance.value - reach;
-              const double approach =
-                std::max(0., (against - velocity) * distance.normal);
-              if (gap > 2 * step * approach + touching * reach)
-                continue;
-              Place &place   = impulses.add_place();
-              place.normal   = distance.normal;
-              place.velocity = against;
-              place.least =
-                (gap > 0 ? -gap : std::min(-out * gap, most_out * reach)) /
-                step;
-              place.friction = parts.problem.obstacles[o].friction;
-              place.mass     = points.mass[p];
               functions.go_to(points, p);
-              for (int k = 0; k < functions.n; ++k)
+              if (is_liquid)
+                add_to_nodes(body,
+                             {p,
+                              o,
+                              x,
+                              distance,
+                              half_edge_of<dim>(points.mass[p] *
+                                                inverse_density)},
+                             functions);
+              else
                 {
-                  double slope = 0; // along the normal, 1/m
+                  std::array<double, dim> normal;
                   for (int d = 0; d < dim; ++d)
-                    slope += normal[d] * functions.slope(k, d);
-                  impulses.add_share(field,
-                                     functions.node(k),
-                                     functions.value(k) - reach * slope);
+                    normal[d] = distance.normal[d];
+                  add_surface(body,
+                              {p,
+                               o,
+                               x,
+                               distance,
+                               points.reach[p] *
+                                 stress.stretch_along(points, p, normal)},
+                              functions,
+                              ways[o],
+                              step);
                 }
-              touches.push_back(
-                {o,
-                 x - reach * distance.normal - ways[o].before.centre(),
-                 {},
-                 {},
-                 {},
-                 {}});
             }
         }
     });
+  }
+
+
+
+  template <int dim>
+  template <class Functions>
+  void
+  ObstacleContact<dim>::add_surface(const unsigned int body,
+                                    const Near        &near,
+                                    const Functions   &functions,
+                                    const Way         &way,
+                                    const double       step)
+  {
+    const PointView<dim> points   = parts.bodies[body]->points.view();
+    const Obstacle<dim> &obstacle = parts.problem.obstacles[near.obstacle];
+    const Vector        &normal   = near.distance.normal;
+    Vector               against, velocity;
+    if (obstacle.moves())
+      against = way.velocity(near.x, step);
+    for (int d = 0; d < dim; ++d)
+      velocity[d] = points.velocity[d][near.point];
+    const double gap      = near.distance.value - near.reach;
+    const double approach = std::max(0., (against - velocity) * normal);
+    if (gap > 2 * step * approach + touching * near.reach)
+      return;
+
+    Place &place   = impulses.add_place();
+    place.normal   = normal;
+    place.velocity = against;
+    place.least =
+      (gap > 0 ? -gap : std::min(-out * gap, most_out * near.reach)) / step;
+    place.friction = obstacle.friction;
+    place.mass     = points.mass[near.point];
+    for (int k = 0; k < functions.n; ++k)
+      {
+        double slope = 0; // along the normal, 1/m
+        for (int d = 0; d < dim; ++d)
+          slope += normal[d] * functions.slope(k, d);
+        impulses.add_share(parts.bodies[body]->description.nodal_field,
+                           functions.node(k),
+                           functions.value(k) - near.reach * slope);
+      }
+    touches.push_back({near.obstacle,
+                       near.x - near.reach * normal - way.before.centre(),
+                       {},
+                       {},
+                       {},
+                       {}});
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::clear_sums()
+  {
+    for (Sums &some : sums)
+      if (some.records.size() > 0)
+        for (const std::uint32_t node : parts.nodes.active_nodes())
+          std::fill_n(some.records.data() + std::size_t(node) * Sums::stride,
+                      Sums::stride,
+                      0.);
+  }
+
+
+
+  template <int dim>
+  template <class Functions>
+  void
+  ObstacleContact<dim>::add_to_nodes(const unsigned int body,
+                                     const Near        &near,
+                                     const Functions   &functions)
+  {
+    if (near.distance.value > near.reach)
+      return;
+    Sums        &some = sums[near.obstacle * parts.nodes.n_fields() +
+                      parts.bodies[body]->description.nodal_field];
+    const double mass = parts.bodies[body]->points.view().mass[near.point];
+    for (int k = 0; k < functions.n; ++k)
+      impulses.for_each_master(
+        functions.node(k), [&](const std::uint32_t node, const double share) {
+          const double  weight = mass * share * functions.value(k);
+          double *const record =
+            some.records.data() + std::size_t(node) * Sums::stride;
+          for (int d = 0; d < dim; ++d)
+            {
+              record[Sums::normal + d] += weight * near.distance.normal[d];
+              record[Sums::place + d] += weight * near.x[d];
+            }
+          record[Sums::weight] += weight;
+        });
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::add_nodes(const std::vector<Way> &ways,
+                                  const double            step)
+  {
+    const double least_share = least_touching_share(parts.problem.grid.kernel);
+    for (unsigned int s = 0; s < sums.size(); ++s)
+      {
+        if (sums[s].records.size() == 0)
+          continue;
+        double *const records = sums[s].records.data();
+        sums[s].exchange.start(parts.nodes.node_plan(),
+                               records,
+                               0,
+                               Sums::stride);
+        sums[s].exchange.finish(records);
+        const unsigned int obstacle = s / parts.nodes.n_fields(),
+                           field    = s % parts.nodes.n_fields();
+        for (const std::uint32_t node : parts.nodes.active_nodes())
+          {
+            const double *const record =
+              records + std::size_t(node) * Sums::stride;
+            const double weight = record[Sums::weight];
+            const double mass   = parts.nodes.record(field, node)[Layout::mass];
+            const Vector normal = vector_in<dim>(record + Sums::normal);
+            if (!parts.nodes.owns(node) || !(weight > 0) ||
+                weight < least_share * mass ||
+                !(normal.norm() > 1e-6 * weight)) // met from all sides alike
+              continue;
+            const dealii::Point<dim> x(vector_in<dim>(record + Sums::place) /
+                                       weight);
+            Place                   &place = impulses.add_place();
+            place.normal                   = normal / normal.norm();
+            place.friction = parts.problem.obstacles[obstacle].friction;
+            place.mass     = mass;
+            if (parts.problem.obstacles[obstacle].moves())
+              place.velocity = ways[obstacle].velocity(x, step);
+            impulses.add_share(field, node, 1);
+            touches.push_back(
+              {obstacle, x - ways[obstacle].before.centre(), {}, {}, {}, {}});
+          }
+      }
   }
 
 

@@ -73,6 +73,22 @@ namespace limber
     void
     add_share(unsigned int field, std::uint32_t node, double share);
 
+    /**
+     * Call work(node, weight) with the nodes whose velocities make up that of
+     * a node of the grid: itself, or the masters of one that hangs.
+     */
+    template <class Work>
+    void
+    for_each_master(const std::uint32_t node, const Work &work) const
+    {
+      if (!hanging.empty() && hanging[node] > 0)
+        for (const auto &[master, weight] :
+             nodes.table.hanging[hanging[node] - 1].masters)
+          work(master, weight);
+      else
+        work(node, 1.);
+    }
+
     /** After all of these; masses of nodes are known. Collective. */
     void
     finish_adding();

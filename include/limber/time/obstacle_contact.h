@@ -99,6 +99,36 @@ namespace limber
     struct Way
     {
       ObstaclePlace<dim> before, after;
+
+      /** Velocity of an obstacle at a place, m/s. */
+      Vector
+      velocity(const dealii::Point<dim> &x, const double step) const
+      {
+        return (after.place_of(before.start_of(x)) - x) / step;
+      }
+    };
+
+    /** A point that is next to an obstacle. */
+    struct Near
+    {
+      std::size_t         point;
+      unsigned int        obstacle;
+      dealii::Point<dim>  x;
+      SignedDistance<dim> distance;
+      double              reach; // R_p, m
+    };
+
+    /** Sums at nodes over the points of liquids that touch an obstacle. */
+    struct Sums
+    {
+      // sum m_p N_i times the normals at the points, their places, 1
+      static constexpr unsigned int normal = 0;
+      static constexpr unsigned int place  = dim;
+      static constexpr unsigned int weight = 2 * dim;
+      static constexpr unsigned int stride = 2 * dim + 1;
+
+      LazyArray<double> records; // none where the field has no liquid
+      RecordExchange    exchange{stride};
     };
 
     void
@@ -113,6 +143,22 @@ namespace limber
     template <int degree>
     void
     find_points(unsigned int body, const std::vector<Way> &ways, double step);
+    template <class Functions>
+    void
+    add_surface(unsigned int     body,
+                const Near      &near,
+                const Functions &functions,
+                const Way       &way,
+                double           step);
+    template <class Functions>
+    void
+    add_to_nodes(unsigned int     body,
+                 const Near      &near,
+                 const Functions &functions);
+    void
+    clear_sums();
+    void
+    add_nodes(const std::vector<Way> &ways, double step);
     void
     account(const Place  &place,
             const Touch  &touch,
@@ -123,6 +169,7 @@ namespace limber
     const RunParts<dim>  parts;
     std::vector<double>  edge; // largest of the points of a body, m
     ContactImpulses<dim> impulses;
+    std::vector<Sums>    sums;                 // of an obstacle and a field
     std::vector<Touch>   touches;              // of each impulse
     bool                 holds_before = false; // in this step
     // From the middles of cells when they asked, m, 0 where nobody has; and
