@@ -319,6 +319,7 @@ namespace limber
               record[Sums::place + d] += weight * near.x[d];
             }
           record[Sums::weight] += weight;
+          record[Sums::own] += weight;
         });
   }
 
@@ -338,7 +339,7 @@ namespace limber
         sums[s].exchange.start(parts.nodes.node_plan(),
                                records,
                                0,
-                               Sums::stride);
+                               Sums::n_summed);
         sums[s].exchange.finish(records);
         const unsigned int obstacle = s / parts.nodes.n_fields(),
                            field    = s % parts.nodes.n_fields();
@@ -349,8 +350,7 @@ namespace limber
             const double weight = record[Sums::weight];
             const double mass   = parts.nodes.record(field, node)[Layout::mass];
             const Vector normal = vector_in<dim>(record + Sums::normal);
-            if (!parts.nodes.owns(node) || !(weight > 0) ||
-                weight < least_share * mass ||
+            if (!(record[Sums::own] > 0) || weight < least_share * mass ||
                 !(normal.norm() > 1e-6 * weight)) // met from all sides alike
               continue;
             const dealii::Point<dim> x(vector_in<dim>(record + Sums::place) /
@@ -358,7 +358,8 @@ namespace limber
             Place                   &place = impulses.add_place();
             place.normal                   = normal / normal.norm();
             place.friction = parts.problem.obstacles[obstacle].friction;
-            place.mass     = mass;
+            // its part of the impulse of the node
+            place.mass = mass * record[Sums::own] / weight;
             if (parts.problem.obstacles[obstacle].moves())
               place.velocity = ways[obstacle].velocity(x, step);
             impulses.add_share(field, node, 1);

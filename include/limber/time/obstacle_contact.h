@@ -122,10 +122,13 @@ namespace limber
     struct Sums
     {
       // sum m_p N_i times the normals at the points, their places, 1
-      static constexpr unsigned int normal = 0;
-      static constexpr unsigned int place  = dim;
-      static constexpr unsigned int weight = 2 * dim;
-      static constexpr unsigned int stride = 2 * dim + 1;
+      static constexpr unsigned int normal   = 0;
+      static constexpr unsigned int place    = dim;
+      static constexpr unsigned int weight   = 2 * dim;
+      static constexpr unsigned int n_summed = 2 * dim + 1;
+      // The weight of the points of this rank
+      static constexpr unsigned int own    = n_summed;
+      static constexpr unsigned int stride = n_summed + 1;
 
       LazyArray<double> records; // none where the field has no liquid
       RecordExchange    exchange{stride};
