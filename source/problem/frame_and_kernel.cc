@@ -226,6 +226,8 @@ namespace limber
     std::string
     what_it_may_meet(const Body<dim> &body, const Problem<dim> &problem)
     {
+      if (!problem.obstacles.empty())
+        return "it may roll on an obstacle, or fold onto itself";
       bool held = false, walls = false;
       for (unsigned int side = 0; side < 2 * dim; ++side)
         {
@@ -253,9 +255,6 @@ namespace limber
       if (!obstacle && problem.grid.levels > 0)
         obstacle = Hindrance{"does not go with cells of several sizes yet",
                              ", or 'Grid/Levels = 0'"};
-      if (!obstacle && !root.list("Obstacles").empty())
-        obstacle = Hindrance{"does not notice obstacles",
-                             ", or leave 'Obstacles' empty"};
       if (body.frame == Frame::initial && obstacle)
         throw InputError("The frame 'initial' in " + section.where("Frame") +
                          " " + obstacle->cause + ". Set 'Frame = current'" +

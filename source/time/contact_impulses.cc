@@ -33,6 +33,7 @@ namespace limber
   {
     const std::size_t n = nodes.table.n();
     clear();
+    former_places.clear();
     for (Given &of_field : given)
       of_field.records.reinit(n * Given::stride);
     for (auto &velocities : expected)
@@ -56,6 +57,8 @@ namespace limber
           of_field.records[node * Given::stride + Given::mass] = 0;
         of_field.nodes.clear();
       }
+    places.swap(former_places);
+    shares.swap(former_shares);
     places.clear();
     shares.clear();
     any_place = false;
@@ -131,14 +134,35 @@ namespace limber
 
   template <int dim>
   typename ContactImpulses<dim>::Vector
-  ContactImpulses<dim>::at(const Place &place, const unsigned int slot) const
+  ContactImpulses<dim>::sum(const Place              &place,
+                            const std::vector<Share> &of_places,
+                            const unsigned int        slot) const
   {
     Vector result;
     for (std::size_t k = place.begin; k < place.end; ++k)
-      result +=
-        shares[k].value *
-        vector_in<dim>(nodes.record(shares[k].field, shares[k].node) + slot);
+      result += of_places[k].value *
+                vector_in<dim>(
+                  nodes.record(of_places[k].field, of_places[k].node) + slot);
     return result;
+  }
+
+
+
+  template <int dim>
+  typename ContactImpulses<dim>::Vector
+  ContactImpulses<dim>::at(const Place &place, const unsigned int slot) const
+  {
+    return sum(place, shares, slot);
+  }
+
+
+
+  template <int dim>
+  typename ContactImpulses<dim>::Vector
+  ContactImpulses<dim>::at_former(const Place       &place,
+                                  const unsigned int slot) const
+  {
+    return sum(place, former_shares, slot);
   }
 
 

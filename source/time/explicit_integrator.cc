@@ -35,7 +35,7 @@ namespace limber
         contact.emplace(parts);
       }
     if (!parts.problem.obstacles.empty())
-      obstacles.emplace(parts);
+      obstacles.emplace(parts, leapfrogs());
     if (filters_velocity(parts.problem.method.transfer))
       full_mass.emplace(parts.grid, boundaries);
     find_speeds();

@@ -38,6 +38,24 @@ namespace limber
 
 
 
+    // n . grad N = d . grad_X N with d = F^-1 n in the initial frame.
+    template <int dim>
+    dealii::Tensor<1, dim>
+    against_gradients(const PointView<dim>         &points,
+                      const std::size_t             p,
+                      const dealii::Tensor<1, dim> &normal)
+    {
+      if (!points.in_initial_frame())
+        return normal;
+      dealii::Tensor<2, dim> F;
+      for (int d = 0; d < dim; ++d)
+        for (int k = 0; k < dim; ++k)
+          F[d][k] = points.deformation[d * dim + k][p];
+      return invert(F) * normal;
+    }
+
+
+
     template <int dim>
     dealii::Tensor<1, 3>
     moment_of(const dealii::Tensor<1, dim> &arm,
@@ -57,10 +75,12 @@ namespace limber
 
 
   template <int dim>
-  ObstacleContact<dim>::ObstacleContact(const RunParts<dim> &parts)
+  ObstacleContact<dim>::ObstacleContact(const RunParts<dim> &parts,
+                                        const bool           leapfrogs)
     : parts(parts)
     , impulses(parts.nodes)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
+    , leapfrogs(leapfrogs)
     , cell_distance(parts.problem.obstacles.size())
   {
     parts.ledger.obstacles.resize(parts.problem.obstacles.size());
@@ -103,6 +123,7 @@ namespace limber
   ObstacleContact<dim>::find(const double time, const double step)
   {
     impulses.clear();
+    touches.swap(former);
     touches.clear();
     holds_before = false;
     std::vector<Way> ways;
@@ -124,20 +145,58 @@ namespace limber
 
 
 
-  // Where the middle of the cell has come nearer in the frame of the obstacle
-  // since it asked, the distance is less by no more than that, or by twice as
-  // much if it is of first order. At rest each cell asks once.
+  // Of the material in a cell, and how far any of it is from there, m. In the
+  // initial frame it has left the cell.
+  template <int dim>
+  dealii::Point<dim>
+  ObstacleContact<dim>::middle_of(const PointView<dim> &points,
+                                  const CellBatch      &batch,
+                                  double               &reach) const
+  {
+    dealii::Point<dim> middle;
+    reach = 0;
+    if (points.in_initial_frame())
+      {
+        for (std::size_t p = batch.begin; p < batch.end; ++p)
+          for (int d = 0; d < dim; ++d)
+            middle[d] += points.position[d][p];
+        middle /= batch.end - batch.begin;
+        for (std::size_t p = batch.begin; p < batch.end; ++p)
+          {
+            double square = 0;
+            for (int d = 0; d < dim; ++d)
+              square += (points.position[d][p] - middle[d]) *
+                        (points.position[d][p] - middle[d]);
+            reach = std::max(reach, square);
+          }
+      }
+    else
+      {
+        const CellGeometry<dim> &cell = parts.nodes.view().cells[batch.cell];
+        for (int d = 0; d < dim; ++d)
+          {
+            const double half = 0.5 / cell.inverse_edge[d];
+            middle[d]         = cell.origin[d] + half;
+            reach += half * half;
+          }
+      }
+    reach = std::sqrt(reach);
+    return middle;
+  }
+
+
+
+  // Where this middle has come nearer in the frame of the obstacle since it
+  // asked, the distance is less by no more than that, or by twice as much if it
+  // is of first order. At rest each cell asks once.
   template <int dim>
   bool
   ObstacleContact<dim>::is_beyond(const double              reach,
                                   const unsigned int        obstacle,
                                   const ObstaclePlace<dim> &place,
+                                  const dealii::Point<dim> &middle,
                                   const std::uint32_t       cell)
   {
-    const CellGeometry<dim> &geometry = parts.nodes.view().cells[cell];
-    dealii::Point<dim>       middle;
-    for (int d = 0; d < dim; ++d)
-      middle[d] = geometry.origin[d] + 0.5 / geometry.inverse_edge[d];
     const dealii::Point<dim> start = place.start_of(middle);
     double *const            asked =
       &cell_distance[obstacle][std::size_t(cell) * (1 + dim)];
@@ -158,7 +217,7 @@ namespace limber
 
 
 
-  // Only points in cells that are as near as a half of their diagonal and a
+  // Only points in cells that are as near as their material reaches and a
   // point are asked; twice as far, as the distance from what a formula tells
   // is of first order.
   template <int dim>
@@ -171,20 +230,15 @@ namespace limber
     const GridView<dim>  grid      = parts.nodes.view();
     const PointView<dim> points    = parts.bodies[body]->points.view();
     const bool           is_liquid = parts.bodies[body]->description.is_liquid;
-    const StressUpdate<dim>  &stress          = *parts.bodies[body]->stress;
-    const double              inverse_density = 1 / stress.density();
+    const double inverse_density   = 1 / parts.bodies[body]->stress->density();
     std::vector<unsigned int> asked; // obstacles
     for_each_batch(points, [&](const CellBatch &batch) {
-      const CellGeometry<dim> &cell   = grid.cells[batch.cell];
-      double                   square = 0;
-      for (int d = 0; d < dim; ++d)
-        square += 0.25 / (cell.inverse_edge[d] * cell.inverse_edge[d]);
+      double                   reach;
+      const dealii::Point<dim> middle = middle_of(points, batch, reach);
       asked.clear();
       for (unsigned int o = 0; o < ways.size(); ++o)
-        if (!is_beyond(2 * (std::sqrt(square) + edge[body]),
-                       o,
-                       ways[o].before,
-                       batch.cell))
+        if (!is_beyond(
+              2 * (reach + edge[body]), o, ways[o].before, middle, batch.cell))
           asked.push_back(o);
       if (asked.empty())
         return;
@@ -212,16 +266,13 @@ namespace limber
                              functions);
               else
                 {
-                  std::array<double, dim> normal;
-                  for (int d = 0; d < dim; ++d)
-                    normal[d] = distance.normal[d];
                   add_surface(body,
                               {p,
                                o,
                                x,
                                distance,
                                points.reach[p] *
-                                 stress.stretch_along(points, p, normal)},
+                                 stretch_along(body, p, distance.normal)},
                               functions,
                               ways[o],
                               step);
@@ -229,6 +280,33 @@ namespace limber
             }
         }
     });
+  }
+
+
+
+  template <int dim>
+  double
+  ObstacleContact<dim>::stretch_along(const unsigned int body,
+                                      const std::size_t  p,
+                                      const Vector      &normal) const
+  {
+    const PointView<dim> points = parts.bodies[body]->points.view();
+    if (points.in_initial_frame()) // sqrt(n . F F^T . n)
+      {
+        double square = 0;
+        for (int k = 0; k < dim; ++k)
+          {
+            double along = 0;
+            for (int d = 0; d < dim; ++d)
+              along += normal[d] * points.deformation[d * dim + k][p];
+            square += along * along;
+          }
+        return std::sqrt(square);
+      }
+    std::array<double, dim> direction;
+    for (int d = 0; d < dim; ++d)
+      direction[d] = normal[d];
+    return parts.bodies[body]->stress->stretch_along(points, p, direction);
   }
 
 
@@ -260,13 +338,14 @@ namespace limber
     place.velocity = against;
     place.least =
       (gap > 0 ? -gap : std::min(-out * gap, most_out * near.reach)) / step;
-    place.friction = obstacle.friction;
-    place.mass     = points.mass[near.point];
+    place.friction         = obstacle.friction;
+    place.mass             = points.mass[near.point];
+    const Vector direction = against_gradients(points, near.point, normal);
     for (int k = 0; k < functions.n; ++k)
       {
         double slope = 0; // along the normal, 1/m
         for (int d = 0; d < dim; ++d)
-          slope += normal[d] * functions.slope(k, d);
+          slope += direction[d] * functions.slope(k, d);
         impulses.add_share(parts.bodies[body]->description.nodal_field,
                            functions.node(k),
                            functions.value(k) - near.reach * slope);
@@ -401,12 +480,20 @@ namespace limber
   // They are strained by b + K_b / m and r + K_r / m, with the impulses K that
   // hold these: so the forces have done a . (K_b + K_r) / 2 less on them than
   // they have lost to strain. Here r is taken as the new velocity, that of PIC;
-  // hold_after() corrects it. Seen from the box, impulses work with the
-  // velocity of the obstacle besides.
+  // hold_after() corrects it. In the initial frame K_b is the K_r of the step
+  // before. Seen from the box, impulses work with the velocity of the obstacle
+  // besides.
   template <int dim>
   void
   ObstacleContact<dim>::exchange()
   {
+    if (leapfrogs)
+      for (std::size_t p = 0; p < former.size(); ++p)
+        {
+          const Place &place = impulses.all_former()[p];
+          former[p].increase = impulses.at_former(place, Layout::increment);
+          account(place, former[p], {}, former[p].held, 0.5);
+        }
     if (!impulses.any())
       return;
     const auto against = [this](const Place &place) {
@@ -424,7 +511,11 @@ namespace limber
         const Place &place = impulses.all()[p];
         Touch       &touch = touches[p];
         touch.after        = against(place);
-        account(place, touch, touch.brought + touch.after, touch.held, 0.5);
+        account(place,
+                touch,
+                touch.brought + touch.after,
+                leapfrogs ? Vector() : touch.held,
+                0.5);
         ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
         action.impulse += place.impulse;
         action.moment += moment_of<dim>(touch.arm, place.impulse);
@@ -450,11 +541,14 @@ namespace limber
       }
     const std::vector<Vector> &held = impulses.hold(slot);
     for (std::size_t p = 0; p < touches.size(); ++p)
-      account(impulses.all()[p],
-              touches[p],
-              touches[p].brought - touches[p].after,
-              holds_before ? held[p] : 2 * held[p],
-              0.5 * flip_share);
+      {
+        account(impulses.all()[p],
+                touches[p],
+                touches[p].brought - touches[p].after,
+                holds_before || leapfrogs ? held[p] : 2 * held[p],
+                0.5 * flip_share);
+        touches[p].held = held[p];
+      }
   }
 
 

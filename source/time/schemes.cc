@@ -110,6 +110,7 @@ namespace limber
         interpolate_hanging();
       }
     strain_and_give_force(unstrained + ahead);
+    find_contact();
     sum_shared_nodes(Layout::force, Layout::force + dim);
     clear_remapped();
     accelerate_nodes();

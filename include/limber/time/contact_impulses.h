@@ -61,9 +61,22 @@ namespace limber
     void
     reinit();
 
-    /** Forget all places. */
+    /** Forget all places; those that there were are the former ones. */
     void
     clear();
+
+    /**
+     * The same as at(), of a former place: in the initial frame, where nodes
+     * stay what they were.
+     */
+    Vector
+    at_former(const Place &place, unsigned int slot) const;
+
+    const std::vector<Place> &
+    all_former() const
+    {
+      return former_places;
+    }
 
     /** The next place; its nodes follow by add_share(). */
     Place &
@@ -154,6 +167,10 @@ namespace limber
       std::vector<std::uint32_t> nodes; // that any place sees, on any rank
     };
 
+    Vector
+    sum(const Place              &place,
+        const std::vector<Share> &of_places,
+        unsigned int              slot) const;
     template <class Velocity>
     Vector
     relative_velocity(const Place &place, const Velocity &velocity) const;
@@ -167,8 +184,8 @@ namespace limber
     press(const Velocity &velocity, const Add &add);
 
     NodalFields<dim>              &nodes;
-    std::vector<Place>             places;
-    std::vector<Share>             shares;
+    std::vector<Place>             places, former_places;
+    std::vector<Share>             shares, former_shares;
     std::vector<Given>             given;    // per field
     std::vector<LazyArray<double>> expected; // per field, dim numbers a node
     std::vector<Vector>            holding;

@@ -32,6 +32,8 @@ namespace limber
    * distance of the point from the surface of its body where it is the last of
    * its row there, half the edge of its cube else.
    *
+   * In the initial frame grad N = F^-T grad_X N and b = F F^T.
+   *
    * What presses in the new velocity does so in every other one of the step.
    * The velocity of the obstacle is that of its way over the step, so that its
    * place and that of what it pushes stay together.
@@ -42,9 +44,10 @@ namespace limber
   public:
     /**
      * Collective; throws InputError where an obstacle holds points at the
-     * start.
+     * start. With @p leapfrogs (the initial frame) the velocity that points
+     * give back in a step strains them in the next as well.
      */
-    explicit ObstacleContact(const RunParts<dim> &parts);
+    ObstacleContact(const RunParts<dim> &parts, bool leapfrogs);
 
     /** Adopt a changed mesh. */
     void
@@ -138,14 +141,21 @@ namespace limber
     check_start() const;
     void
     check_way(unsigned int obstacle, double time, double step) const;
+    dealii::Point<dim>
+    middle_of(const PointView<dim> &points,
+              const CellBatch      &batch,
+              double               &reach) const;
     bool
     is_beyond(double                    reach,
               unsigned int              obstacle,
               const ObstaclePlace<dim> &place,
+              const dealii::Point<dim> &middle,
               std::uint32_t             cell);
     template <int degree>
     void
     find_points(unsigned int body, const std::vector<Way> &ways, double step);
+    double
+    stretch_along(unsigned int body, std::size_t p, const Vector &normal) const;
     template <class Functions>
     void
     add_surface(unsigned int     body,
@@ -172,11 +182,14 @@ namespace limber
     const RunParts<dim>  parts;
     std::vector<double>  edge; // largest of the points of a body, m
     ContactImpulses<dim> impulses;
-    std::vector<Sums>    sums;                 // of an obstacle and a field
-    std::vector<Touch>   touches;              // of each impulse
-    bool                 holds_before = false; // in this step
-    // From the middles of cells when they asked, m, 0 where nobody has; and
-    // where these were in the frame of the obstacle then
+    std::vector<Sums>    sums;            // of an obstacle and a field
+    std::vector<Touch>   touches, former; // of each impulse
+    // Whether what points bring to this step has been held
+    bool holds_before = false;
+    // Whether it is what they have given back in the former one
+    const bool leapfrogs;
+    // From the middles of what is in cells when they asked, m, 0 where nobody
+    // has; and where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;
   };
 } // namespace limber
