@@ -355,10 +355,6 @@ namespace limber
     check_method_of_obstacles(const Section &root, const Problem<dim> &problem)
     {
       const Section method = root.subsection("Method");
-      if (has_domains(problem.grid.kernel))
-        refuse_with_obstacles(method,
-                              "Kernel",
-                              "'Kernel = linear' or 'quadratic'");
       if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse_with_obstacles(method,
                               "Time integration",

@@ -2,6 +2,7 @@
 #include <limber/grid/node_vector.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact_geometry.h>
+#include <limber/time/domain_functions.h>
 #include <limber/time/obstacle_contact.h>
 
 #include <algorithm>
@@ -136,9 +137,14 @@ namespace limber
       }
     clear_sums();
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
-      with_degree(parts.nodes.view(), [&](const auto degree) {
-        find_points<decltype(degree)::value>(b, ways, step);
-      });
+      if (parts.bodies[b]->points.view().has_domains())
+        find_points<DomainFunctions<dim>>(b, ways, step);
+      else
+        with_degree(parts.nodes.view(), [&](const auto degree) {
+          find_points<CellFunctions<dim, decltype(degree)::value>>(b,
+                                                                   ways,
+                                                                   step);
+        });
     add_nodes(ways, step);
     impulses.finish_adding();
   }
@@ -221,7 +227,7 @@ namespace limber
   // point are asked; twice as far, as the distance from what a formula tells
   // is of first order.
   template <int dim>
-  template <int degree>
+  template <class Functions>
   void
   ObstacleContact<dim>::find_points(const unsigned int      body,
                                     const std::vector<Way> &ways,
@@ -243,7 +249,7 @@ namespace limber
       if (asked.empty())
         return;
 
-      CellFunctions<dim, degree> functions(grid, batch.cell);
+      Functions functions(grid, batch.cell);
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           dealii::Point<dim> x;

@@ -151,7 +151,7 @@ namespace limber
               const ObstaclePlace<dim> &place,
               const dealii::Point<dim> &middle,
               std::uint32_t             cell);
-    template <int degree>
+    template <class Functions>
     void
     find_points(unsigned int body, const std::vector<Way> &ways, double step);
     double

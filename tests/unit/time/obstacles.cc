@@ -169,10 +169,11 @@ TEST(ObstacleContact, ABlockSlidesAcrossTheGrid)
 
 
 
-// The same with splines, whose nodes lie elsewhere and reach further.
-TEST(ObstacleContact, ABlockSlidesWithSplines)
+// The same with the other kernels, whose nodes lie elsewhere and reach further.
+TEST(ObstacleContact, ABlockSlidesWithAnyKernel)
 {
-  for (const std::string kernel : {"quadratic", "cubic"})
+  for (const std::string kernel :
+       {"quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "ddmp"})
     {
       SCOPED_TRACE(kernel);
       const double friction = 0.3;
