@@ -260,7 +260,6 @@ namespace limber
               const SignedDistance<dim> distance = ways[o].before.distance(x);
               if (distance.value > 2 * edge[body])
                 continue;
-              functions.go_to(points, p);
               if (is_liquid)
                 add_to_nodes(body,
                              {p,
@@ -322,7 +321,7 @@ namespace limber
   void
   ObstacleContact<dim>::add_surface(const unsigned int body,
                                     const Near        &near,
-                                    const Functions   &functions,
+                                    Functions         &functions,
                                     const Way         &way,
                                     const double       step)
   {
@@ -347,6 +346,7 @@ namespace limber
     place.friction         = obstacle.friction;
     place.mass             = points.mass[near.point];
     const Vector direction = against_gradients(points, near.point, normal);
+    functions.go_to(points, near.point);
     for (int k = 0; k < functions.n; ++k)
       {
         double slope = 0; // along the normal, 1/m
@@ -385,13 +385,15 @@ namespace limber
   void
   ObstacleContact<dim>::add_to_nodes(const unsigned int body,
                                      const Near        &near,
-                                     const Functions   &functions)
+                                     Functions         &functions)
   {
     if (near.distance.value > near.reach)
       return;
-    Sums        &some = sums[near.obstacle * parts.nodes.n_fields() +
+    Sums                &some   = sums[near.obstacle * parts.nodes.n_fields() +
                       parts.bodies[body]->description.nodal_field];
-    const double mass = parts.bodies[body]->points.view().mass[near.point];
+    const PointView<dim> points = parts.bodies[body]->points.view();
+    const double         mass   = points.mass[near.point];
+    functions.go_to(points, near.point);
     for (int k = 0; k < functions.n; ++k)
       impulses.for_each_master(
         functions.node(k), [&](const std::uint32_t node, const double share) {

@@ -158,16 +158,14 @@ namespace limber
     stretch_along(unsigned int body, std::size_t p, const Vector &normal) const;
     template <class Functions>
     void
-    add_surface(unsigned int     body,
-                const Near      &near,
-                const Functions &functions,
-                const Way       &way,
-                double           step);
+    add_surface(unsigned int body,
+                const Near  &near,
+                Functions   &functions,
+                const Way   &way,
+                double       step);
     template <class Functions>
     void
-    add_to_nodes(unsigned int     body,
-                 const Near      &near,
-                 const Functions &functions);
+    add_to_nodes(unsigned int body, const Near &near, Functions &functions);
     void
     clear_sums();
     void
