@@ -336,11 +336,9 @@ TEST(Obstacles, BadOnesAreRefused)
 TEST(Obstacles, WhatDoesNotGoWithThemIsRefused)
 {
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-    {{"Method/Kernel=gimp"}, "entry 'Kernel'"},
     {{"Method/Time integration=implicit", "Method/Time step=0.1"},
      "entry 'Time integration'"},
     {{"Method/Transfer=fmpm"}, "entry 'Transfer'"},
-    {{"Body block/Frame=initial"}, "entry 'Frame'"},
     {{"Observable force/Obstacle=ting"}, "'ting'"}};
   for (const auto &[overrides, words] : cases)
     {
