@@ -243,9 +243,9 @@ def main():
     for treatment in (t for t in LIQUIDS if t in chosen):
         controls = [("0", "0")]
         if treatment != "none":
-            controls += [("0.05", "0"), ("0.1", "0")]
+            controls += [("0.1", "0"), ("0.2", "0")]
         if treatment == "cell":
-            controls += [("0.1", "0.5")]
+            controls += [("0.2", "0.5")]
         for chi, chequerboard in controls:
             control = [f"Body water/Hourglass control={chi}",
                        f"Body water/Chequerboard control={chequerboard}"]

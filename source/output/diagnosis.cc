@@ -21,7 +21,8 @@ namespace limber
     /**
      * USL needs C < sqrt(2 xi) where a cell at the rim of a body is filled to
      * xi; in full cells it holds to 0.7. Points that cross make every xi, so
-     * what is seen now need not be what began it.
+     * what is seen now need not be what began it. It is sound that does it,
+     * which semi-implicit steps do not follow.
      */
     Diagnosis
     find_cut_cell(const Symptoms     &symptoms,
@@ -29,7 +30,8 @@ namespace limber
                   const Method       &method)
     {
       const double courant_number = symptoms.courant_number;
-      if (method.order != StressUpdateOrder::usl || courant_number > 0.7)
+      if (method.order != StressUpdateOrder::usl || courant_number > 0.7 ||
+          method.integration == TimeIntegration::semi_implicit)
         return {};
       return {"small cut cell",
               "with the stress update 'usl', Courant number " +
@@ -95,7 +97,7 @@ namespace limber
           body.chequerboard_control == 0)
         return "Chequerboard control = 0.5";
       return "Hourglass control = " +
-             brief(std::max(0.1, 2 * body.hourglass_control));
+             brief(std::max(0.2, 2 * body.hourglass_control));
     }
 
 
@@ -150,7 +152,7 @@ namespace limber
       for (const Body<dim> &body : problem.bodies)
         if (body.is_liquid && body.treatment != Projection::none &&
             body.hourglass_control == 0)
-          return "Body " + body.name + "/Hourglass control = 0.1'.";
+          return "Body " + body.name + "/Hourglass control = 0.2'.";
       constexpr double share = 0.05; // twenty swings in the time of the run
       return "Method/Damping time = " + brief(share * problem.end_time) +
              "' or the shortest time of interest.";

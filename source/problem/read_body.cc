@@ -71,10 +71,11 @@ namespace limber
       parameters.declare(
         "Hourglass control",
         "auto",
-        admissible::non_negative_number("0.1").or_word("auto"),
+        admissible::non_negative_number("0.2").or_word("auto"),
         "chi, dimensionless: viscous resistance chi c m / h to motions of a "
         "cell that averaged strain does not see (m its mass, c the wave "
-        "speed); 'auto' is 0.1 where averages leave such motions without "
+        "speed) and that differs among neighbouring cells, as smooth motion "
+        "does not; 'auto' is 0.2 where averages leave such motions without "
         "resistance, else 0.");
       parameters.declare(
         "Chequerboard control",
@@ -352,7 +353,7 @@ namespace limber
           section.number("Hourglass control") :
         problem.grid.kernel == KernelKind::linear &&
             needs_hourglass_control<dim>(body.treatment, fluid) ?
-          0.1 :
+          0.2 :
           0;
       if (body.hourglass_control > 0 && body.treatment == Projection::none)
         throw InputError(

@@ -88,10 +88,11 @@ namespace limber
     for (const std::uint32_t node : nodes.active_nodes())
       std::fill_n(nodes.record(node) + Layout::hourglass_force, dim, 0.);
     lend_to_hanging_nodes();
-    limber::resist_hourglass<dim>(nodes.owned_occupied_cells(),
-                                  nodes.view(),
-                                  resisting,
-                                  step);
+    find_twists(step);
+    resist_twists<dim>(nodes.owned_occupied_cells(),
+                       nodes.view(),
+                       twists,
+                       twist_sums.data());
     for (const HangingNode &hanging : nodes.table.hanging)
       {
         nodes.record(hanging.node)[Layout::mass] = 0;
@@ -116,6 +117,47 @@ namespace limber
             record[Layout::force + d] += force;
           }
       }
+  }
+
+
+
+  // The twists of the cells and their means around nodes. A hanging node has
+  // none: what its cells do there is not smooth, as it follows its masters
+  // along straight lines.
+  template <int dim>
+  void
+  Stabilization<dim>::find_twists(const double step)
+  {
+    NodalFields<dim> &nodes = parts.nodes;
+    const std::size_t size =
+      std::size_t(nodes.table.n()) * NodeLayout<dim>::stride;
+    if (twist_sums.size() != size)
+      twist_sums.reinit(size);
+    const auto of_node = [&](const std::uint32_t node) {
+      return twist_sums.data() + std::size_t(node) * NodeLayout<dim>::stride;
+    };
+    constexpr unsigned int n = TwistLayout<dim>::n;
+
+    for (const std::uint32_t node : nodes.active_nodes())
+      std::fill_n(of_node(node), n, 0.);
+    limber::find_twists<dim>(nodes.owned_occupied_cells(),
+                             nodes.view(),
+                             resisting,
+                             step,
+                             twists,
+                             twist_sums.data());
+    for (const HangingNode &hanging : nodes.table.hanging)
+      std::fill_n(of_node(hanging.node), n, 0.);
+    twist_exchange.start(nodes.node_plan(), twist_sums.data(), 0, n);
+    twist_exchange.finish(twist_sums.data());
+    for (const std::uint32_t node : nodes.active_nodes())
+      if (double *const sums = of_node(node);
+          sums[TwistLayout<dim>::weight] > 0)
+        {
+          const double inverse = 1 / sums[TwistLayout<dim>::weight];
+          for (unsigned int k = TwistLayout<dim>::twist; k < n; ++k)
+            sums[k] *= inverse;
+        }
   }
 
 

@@ -40,11 +40,16 @@ namespace limber
     double
     speed_of_resistance(const MaterialBody<dim> &body, double step) const;
     void
+    find_twists(double step);
+    void
     lend_to_hanging_nodes();
 
     const RunParts<dim> parts;
     // Refilled in each step, which then allocates nothing
     std::vector<HourglassResistance<dim>> resisting;
+    std::vector<CellTwist<dim>>           twists;
+    LazyArray<double>                     twist_sums; // TwistLayout
+    RecordExchange twist_exchange{NodeLayout<dim>::stride};
   };
 } // namespace limber
 

@@ -6,6 +6,29 @@
 
 #include <vector>
 
+/**
+ * @file Viscous resistance to the motions of a cell that averages over it do
+ * not see, its hourglass modes: products s_k of two or more of the signs of the
+ * directions, with amplitudes q_k = sum over nodes s_k v / 2^dim.
+ *
+ * A smooth motion has them too, those with two directions d, e as large as
+ * h_d h_e d^2v/dx_d dx_e / 4 and alike in neighbouring cells, while hourglass
+ * motion alternates. So what is resisted of these is the scatter of the second
+ * derivatives w = q / (h_d h_e) among the cells around each node. With the
+ * resistance k = sum over bodies chi c m_cell / h of a cell, the power
+ *
+ *   sum over nodes n, cells c around n:  k_c (h_d h_e)^2 (w_c - w_n)^2 / 2^dim,
+ *
+ * is taken, w_n being the mean around n with the weights k_c (h_d h_e)^2: its
+ * derivatives are the forces
+ *
+ *   f_a = - sum_k s_k(a) k_c (q_c - mean over the nodes of c of h_d h_e w_n).
+ *
+ * Those of a velocity that is quadratic in place vanish, at surfaces too, where
+ * a node has fewer cells. A mode of three directions, of third order in h, is
+ * resisted as it is, as are all modes of a cell that has no neighbours (theory:
+ * doc/theory/treatments.md).
+ */
 namespace limber
 {
   /** A body that resists hourglass motion: its masses in the cells, chi c. */
@@ -18,25 +41,64 @@ namespace limber
 
 
 
+  /** The hourglass motion of a cell. */
+  template <int dim>
+  struct CellTwist
+  {
+    static constexpr unsigned int n_modes = (1 << dim) - 1 - dim;
+    // of two directions, and so with a mean around nodes
+    static constexpr unsigned int n_pairs = dim == 2 ? 1 : 3;
+
+    double                                       resistance = 0; // k, kg/s
+    double                                       area       = 0; // h_d h_e, m^2
+    std::array<std::array<double, n_modes>, dim> amplitude;      // q, m/s
+  };
+
+
+
   /**
-   * Viscous resistance to the motions of a cell that averages over it do not
-   * see: for each hourglass mode with signs s_a at the nodes a, and its
-   * amplitude q = sum s_a v_a / 2^dim,
-   *
-   *   f_a -= s_a k q,  k = sum over bodies chi c m_cell / h,
-   *
-   * with k at most half (a quarter in 3d) of the smallest nodal mass over the
-   * step, which keeps it stable. Adds to no force and no moment, and leaves
-   * linear fields alone (theory: doc/theory/treatments.md). Reads mass and
-   * momentum of the nodes, adds the forces to the re-mapped slots, which are
-   * not in use then.
+   * The record of a node in which cells meet, at the offsets of the other ones:
+   * their weight k (h_d h_e)^2, kg m^4/s, and the sums of that times w or, once
+   * they are complete and divided by the weight, the means of w, 1/(m s), by
+   * components and pairs of directions.
+   */
+  template <int dim>
+  struct TwistLayout
+  {
+    static constexpr unsigned int weight = 0;
+    static constexpr unsigned int twist  = 1;
+    static constexpr unsigned int n = twist + dim * CellTwist<dim>::n_pairs;
+    static_assert(n <= NodeLayout<dim>::stride, "at the same offsets");
+  };
+
+
+
+  /**
+   * From mass and momentum of the nodes: the twists of these cells, one after
+   * the other, and what they add to the records of the nodes in @p sums. k is
+   * at most half (a quarter in 3d) of the smallest nodal mass over the step,
+   * which keeps it stable.
    */
   template <int dim>
   void
-  resist_hourglass(const std::vector<std::uint32_t>            &cells,
-                   const GridView<dim>                         &grid,
-                   const std::vector<HourglassResistance<dim>> &bodies,
-                   double                                       step);
+  find_twists(const std::vector<std::uint32_t>            &cells,
+              const GridView<dim>                         &grid,
+              const std::vector<HourglassResistance<dim>> &bodies,
+              double                                       step,
+              std::vector<CellTwist<dim>>                 &twists,
+              double                                      *sums);
+
+  /**
+   * With the means around the nodes, whose weight is zero where there is none:
+   * add the forces to the re-mapped slots of the nodes, which are not in use
+   * then. They add to no force and no moment and only take energy.
+   */
+  template <int dim>
+  void
+  resist_twists(const std::vector<std::uint32_t>  &cells,
+                const GridView<dim>               &grid,
+                const std::vector<CellTwist<dim>> &twists,
+                const double                      *means);
 } // namespace limber
 
 #endif

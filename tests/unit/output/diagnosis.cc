@@ -119,7 +119,7 @@ namespace limber::test
     // a liquid that its control would have held
     run.problem.bodies[0].is_liquid = true;
     EXPECT_NE(diagnose(seen, run.problem, false)
-                .text.find("Body block/Hourglass control = 0.1'"),
+                .text.find("Body block/Hourglass control = 0.2'"),
               std::string::npos);
     run.problem.bodies[0].hourglass_control = 0.1;
     EXPECT_NE(diagnose(seen, run.problem, false).text.find("Damping time"),

@@ -391,7 +391,7 @@ TEST(Scenes, AutomaticChoicesFollowTheMaterial)
   EXPECT_EQ(solid.bodies[0].chequerboard_control, 0);
   EXPECT_EQ(liquid.method.order, StressUpdateOrder::musl);
   EXPECT_EQ(liquid.bodies[0].treatment, Projection::cell);
-  EXPECT_EQ(liquid.bodies[0].hourglass_control, 0.1);
+  EXPECT_EQ(liquid.bodies[0].hourglass_control, 0.2);
   EXPECT_EQ(liquid.bodies[0].chequerboard_control, 0.5);
   for (const auto *const problem : {&solid, &liquid})
     EXPECT_EQ(std::count_if(problem->notes.begin(),
