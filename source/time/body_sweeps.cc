@@ -297,7 +297,8 @@ namespace limber
           pressures = body->implicit->view(description.is_liquid,
                                            description.cuts_tension);
         what.implicit = body->implicit ? &pressures : nullptr;
-        what.remapped = remapped && !(body->implicit && description.is_liquid);
+        what.remapped =
+          remapped && !(body->implicit && !body->implicit->is_whole);
         const auto sums  = sums_of(*body);
         const auto found = body->stress->update(body->points.view(),
                                                 nodes_of(*body),

@@ -173,15 +173,57 @@ namespace limber
         lost += elastic_work(medium, row, volume, dilation) -
                 pressure * (volume * (dilation + system.growth[row]) - flux);
       }
-    cells.share(medium, Result::dilation);
     parts.ledger.viscous += lost;
 
     auto      &kept = *medium.body->implicit;
     const auto keep = [&](const std::uint32_t cell) {
       kept.pressure[cell] = medium.result(cell)[Result::pressure];
-      kept.dilation[cell] = medium.result(cell)[Result::dilation];
     };
     cells.for_each_known(medium, keep);
+    keep_dilation(medium);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::keep_dilation(Medium &medium)
+  {
+    cells.share(medium, Result::dilation);
+    const auto keep = [&](const std::uint32_t cell) {
+      medium.body->implicit->dilation[cell] =
+        medium.result(cell)[Result::dilation];
+    };
+    cells.for_each_known(medium, keep);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::complete_dilations(const double step)
+  {
+    for (Medium &medium : cells.media)
+      {
+        if (!medium.body->description.is_liquid)
+          continue;
+        for (const std::uint32_t cell : medium.cells)
+          {
+            const double *const own = medium.record(cell);
+            if (!(own[Record::mass] > 0))
+              continue;
+            double flow = 0;
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              for (int d = 0; d < dim; ++d)
+                flow += own[Record::rows + a * dim + d] *
+                        parts.nodes.record(
+                          cells.node_of(cell, a))[Layout::velocity + d];
+            medium.result(cell)[Result::dilation] +=
+              step * flow * medium.body->stress->density() / own[Record::mass];
+          }
+        medium.body->implicit->is_whole = true;
+        keep_dilation(medium);
+      }
   }
 
 

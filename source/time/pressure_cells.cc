@@ -34,6 +34,7 @@ namespace limber
       if (body->implicit)
         {
           body->implicit.emplace(parts.grid.n_cells());
+          body->implicit->is_whole = !body->description.is_liquid;
           Medium medium;
           medium.body = body.get();
           medium.records.reinit(std::size_t(parts.grid.n_cells()) *

@@ -18,6 +18,10 @@ namespace limber
     // Of the mass of a full node: less is light
     constexpr double light = 0.3;
 
+    // A node that a cell filled to this share has at the surface is thrown by
+    // the viscosity of the new velocity when nu dt / h^2 is larger.
+    constexpr double smallest_filling = 1e-3;
+
 
 
     /** The smallest density of bodies that bear shear, kg/m^3, where the
@@ -48,12 +52,14 @@ namespace limber
     : Base(parts)
     , pressure(parts, Base::boundaries)
     , hourglass(std::size_t(parts.nodes.table.n()) * dim)
-    , remaps(!this->full_mass &&
-             std::any_of(parts.bodies.begin(),
-                         parts.bodies.end(),
-                         [](const auto &body) {
-                           return !body->description.is_liquid;
-                         }))
+    , viscosity_acts(!this->full_mass && is_viscous())
+    , remaps(
+        viscosity_acts ||
+        (!this->full_mass && std::any_of(parts.bodies.begin(),
+                                         parts.bodies.end(),
+                                         [](const auto &body) {
+                                           return !body->description.is_liquid;
+                                         })))
     , lightest_solid(lightest_solid_of(parts))
   {}
 
@@ -103,6 +109,8 @@ namespace limber
     this->interpolate_hanging();
     this->measure_nodes();
     this->check_nodes();
+    if (viscosity_acts)
+      pressure.complete_dilations(this->step);
     if (remaps)
       update_all();
     else
@@ -125,7 +133,22 @@ namespace limber
 
 
 
-  // Solids in the scene are strained by the velocity that points give back.
+  // Whether viscosity does anything in a step as long as motion allows.
+  template <int dim>
+  bool
+  SemiImplicitIntegrator<dim>::is_viscous() const
+  {
+    const double h       = this->parts.grid.smallest_edge;
+    const double gravity = this->parts.problem.loads.gravity.norm();
+    return this->viscosity * share_of_swing >
+           smallest_filling * h * std::sqrt(h * gravity);
+  }
+
+
+
+  // Solids and viscous liquids are strained by the velocity that points give
+  // back: the new one makes stresses of its own in cells that are hardly
+  // filled.
   template <int dim>
   void
   SemiImplicitIntegrator<dim>::update_all()

@@ -27,13 +27,15 @@ namespace limber
     {
       return {is_liquid ? pressure.data() : nullptr,
               dilation.data(),
-              !is_liquid,
+              is_whole,
               cuts_tension};
     }
 
     LazyArray<double> pressure; // J p, Pa
-    // Of the step, without dimension; of liquids less than the mean divergence
+    // Of the step, without dimension: all of it, as for solids, or less than
+    // the mean divergence
     LazyArray<double> dilation;
+    bool              is_whole = false;
   };
 
 

@@ -58,6 +58,14 @@ namespace limber
     solve(double end, double step, double share);
 
     /**
+     * Let liquids be strained by another velocity than the new one: complete
+     * their dilations by the mean divergence of the new one in this step.
+     * When sides have acted, hanging nodes too; collective.
+     */
+    void
+    complete_dilations(double step);
+
+    /**
      * When sides have acted: the kinetic energy that is lost, likewise. The
      * velocity after the step is the new one, or the re-mapped one.
      */
@@ -104,6 +112,8 @@ namespace limber
 
     void
     keep_result(std::size_t medium);
+    void
+    keep_dilation(Medium &medium);
     double
     elastic_work(const Medium &medium,
                  std::uint32_t row,

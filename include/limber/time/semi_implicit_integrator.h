@@ -38,6 +38,8 @@ namespace limber
 
     void
     do_scheme() override;
+    bool
+    is_viscous() const;
     double
     step_of_motion() const;
     void
@@ -61,7 +63,8 @@ namespace limber
 
     ImplicitPressure<dim> pressure;
     LazyArray<double>     hourglass; // forces by node and component, N
-    const bool            remaps;    // for solids
+    const bool            viscosity_acts;
+    const bool            remaps; // for solids and viscous liquids
     // Its density, kg/m^3; 0 where the pressure of some solid is explicit
     const double lightest_solid;
   };
