@@ -92,7 +92,7 @@ namespace limber
         admissible::number_from_to(0, 1, "0.2").or_word("auto"),
         "Dimensionless: of what nodes hold beyond 1.02 of the room around them, "
         "the share that a semi-implicit step pushes apart; 'auto' is 0.2 where "
-        "the scene has one body that does not fill the box, else 0.");
+        "all bodies are liquids and do not fill the box, else 0.");
       declare_word(parameters,
                    "History",
                    "keep",

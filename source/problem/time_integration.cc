@@ -195,24 +195,33 @@ namespace limber
 
 
 
-    /** Whether a body may take all of the box, so that it has no surface. */
+    /** Whether bodies may take all of the box, so that there is no surface. */
     template <int dim>
     bool
-    fills_box(const Body<dim> &body, const GridDescription<dim> &grid)
+    fill_box(const std::vector<Body<dim>> &bodies,
+             const GridDescription<dim>   &grid)
     {
-      const auto box = body.shape->bounding_box();
       for (unsigned int d = 0; d < dim; ++d)
-        if (box.first[d] > grid.lower[d] + 1e-6 * grid.edge(d) ||
-            box.second[d] < grid.upper[d] - 1e-6 * grid.edge(d))
-          return false;
+        {
+          double lower = 1e300, upper = -1e300;
+          for (const auto &body : bodies)
+            {
+              const auto box = body.shape->bounding_box();
+              lower          = std::min(lower, box.first[d]);
+              upper          = std::max(upper, box.second[d]);
+            }
+          if (lower > grid.lower[d] + 1e-6 * grid.edge(d) ||
+              upper < grid.upper[d] - 1e-6 * grid.edge(d))
+            return false;
+        }
       return true;
     }
 
 
 
     /**
-     * The mass of a node that bodies share says nothing about one of them; and
-     * what is pushed apart in a full box presses on all of it.
+     * Solids may have less volume than at first; and what is pushed apart in a
+     * full box presses on all of it.
      */
     template <int dim>
     void
@@ -222,16 +231,18 @@ namespace limber
     {
       const bool possible =
         problem.method.integration == TimeIntegration::semi_implicit &&
-        body.is_liquid && problem.bodies.size() == 1;
+        std::all_of(problem.bodies.begin(),
+                    problem.bodies.end(),
+                    [](const auto &other) { return other.is_liquid; });
       const bool automatic = section.text("Density control") == "auto";
-      body.density_control = !automatic ? section.number("Density control") :
-                             possible && !fills_box(body, problem.grid) ?
-                                          density_control :
-                                          0;
+      body.density_control =
+        !automatic ? section.number("Density control") :
+        possible && !fill_box(problem.bodies, problem.grid) ? density_control :
+                                                              0;
       if (body.density_control > 0 && !possible)
         throw InputError("The entry 'Density control' in " +
                          section.where("Density control") +
-                         " is for a scene of one body, a liquid, with time "
+                         " is for a scene of liquids alone, with time "
                          "integration 'semi-implicit'. Usually one of "
                          "them was changed alone. Set 'Density control = "
                          "auto'.");

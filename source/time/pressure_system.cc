@@ -76,6 +76,12 @@ namespace limber
     : parts(parts)
     , boundaries(boundaries)
     , cells(cells)
+    , needs_volumes(parts.bodies.size() > 1 &&
+                    std::any_of(parts.bodies.begin(),
+                                parts.bodies.end(),
+                                [](const auto &body) {
+                                  return body->description.density_control > 0;
+                                }))
   {
     reinit();
   }
@@ -89,6 +95,8 @@ namespace limber
     mobility.reinit(std::size_t(parts.nodes.table.n()) * dim);
     velocity.reinit(std::size_t(parts.nodes.table.n()) * dim);
     corners.reinit(parts);
+    if (needs_volumes)
+      volumes.reinit(parts.nodes.table.n());
     pattern_scales.resize(cells.media.size());
     for (auto &of_medium : pattern_scales)
       of_medium.reinit(parts.nodes.table.n());
@@ -216,8 +224,53 @@ namespace limber
                                  const std::uint32_t node,
                                  const double        density) const
   {
-    const double held = parts.nodes.record(node)[Layout::mass] / density;
+    const double held = needs_volumes ?
+                          volumes[node] :
+                          parts.nodes.record(node)[Layout::mass] / density;
     return std::max(0., held / room - 1 - excess_allowed);
+  }
+
+
+
+  // The mass of a node that liquids share does not tell how much room they
+  // take.
+  template <int dim>
+  void
+  PressureSystem<dim>::sum_volumes()
+  {
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      volumes[node] = 0;
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points          = body->points.view();
+        const double         inverse_density = 1 / body->stress->density();
+        const CellSums<dim>  sums            = body->cell_sums->view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const double *const of_cell =
+              sums.now + std::size_t(points.cell[p]) * sums.stride;
+            const double J =
+              of_cell[sums.volumetric()] / of_cell[CellSums<dim>::mass];
+            const CellGeometry<dim> &cell = parts.grid.geometry[points.cell[p]];
+            std::array<double, n_nodes> shares;
+            shares[0] = J * points.mass[p] * inverse_density;
+            for (int d = 0; d < dim; ++d)
+              {
+                const double xi = (points.position[d][p] - cell.origin[d]) *
+                                  cell.inverse_edge[d];
+                for (int a = 0; a < 1 << d; ++a)
+                  {
+                    shares[a | 1 << d] = xi * shares[a];
+                    shares[a] -= shares[a | 1 << d];
+                  }
+              }
+            for (unsigned int a = 0; a < n_nodes; ++a)
+              volumes[cells.node_of(points.cell[p], a)] += shares[a];
+          }
+      }
+    parts.nodes.table.give_to_masters(volumes.data(), 1, 0, 1);
+    volume_exchange.start(parts.nodes.node_plan(), volumes.data(), 0, 1);
+    volume_exchange.finish(volumes.data());
   }
 
 
@@ -230,6 +283,8 @@ namespace limber
   {
     hold_nodes(end);
     find_pattern_scales(step);
+    if (needs_volumes)
+      sum_volumes();
     const auto &media = cells.media;
     equations.values.assign(equations.columns.size(), 0.);
     equations.right_side.assign(equations.n, 0.);

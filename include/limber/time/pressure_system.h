@@ -132,6 +132,8 @@ namespace limber
     excess(std::uint32_t cell, std::uint32_t node, double density) const;
     double
     excess_in(double room, std::uint32_t node, double density) const;
+    void
+    sum_volumes();
     double
     excess_over_levels(std::uint32_t node, double density) const;
 
@@ -148,6 +150,11 @@ namespace limber
     std::vector<LazyArray<double>> pattern_scales;
     // By place in a row: the cell that it stands for
     std::vector<std::uint32_t> mates;
+    // By node, m^3: what liquids take of the room around it; only
+    // where a density control of several bodies asks for it
+    const bool        needs_volumes;
+    LazyArray<double> volumes;
+    RecordExchange    volume_exchange{1};
     // Matrix and right side of all cells, where some are cut off
     std::vector<double> whole, whole_right_side;
   };

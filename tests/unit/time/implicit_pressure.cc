@@ -241,6 +241,42 @@ TEST(ImplicitPressure, TendsToExplicitSteps)
 
 
 
+// Two liquids at rest without weight, one of them three times as heavy: nodes
+// between them hold as much as there is room for, and nothing moves. Where they
+// overlap by a fifth of a cell the nodes between them hold 0.18 too much, of
+// which all but 0.02 is pushed apart.
+TEST(ImplicitPressure, MakesRoomForSeveralLiquids)
+{
+  const auto lift = [](const std::string &lower) {
+    SceneRun<2> run(vessel,
+                    {"Bodies=water, brine",
+                     "Body water/Box/Upper corner=4, 2",
+                     "Body brine/Box/Lower corner=0, " + lower,
+                     "Body brine/Box/Upper corner=4, 4",
+                     "Body brine/Points per cell edge=3",
+                     "Body brine/Placement=cut",
+                     "Body brine/Material=newtonian fluid",
+                     "Body brine/Newtonian fluid/Density=3000",
+                     "Body brine/Newtonian fluid/Bulk modulus=1e15",
+                     "Body brine/Locking treatment=cell",
+                     "Body brine/Frame=current"});
+    const auto  height = [&]() {
+      const PointView<2> points = run.bodies[1]->points.view();
+      double             sum    = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        sum += points.position[1][p];
+      return sum / points.size;
+    };
+    const double before = height();
+    run.advance(0.1, 100);
+    return height() - before;
+  };
+  EXPECT_NEAR(lift("2"), 0, 1e-12);
+  EXPECT_NEAR(lift("1.8"), 0.16, 0.04);
+}
+
+
+
 // A turning drop keeps its size: points follow curves, not tangents.
 TEST(ImplicitPressure, LetsAVortexTurn)
 {
