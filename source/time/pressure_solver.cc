@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/index_set.h>
+#include <deal.II/base/mpi.h>
 
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_precondition.h>
@@ -17,6 +18,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <type_traits>
 
 namespace limber
 {
@@ -27,9 +29,11 @@ namespace limber
     // To make a multigrid takes as long as these.
     constexpr unsigned int iterations_of_making = 40;
 
-    // On one rank a factor that takes at most so many multiplications for a row
-    // is made in each step: it takes less time than the iterations.
-    constexpr double most_work_for_a_row = 3000;
+    // A factor that takes at most so many multiplications for a row is made in
+    // each step: it takes less time than the iterations. Ranks tell each other
+    // the equations; what so many rows have is soon told.
+    constexpr double        most_work_for_a_row = 3000;
+    constexpr std::uint32_t most_rows_of_factor = 20000;
 
     // So often what a factor leaves is solved for again.
     constexpr unsigned int most_repetitions = 5;
@@ -75,12 +79,21 @@ namespace limber
                    double                   accuracy,
                    std::vector<double>     &solution);
 
-    const MPI_Comm      communicator;
-    EnvelopeCholesky    factor;
-    bool                is_direct = false;
-    std::vector<double> residual;
-    bool                has_multigrid       = false;
-    unsigned int        iterations_when_new = 0;
+    bool
+    prepare_factor(const PressureEquations &equations);
+    template <class Number>
+    void
+    gather(const std::vector<Number> &own,
+           unsigned int               width,
+           std::vector<Number>       &all) const;
+
+    const MPI_Comm             communicator;
+    bool                       is_direct = false;
+    EnvelopeCholesky           factor;
+    PressureEquations          whole; // of all ranks, for the factor
+    std::vector<std::uint32_t> n_of_ranks;
+    bool                       has_multigrid       = false;
+    unsigned int               iterations_when_new = 0;
     unsigned int more_iterations = 0; // that the old one has taken, summed
     dealii::TrilinosWrappers::SparseMatrix    matrix;
     std::vector<double *>                     entries; // by place
@@ -93,10 +106,7 @@ namespace limber
   void
   PressureSolver::set_pattern(const PressureEquations &equations)
   {
-    methods->is_direct =
-      dealii::Utilities::MPI::n_mpi_processes(methods->communicator) == 1 &&
-      methods->factor.set_pattern(equations) <=
-        most_work_for_a_row * equations.n;
+    methods->is_direct = methods->prepare_factor(equations);
     if (!methods->is_direct)
       methods->prepare_iterations(equations);
   }
@@ -201,6 +211,52 @@ namespace limber
 
 
 
+  // Whether a factor is worth while. All ranks make it of all equations, which
+  // are few: so they agree with one rank to round-off.
+  bool
+  PressureSolver::Methods::prepare_factor(const PressureEquations &equations)
+  {
+    if (equations.n_all > most_rows_of_factor)
+      return false;
+    n_of_ranks  = dealii::Utilities::MPI::all_gather(communicator, equations.n);
+    whole.n_all = whole.n = equations.n_all;
+    whole.width = dealii::Utilities::MPI::max(equations.width, communicator);
+    gather(equations.columns, whole.width, whole.columns);
+    return factor.set_pattern(whole) <= most_work_for_a_row * whole.n;
+  }
+
+
+
+  // @p own has @p width numbers for each row of this rank.
+  template <class Number>
+  void
+  PressureSolver::Methods::gather(const std::vector<Number> &own,
+                                  const unsigned int         width,
+                                  std::vector<Number>       &all) const
+  {
+    std::vector<int> counts, places;
+    int              sum = 0;
+    for (const std::uint32_t n : n_of_ranks)
+      {
+        counts.push_back(n * width);
+        places.push_back(sum);
+        sum += counts.back();
+      }
+    all.resize(sum);
+    const MPI_Datatype type =
+      std::is_same<Number, double>::value ? MPI_DOUBLE : MPI_UINT32_T;
+    MPI_Allgatherv(own.data(),
+                   own.size(),
+                   type,
+                   all.data(),
+                   counts.data(),
+                   places.data(),
+                   type,
+                   communicator);
+  }
+
+
+
   // Returns how often the factor was used: round-off leaves a residual in cells
   // that hardly give way. Nothing where that does not get better, as in a
   // closed vessel whose mean pressure nothing fixes.
@@ -209,34 +265,34 @@ namespace limber
                                           const double             accuracy,
                                           std::vector<double>     &solution)
   {
-    double     norm     = 0;
-    const auto evaluate = [&]() {
-      double squares = 0;
-      residual       = equations.right_side;
-      for (std::uint32_t row = 0; row < equations.n; ++row)
-        {
-          const std::size_t first = std::size_t(row) * equations.width;
-          for (unsigned int k = 0; k < equations.width; ++k)
-            if (const auto column = equations.columns[first + k];
-                column != PressureEquations::no_column)
-              residual[row] -= equations.values[first + k] * solution[column];
-          squares += residual[row] * residual[row];
-        }
-      norm = std::sqrt(squares);
-    };
-    evaluate();
-    if (norm <= accuracy)
-      return 0;
-    if (!factor.factorise(equations))
+    gather(equations.values, whole.width, whole.values);
+    gather(equations.right_side, 1, whole.right_side);
+    if (!factor.factorise(whole))
       return {};
+    std::vector<double> found(whole.n, 0.), residual = whole.right_side;
     for (unsigned int n = 1; n <= most_repetitions; ++n)
       {
         factor.solve(residual);
-        for (std::uint32_t row = 0; row < equations.n; ++row)
-          solution[row] += residual[row];
-        evaluate();
-        if (norm <= accuracy)
-          return n;
+        double squares = 0;
+        for (std::uint32_t row = 0; row < whole.n; ++row)
+          found[row] += residual[row];
+        for (std::uint32_t row = 0; row < whole.n; ++row)
+          {
+            const std::size_t first = std::size_t(row) * whole.width;
+            residual[row]           = whole.right_side[row];
+            for (unsigned int k = 0; k < whole.width; ++k)
+              if (const auto column = whole.columns[first + k];
+                  column != PressureEquations::no_column)
+                residual[row] -= whole.values[first + k] * found[column];
+            squares += residual[row] * residual[row];
+          }
+        if (squares <= accuracy * accuracy)
+          {
+            std::copy_n(found.begin() + equations.first,
+                        equations.n,
+                        solution.begin());
+            return n;
+          }
       }
     return {};
   }

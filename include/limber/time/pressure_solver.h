@@ -31,7 +31,7 @@ namespace limber
 
 
   /**
-   * On one rank, where cells make a narrow matrix, a factor of it
+   * Where few cells make a narrow matrix, a factor of it
    * (EnvelopeCholesky) in each step; else conjugate gradients, preconditioned
    * by algebraic multigrid (Trilinos' ML). The multigrid of a former matrix
    * serves the next ones as well until the iterations say that it has become
