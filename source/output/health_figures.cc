@@ -166,8 +166,6 @@ namespace limber
         figures.name      = body.name;
         figures.is_liquid = body.is_liquid;
         figures.kernel    = start.problem.grid.kernel;
-        figures.strained_as_moved =
-          start.problem.method.order != StressUpdateOrder::usf;
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());

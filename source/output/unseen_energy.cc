@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/nodal_projection.h>
-#include <limber/interpolation/support.h>
+#include <limber/interpolation/point_support.h>
 #include <limber/output/health_figures.h>
 
 #include <algorithm>
@@ -150,12 +150,7 @@ namespace limber
         const PointView<dim> of_body = points(b);
         for (std::size_t p = 0; p < of_body.size; ++p)
           if (of_body.cell[p] != invalid_cell)
-            {
-              std::array<double, dim> x;
-              for (int d = 0; d < dim; ++d)
-                x[d] = of_body.place[d][p];
-              work(p, support_at<dim, false>(grid, of_body.cell[p], x));
-            }
+            work(p, support_of_point<dim, false>(grid, of_body, p));
       }
 
       void

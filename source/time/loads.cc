@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/dual_domain.h>
-#include <limber/interpolation/support.h>
+#include <limber/interpolation/point_support.h>
 #include <limber/time/contact.h>
 #include <limber/time/loads.h>
 
@@ -16,21 +16,6 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         result[d] = points.position[d][p];
       return result;
-    }
-
-
-
-    /** The functions at the place of a point. */
-    template <int dim>
-    Support<dim>
-    support(const BackgroundGrid<dim> &grid,
-            const PointView<dim>      &points,
-            const std::size_t          p)
-    {
-      std::array<double, dim> x;
-      for (int d = 0; d < dim; ++d)
-        x[d] = points.place[d][p];
-      return support_at<dim>(grid.view(), points.cell[p], x);
     }
 
 
@@ -140,7 +125,7 @@ namespace limber
         const dealii::Tensor<1, dim> force =
           points.mass[p] *
           problem.loads.body_force->vector(position(points, p), time);
-        const Support<dim> at = support(grid, points, p);
+        const Support<dim> at = support_of_point<dim>(grid.view(), points, p);
         for (int i = 0; i < at.n; ++i)
           for (int d = 0; d < dim; ++d)
             of_nodes[at.node[i] * dim + d] += at.value[i] * force[d];
@@ -163,7 +148,7 @@ namespace limber
             -load.formula.value(position(points, p) + piece->arm, time) *
               piece->area_vector() :
             piece->area * load.formula.vector(piece->reference, time);
-        const Support<dim>           at  = support(grid, points, p);
+        const Support<dim> at = support_of_point<dim>(grid.view(), points, p);
         const dealii::Tensor<1, dim> arm = pull_back(points, p) * piece->arm;
         for (int i = 0; i < at.n; ++i)
           {
@@ -193,7 +178,8 @@ namespace limber
         const unsigned int   field  = face.body.description.nodal_field;
         for (const auto &[p, piece] : face.here())
           {
-            const Support<dim>     at = support(grid, points, p);
+            const Support<dim> at =
+              support_of_point<dim>(grid.view(), points, p);
             dealii::Tensor<2, dim> velocity_gradient;
             for (int i = 0; i < at.n; ++i)
               for (int d = 0; d < dim; ++d)

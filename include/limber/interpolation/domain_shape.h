@@ -3,6 +3,7 @@
 #define limber_interpolation_domain_shape_h
 
 #include <limber/base/expected.h>
+#include <limber/base/pack.h>
 #include <limber/base/small_matrix.h>
 #include <limber/interpolation/hexahedron.h>
 #include <limber/points/point_view.h>

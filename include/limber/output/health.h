@@ -41,10 +41,9 @@ namespace limber
   struct BodyFigures
   {
     std::string  name;
-    bool         is_liquid         = false;
-    unsigned int points_per_edge   = 2; // the smallest of all directions
-    KernelKind   kernel            = KernelKind::linear;
-    bool         strained_as_moved = false; // by the same velocity
+    bool         is_liquid       = false;
+    unsigned int points_per_edge = 2; // the smallest of all directions
+    KernelKind   kernel          = KernelKind::linear;
 
     // At the start
     unsigned long points       = 0;

@@ -144,35 +144,30 @@ namespace limber::test
 
 
   // Of the same crossings linear functions make much permanent, smooth ones
-  // little, and domains that are strained as they are moved nothing.
+  // little, and convected domains nothing.
   TEST(Health, CreepIsThatOfTheKernel)
   {
-    const auto of = [](const KernelKind kernel,
-                       const bool       strained_as_moved,
-                       const double     points_per_edge) {
+    const auto of = [](const KernelKind kernel, const double points_per_edge) {
       HealthFigures figures       = sound();
       BodyFigures  &body          = figures.bodies[0];
       body.kernel                 = kernel;
-      body.strained_as_moved      = strained_as_moved;
       body.points_per_edge        = points_per_edge;
       body.crossings_under_strain = 10;
       figures.drift               = -0.03;
       return line("crossings", figures).verdict;
     };
-    EXPECT_EQ(of(KernelKind::linear, true, 3), Verdict::bad);
-    EXPECT_EQ(of(KernelKind::quadratic, true, 2), Verdict::look);
-    EXPECT_EQ(of(KernelKind::quadratic, true, 3), Verdict::good);
-    EXPECT_EQ(of(KernelKind::cubic, true, 3), Verdict::good);
-    EXPECT_EQ(of(KernelKind::gimp, true, 2), Verdict::look);
-    EXPECT_EQ(of(KernelKind::gimp, true, 3), Verdict::good);
-    EXPECT_EQ(of(KernelKind::cpgimp, true, 2), Verdict::look);
-    EXPECT_EQ(of(KernelKind::cpgimp, true, 3), Verdict::look);
-    EXPECT_EQ(of(KernelKind::ddmp, true, 2), Verdict::bad);
-    EXPECT_EQ(of(KernelKind::ddmp, true, 3), Verdict::look);
-    EXPECT_EQ(of(KernelKind::cpdi, false, 2), Verdict::look);
-    EXPECT_EQ(of(KernelKind::cpdi, true, 2), Verdict::good);
-    EXPECT_EQ(of(KernelKind::cpdi2, false, 2), Verdict::look);
-    EXPECT_EQ(of(KernelKind::cpdi2, true, 2), Verdict::good);
+    EXPECT_EQ(of(KernelKind::linear, 3), Verdict::bad);
+    EXPECT_EQ(of(KernelKind::quadratic, 2), Verdict::look);
+    EXPECT_EQ(of(KernelKind::quadratic, 3), Verdict::good);
+    EXPECT_EQ(of(KernelKind::cubic, 3), Verdict::good);
+    EXPECT_EQ(of(KernelKind::gimp, 2), Verdict::look);
+    EXPECT_EQ(of(KernelKind::gimp, 3), Verdict::good);
+    EXPECT_EQ(of(KernelKind::cpgimp, 2), Verdict::look);
+    EXPECT_EQ(of(KernelKind::cpgimp, 3), Verdict::look);
+    EXPECT_EQ(of(KernelKind::ddmp, 2), Verdict::bad);
+    EXPECT_EQ(of(KernelKind::ddmp, 3), Verdict::look);
+    EXPECT_EQ(of(KernelKind::cpdi, 2), Verdict::good);
+    EXPECT_EQ(of(KernelKind::cpdi2, 2), Verdict::good);
   }
 
 
