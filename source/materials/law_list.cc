@@ -80,6 +80,20 @@ namespace limber
 
 
 
+  bool
+  flows_like_metal(const std::string &name, const std::vector<double> &values)
+  {
+    bool result = false;
+    with_law(name, values, [&](const auto &law) {
+      using Law = std::decay_t<decltype(law)>;
+      if constexpr (Law::is_plastic)
+        result = !Law::is_frictional && !law.depends_on_rate();
+    });
+    return result;
+  }
+
+
+
   std::vector<StateVariable>
   variables_of(const std::string &name, const std::vector<double> &values)
   {

@@ -180,12 +180,23 @@ namespace limber
 
 
 
-    // A body that is hardly strained has nothing to creep.
+    // A body that is hardly strained has nothing to creep. Of one that flows
+    // plastically most energy is gone.
     bool
     is_strained(const BodyFigures &body, const HealthFigures &figures)
     {
       constexpr double rigid = 1e-3;
-      return !(body.strain_energy <= rigid * figures.energy_scale);
+      return !(body.strain_energy <=
+               rigid * (figures.energy_scale - figures.plastic));
+    }
+
+
+
+    // There creep flows on: no energy is missing, as it is plastic work.
+    bool
+    flows_in_tension(const BodyFigures &body)
+    {
+      return body.is_plastic && body.share_in_tension > 0.5;
     }
 
 
@@ -204,13 +215,15 @@ namespace limber
       // goes into the sides that hold the body; in swings about zero it goes to
       // and fro.
       constexpr double balance_holds = 0.01;
-      if (line.verdict == Verdict::bad &&
+      if (line.verdict == Verdict::bad && !flows_in_tension(body) &&
           std::abs(figures.drift) <= balance_holds &&
           figures.contact <= balance_holds * figures.energy_scale)
         line.verdict = Verdict::look;
       const bool smooth = body.kernel != KernelKind::linear;
-      line.entry = of_body(body, smooth ? "Points per cell edge" : "Frame");
-      line.text  = "a point of body '" + body.name + "' has entered " +
+      line.entry        = smooth ? of_body(body, "Points per cell edge") :
+                          body.is_plastic ? "Method/Kernel" :
+                                            of_body(body, "Frame");
+      line.text         = "a point of body '" + body.name + "' has entered " +
                   brief(body.crossings) + " cells on average, " +
                   brief(body.crossings_under_strain) +
                   " where it is strained, at most " +
@@ -220,9 +233,11 @@ namespace limber
           "; each makes about " + percent(creep_per_crossing(body)) +
           " of the strain permanent. " +
           (smooth ? "Such kernels want three points per cell edge" :
-                    "'Method/Kernel = quadratic' with three points per cell "
-                    "edge creeps less by far; 'Frame = initial' does not, for "
-                    "a body that is alone");
+                    std::string("'Method/Kernel = quadratic' with three "
+                                "points per cell edge creeps less by far") +
+                      (body.is_plastic ? "" :
+                                         "; 'Frame = initial' does not, for "
+                                         "a body that is alone"));
       return line;
     }
 

@@ -133,7 +133,7 @@ namespace limber
         if (points.crossings == nullptr)
           continue;
         double                all = 0, most = 0;
-        std::array<double, 2> strained{};
+        std::array<double, 3> strained{}; // energy, by crossings, in tension
         for (std::size_t p = 0; p < points.size; ++p)
           {
             const double energy =
@@ -142,6 +142,8 @@ namespace limber
             most = std::max(most, points.crossings[p]);
             strained[0] += energy;
             strained[1] += energy * points.crossings[p];
+            if (own.description.is_plastic && points.pressure[p] < 0)
+              strained[2] += energy;
           }
         const MPI_Comm ranks  = state.grid.communicator;
         const double   n      = sum(double(points.size), ranks);
@@ -152,6 +154,8 @@ namespace limber
         const double weighted = sum(strained[1], ranks);
         body.crossings_under_strain =
           energy > 0 ? weighted / energy : body.crossings;
+        const double in_tension = sum(strained[2], ranks);
+        body.share_in_tension   = energy > 0 ? in_tension / energy : 0;
       }
   }
 
@@ -163,9 +167,10 @@ namespace limber
     for (const Body<dim> &body : start.problem.bodies)
       {
         BodyFigures figures;
-        figures.name      = body.name;
-        figures.is_liquid = body.is_liquid;
-        figures.kernel    = start.problem.grid.kernel;
+        figures.name       = body.name;
+        figures.is_liquid  = body.is_liquid;
+        figures.is_plastic = body.is_plastic;
+        figures.kernel     = start.problem.grid.kernel;
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());

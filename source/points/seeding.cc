@@ -199,6 +199,34 @@ namespace limber
 
 
 
+    /**
+     * A point on the edge of its cell gives nothing to the nodes beyond, which
+     * may have no mass then and no velocity, but it is strained by them, and
+     * its stress would be lost there. However little they get, momentum over
+     * mass is right.
+     */
+    template <int dim>
+    dealii::Point<dim>
+    off_the_edges(const dealii::Point<dim>  &place,
+                  const BackgroundGrid<dim> &grid,
+                  const std::uint32_t        cell)
+    {
+      constexpr double         least    = 1e-9; // edges
+      const CellGeometry<dim> &geometry = grid.geometry[cell];
+      dealii::Point<dim>       result   = place;
+      for (int d = 0; d < dim; ++d)
+        {
+          const double xi =
+            (place[d] - geometry.origin[d]) * geometry.inverse_edge[d];
+          if (xi < least || xi > 1 - least)
+            result[d] = geometry.origin[d] + (xi < 0.5 ? least : 1 - least) /
+                                               geometry.inverse_edge[d];
+        }
+      return result;
+    }
+
+
+
     /** The same for the parts of a lattice in natural coordinates. */
     template <int dim, class Work>
     void
@@ -234,7 +262,10 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             for (int k = 0; k < dim; ++k)
               half_edges[d][k] *= 0.5 / body.lattice[k];
-          work(cell, place, block.volume(part), half_edges);
+          work(cell,
+               off_the_edges(place, grid, cell),
+               block.volume(part),
+               half_edges);
         }
     }
 
@@ -280,7 +311,10 @@ namespace limber
           dealii::Tensor<2, dim> half_edges;
           for (int d = 0; d < dim; ++d)
             half_edges[d][d] = 0.5 * std::pow(volume, 1. / dim);
-          points.add(cell, listed.place, rho * volume, half_edges);
+          points.add(cell,
+                     off_the_edges(listed.place, grid, cell),
+                     rho * volume,
+                     half_edges);
           const PointView<dim> view = points.view();
           for (int d = 0; d < dim; ++d)
             view.velocity[d][points.size() - 1] = listed.velocity[d];

@@ -5,6 +5,8 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
+#include <algorithm>
+
 namespace limber
 {
   namespace
@@ -217,6 +219,91 @@ namespace limber
 
 
 
+    /** Centre, velocity of the centre and radius around it of a body. */
+    template <int dim>
+    struct Flight
+    {
+      dealii::Point<dim>     centre;   // m
+      dealii::Tensor<1, dim> velocity; // m/s
+      double                 radius = 0;
+    };
+
+    /** At the start, from places on a lattice; none where none is inside. */
+    template <int dim>
+    std::optional<Flight<dim>>
+    flight_of(const Body<dim> &body)
+    {
+      constexpr unsigned int          n   = dim == 2 ? 64 : 20;
+      const Corners<dim>              box = body.shape->bounding_box();
+      std::vector<dealii::Point<dim>> inside;
+      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (body.shape->contains(place))
+            inside.push_back(place);
+        }
+      if (inside.empty())
+        return {};
+      Flight<dim> result;
+      for (const auto &place : inside)
+        {
+          result.centre += place / double(inside.size());
+          if (!body.initial_velocity.empty())
+            result.velocity +=
+              body.initial_velocity.vector(place, 0) / double(inside.size());
+        }
+      for (const auto &place : inside)
+        result.radius = std::max(result.radius, place.distance(result.centre));
+      result.radius += 0.5 / n * box.first.distance(box.second);
+      return result;
+    }
+
+
+
+    /**
+     * Whether a body on which nothing but gravity acts stays clear of the sides
+     * until the end, also if it grows by a fifth: its centre goes its way
+     * whatever it does otherwise.
+     */
+    template <int dim>
+    bool
+    flies_clear(const Section      &root,
+                const Body<dim>    &body,
+                const Problem<dim> &problem)
+    {
+      const auto &gravity = problem.loads.gravity;
+      if (problem.loads.body_force ||
+          !root.subsection("Loads").list("Face loads").empty() ||
+          (gravity.norm() > 0 && problem.method.damping_rate > 0))
+        return false;
+      const std::optional<Flight<dim>> flight = flight_of(body);
+      if (!flight)
+        return false;
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        {
+          const unsigned int d     = side / 2;
+          const double       v     = flight->velocity[d];
+          const auto         place = [&](const double t) {
+            return flight->centre[d] + v * t + 0.5 * gravity[d] * t * t;
+          };
+          const double reach = 1.2 * flight->radius + problem.grid.edge(d);
+          std::vector<double> times = {0, problem.end_time};
+          if (v * gravity[d] < 0 && -v / gravity[d] < problem.end_time)
+            times.push_back(-v / gravity[d]);
+          for (const double t : times)
+            if (problem.sides[side].held != HeldComponents::none &&
+                (side % 2 == 0 ? place(t) - problem.grid.lower[d] :
+                                 problem.grid.upper[d] - place(t)) < reach)
+              return false;
+        }
+      return true;
+    }
+
+
+
     /**
      * Why a body may meet something that its initial frame would not notice;
      * empty if it is held or if there is nothing to meet. A side where it may
@@ -224,7 +311,9 @@ namespace limber
      */
     template <int dim>
     std::string
-    what_it_may_meet(const Body<dim> &body, const Problem<dim> &problem)
+    what_it_may_meet(const Section      &root,
+                     const Body<dim>    &body,
+                     const Problem<dim> &problem)
     {
       if (!problem.obstacles.empty())
         return "it may roll on an obstacle, or fold onto itself";
@@ -239,9 +328,10 @@ namespace limber
             return "it may slide and lift from the side " +
                    in_quotes(side_names(dim)[side]);
         }
-      return held || !walls ?
+      return held || !walls || flies_clear(root, body, problem) ?
                "" :
-               "it may meet a side, as none holds it and not all are 'free'";
+               "it may meet a side, as none holds it, not all are 'free', and "
+               "it does not fly clear of them";
     }
 
 
@@ -262,7 +352,7 @@ namespace limber
       if (body.frame != Frame::automatic)
         return;
 
-      const std::string meeting = what_it_may_meet(body, problem);
+      const std::string meeting = what_it_may_meet(root, body, problem);
       body.frame =
         !obstacle && meeting.empty() ? Frame::initial : Frame::current;
       if (!body.is_liquid)
@@ -270,7 +360,7 @@ namespace limber
           "Body " + in_quotes(body.name) + ": frame 'auto' is " +
           (body.frame == Frame::initial ?
              "'initial', in which nothing crosses cells: it is one elastic "
-             "body, held or without walls to meet." :
+             "body, held or without walls to meet until the end." :
            obstacle ? "'current', as 'initial' " + obstacle->cause + "." :
                       "'current', as " + meeting + "."));
     }
@@ -298,10 +388,11 @@ namespace limber
                        section.where(found->entry) + ")");
         }
       for (const auto &body : problem.bodies)
-        if (body.is_plastic)
-          return say("'linear', as with splines the means around nodes hold "
-                     "back what flows plastically, like body " +
-                     in_quotes(body.name));
+        if (body.is_plastic && !flows_like_metal(body.law, body.material))
+          return say("'linear', as material that flows without end, like "
+                     "body " +
+                     in_quotes(body.name) +
+                     ", keeps no strain that could creep");
       for (const auto &body : problem.bodies)
         if (!body.is_liquid && body.frame == Frame::current)
           {

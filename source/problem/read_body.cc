@@ -231,9 +231,6 @@ namespace limber
           Choice{Projection::cell,
                  "'cell', which does not lock in volume, and whose pressures "
                  "are solved for as well where the system is large."} :
-        !linear && body.is_plastic ?
-          Choice{Projection::node,
-                 "'node', as plastic flow keeps its volume."} :
         !linear && soft ?
           Choice{Projection::none,
                  "'none', as smooth functions do not lock at this "
@@ -407,6 +404,32 @@ namespace limber
       body.frame = read_word(section, "Frame", frame_words());
       return body;
     }
+
+
+
+    /**
+     * With APIC and linear functions points take the gradient of the new
+     * velocity, as with USL. It has no bound where a point comes so close to
+     * the edge of its cell that nodes beyond have next to no mass, and what
+     * points give back has it in it. Points that the lattice of the grid places
+     * keep away from edges until they move.
+     */
+    template <int dim>
+    void
+    warn_of_unbounded_gradients(Problem<dim> &problem)
+    {
+      if (problem.method.transfer != Transfer::apic ||
+          problem.grid.kernel != KernelKind::linear)
+        return;
+      for (const Body<dim> &body : problem.bodies)
+        if (body.placement == Placement::fitted ||
+            body.placement == Placement::cut)
+          problem.notes.push_back(
+            "Warning: the transfer 'apic' with linear functions is unstable "
+            "where points lie near the edges of cells, as those of body " +
+            in_quotes(body.name) +
+            " may. Set 'Method/Kernel = quadratic' or 'Transfer = flip'.");
+    }
   } // namespace
 
 
@@ -424,6 +447,7 @@ namespace limber
         read_placement(section, body, problem);
         read_treatment(section, body, problem);
       }
+    warn_of_unbounded_gradients(problem);
   }
 
 

@@ -94,9 +94,10 @@ namespace limber
        {"preconsolidation pressure", "Pa", 0},
        {"plastic volume strain", "", -1e300}}};
 
-    static constexpr bool dissipates = true;
-    static constexpr bool is_elastic = false;
-    static constexpr bool is_plastic = true;
+    static constexpr bool dissipates    = true;
+    static constexpr bool is_elastic    = false;
+    static constexpr bool is_plastic    = true;
+    static constexpr bool is_frictional = true;
 
     explicit CamClay(const std::array<double, 7> &values)
       : Elasticity(values[0],

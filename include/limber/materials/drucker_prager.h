@@ -113,9 +113,10 @@ namespace limber
         return result;
       }()};
 
-    static constexpr bool dissipates = true;
-    static constexpr bool is_elastic = false;
-    static constexpr bool is_plastic = true;
+    static constexpr bool dissipates    = true;
+    static constexpr bool is_elastic    = false;
+    static constexpr bool is_plastic    = true;
+    static constexpr bool is_frictional = true;
 
     explicit DruckerPrager(const std::array<double, 12> &values)
       : Elasticity(values[0], values[1], values[2])

@@ -84,9 +84,10 @@ namespace limber
     static constexpr std::array<StateVariable, 1> variables{
       {{"equivalent plastic strain", "", 0}}};
 
-    static constexpr bool dissipates = true;
-    static constexpr bool is_elastic = false;
-    static constexpr bool is_plastic = true;
+    static constexpr bool dissipates    = true;
+    static constexpr bool is_elastic    = false;
+    static constexpr bool is_plastic    = true;
+    static constexpr bool is_frictional = false;
 
     explicit J2(const std::array<double, 9> &values)
       : FiniteElasticity(values[0], values[1], values[2])

@@ -229,7 +229,8 @@ namespace limber
    *    wave_speed_squared() of a state; dynamic_viscosity();
    *  - is_elastic, whether the stress follows from the deformation alone;
    *  - is_plastic, whether it flows plastically: elastic coefficients then say
-   *    nothing about its strain, and update() returns plastic work.
+   *    nothing about its strain, and update() returns plastic work; then also
+   *    is_frictional, whether its strength grows with the pressure.
    *
    *
    * A law that takes pressure or is elastic has besides kirchhoff_pressure(),

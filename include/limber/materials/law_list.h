@@ -80,6 +80,13 @@ namespace limber
   bool
   flows_by_rate(const std::string &law, const std::vector<double> &values);
 
+  /**
+   * Whether it flows like a metal: plastically, with a strength that depends
+   * neither on the pressure nor on the rate.
+   */
+  bool
+  flows_like_metal(const std::string &law, const std::vector<double> &values);
+
   /** The names of the variables of all laws, each once. */
   std::vector<std::string>
   names_of_variables();

@@ -42,7 +42,8 @@ namespace limber
   {
     std::string  name;
     bool         is_liquid       = false;
-    unsigned int points_per_edge = 2; // the smallest of all directions
+    bool         is_plastic      = false; // may flow plastically
+    unsigned int points_per_edge = 2;     // the smallest of all directions
     KernelKind   kernel          = KernelKind::linear;
 
     // At the start
@@ -56,12 +57,13 @@ namespace limber
     unsigned long gaps_at_start = 0;
 
     // At the end
-    double        unseen_energy = 0; // kinetic, that the grid does not hold
-    double        strain_energy = 0;
-    double        crossings     = 0; // cells entered, mean over the points
-    double        crossings_under_strain = 0; // the mean by strain energy
-    double        most_crossings         = 0; // of one point
-    unsigned long cells                  = 0; // that hold points of it
+    double unseen_energy          = 0; // kinetic, that the grid does not hold
+    double strain_energy          = 0;
+    double crossings              = 0; // cells entered, mean over the points
+    double crossings_under_strain = 0; // the mean by strain energy
+    double most_crossings         = 0; // of one point
+    double share_in_tension       = 0; // of its strain energy, if it is plastic
+    unsigned long cells           = 0; // that hold points of it
     unsigned long inner_cells     = 0; // of them, amid others along all axes
     unsigned long single_cells    = 0; // of these, with one point
     unsigned long gaps            = 0; // empty cells between two of the body
@@ -95,8 +97,7 @@ namespace limber
 
   /**
    * The share of elastic strain that becomes permanent for each cell that a
-   * point enters, by kernel, points along the edge of a cell and, with CPDI,
-   * whether the velocity that moves points also strains them.
+   * point enters, by kernel and points along the edge of a cell.
    */
   double
   creep_per_crossing(const BodyFigures &body);

@@ -143,6 +143,29 @@ namespace limber::test
 
 
 
+  // The balance does not miss plastic work.
+  TEST(Health, CreepOfWhatFlowsInTensionIsBad)
+  {
+    HealthFigures figures = sound();
+    BodyFigures  &body    = figures.bodies[0];
+    body.is_plastic       = true;
+    figures.plastic       = 0.999 * figures.energy_scale;
+    body.strain_energy    = 0.0005 * figures.energy_scale;
+
+    body.crossings_under_strain = 60;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+    body.share_in_tension = 0.9;
+    const HealthLine bad  = line("crossings", figures);
+    EXPECT_EQ(bad.verdict, Verdict::bad);
+    EXPECT_EQ(bad.entry, "Method/Kernel");
+    EXPECT_LT(n_words(bad.text), 60u) << bad.text;
+    body.kernel          = KernelKind::quadratic;
+    body.points_per_edge = 3;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+  }
+
+
+
   // Of the same crossings linear functions make much permanent, smooth ones
   // little, and convected domains nothing.
   TEST(Health, CreepIsThatOfTheKernel)

@@ -465,6 +465,53 @@ TEST(Scenes, AutomaticFrameAndKernelKeepSolidsFromCreeping)
 
 
 
+TEST(Scenes, ABodyThatFliesClearOfTheSidesTakesTheInitialFrame)
+{
+  const std::string path  = prm_folder() + "verification/spinning_disc.prm";
+  const auto        frame = [&](const std::vector<std::string> &overrides) {
+    return read_problem<2>(SceneFile(path, overrides)).bodies[0].frame;
+  };
+  EXPECT_EQ(frame({}), Frame::initial);
+  // 0.7 m away is the side, and 0.5 m the radius
+  EXPECT_EQ(frame({"Body disc/Initial velocity=-w*y + 0.0001; w*x"}),
+            Frame::initial);
+  EXPECT_EQ(frame({"Body disc/Initial velocity=-w*y + 0.01; w*x"}),
+            Frame::current);
+  EXPECT_EQ(frame({"Body disc/Initial velocity=-w*y + 0.01; w*x",
+                   "Boundaries/right=free"}),
+            Frame::initial);
+  EXPECT_EQ(frame({"Loads/Gravity=0, -0.01"}), Frame::current);
+  EXPECT_EQ(frame({"Loads/Gravity=0, -0.01", "Boundaries/bottom=free"}),
+            Frame::initial);
+  EXPECT_EQ(frame({"Body disc/Ball/Radius=0.6"}), Frame::current);
+  EXPECT_EQ(frame({"Loads/Body force=0; 1e-9*t"}), Frame::current);
+}
+
+
+
+TEST(Scenes, MetalsHaveSplinesAndWhatFlowsOnHasNot)
+{
+  const auto read = [](const std::string              &name,
+                       const std::vector<std::string> &overrides) {
+    return read_problem<2>(SceneFile(prm_folder() + name, overrides));
+  };
+  const std::string bar   = "verification/pulled_bar.prm";
+  const Problem<2>  metal = read(bar, {});
+  EXPECT_EQ(metal.grid.kernel, KernelKind::quadratic);
+  EXPECT_EQ(metal.bodies[0].treatment, Projection::none);
+  EXPECT_EQ(metal.bodies[0].points_per_cell_edge[0], 3u);
+  EXPECT_EQ(read(bar, {"Body bar/J2/Poisson's ratio=0.49"}).bodies[0].treatment,
+            Projection::node);
+  EXPECT_EQ(read(bar, {"Body bar/J2/Viscosity=10"}).grid.kernel,
+            KernelKind::linear);
+  for (const std::string soil :
+       {"benchmarks/slope_stability.prm", "verification/oedometer.prm"})
+    EXPECT_EQ(read(soil, {"Method/Kernel=auto"}).grid.kernel,
+              KernelKind::linear);
+}
+
+
+
 TEST(Scenes, EndAndOutputAreNotAmongTheFixedEntries)
 {
   const std::string path = prm_folder() + "cantilever.prm";

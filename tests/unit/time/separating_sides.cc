@@ -153,6 +153,28 @@ TEST(SeparatingSides, ABarLeavesTheWallAsFastAsItCame)
 
 
 
+// Points on the edges of cells: nodes beyond have no mass.
+TEST(SeparatingSides, ABarWithPointsOnEdgesKeepsItsMomentum)
+{
+  for (const std::string order : {"usf", "musl", "usavg"})
+    {
+      SCOPED_TRACE(order);
+      SceneRun<2> run(bar_and_wall,
+                      {"Method/Stress update=" + order,
+                       "Body bar/Placement=fitted"});
+      double      error = 0;
+      run.advance_to(0.4, [&]() {
+        error = std::max(error, run.totals().momentum_error);
+      });
+      EXPECT_LT(error, 1e-12);
+      const auto totals = run.totals();
+      EXPECT_NEAR(totals.all.momentum[0] / 20, 0.1, 0.0025);
+      EXPECT_LT(std::abs(totals.energy_drift), 0.002);
+    }
+}
+
+
+
 // Noise at a side that only stopped what goes outward would press the ball
 // together in every step and give it half of its energy.
 TEST(SeparatingSides, ABallBouncesFourTimesWithoutGainingEnergy)
