@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/node_vector.h>
-#include <limber/time/cell_functions.h>
+#include <limber/interpolation/point_support.h>
 #include <limber/time/contact_geometry.h>
-#include <limber/time/domain_functions.h>
 #include <limber/time/obstacle_contact.h>
 
 #include <algorithm>
@@ -137,14 +136,7 @@ namespace limber
       }
     clear_sums();
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
-      if (parts.bodies[b]->points.view().has_domains())
-        find_points<DomainFunctions<dim>>(b, ways, step);
-      else
-        with_degree(parts.nodes.view(), [&](const auto degree) {
-          find_points<CellFunctions<dim, decltype(degree)::value>>(b,
-                                                                   ways,
-                                                                   step);
-        });
+      find_points(b, ways, step);
     add_nodes(ways, step);
     impulses.finish_adding();
   }
@@ -227,13 +219,11 @@ namespace limber
   // point are asked; twice as far, as the distance from what a formula tells
   // is of first order.
   template <int dim>
-  template <class Functions>
   void
   ObstacleContact<dim>::find_points(const unsigned int      body,
                                     const std::vector<Way> &ways,
                                     const double            step)
   {
-    const GridView<dim>  grid      = parts.nodes.view();
     const PointView<dim> points    = parts.bodies[body]->points.view();
     const bool           is_liquid = parts.bodies[body]->description.is_liquid;
     const double inverse_density   = 1 / parts.bodies[body]->stress->density();
@@ -249,7 +239,6 @@ namespace limber
       if (asked.empty())
         return;
 
-      Functions functions(grid, batch.cell);
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           dealii::Point<dim> x;
@@ -267,21 +256,17 @@ namespace limber
                               x,
                               distance,
                               half_edge_of<dim>(points.mass[p] *
-                                                inverse_density)},
-                             functions);
+                                                inverse_density)});
               else
-                {
-                  add_surface(body,
-                              {p,
-                               o,
-                               x,
-                               distance,
-                               points.reach[p] *
-                                 stretch_along(body, p, distance.normal)},
-                              functions,
-                              ways[o],
-                              step);
-                }
+                add_surface(body,
+                            {p,
+                             o,
+                             x,
+                             distance,
+                             points.reach[p] *
+                               stretch_along(body, p, distance.normal)},
+                            ways[o],
+                            step);
             }
         }
     });
@@ -317,11 +302,9 @@ namespace limber
 
 
   template <int dim>
-  template <class Functions>
   void
   ObstacleContact<dim>::add_surface(const unsigned int body,
                                     const Near        &near,
-                                    Functions         &functions,
                                     const Way         &way,
                                     const double       step)
   {
@@ -346,15 +329,16 @@ namespace limber
     place.friction         = obstacle.friction;
     place.mass             = points.mass[near.point];
     const Vector direction = against_gradients(points, near.point, normal);
-    functions.go_to(points, near.point);
-    for (int k = 0; k < functions.n; ++k)
+    const auto   support =
+      support_of_point<dim>(parts.nodes.view(), points, near.point);
+    for (int k = 0; k < support.n; ++k)
       {
         double slope = 0; // along the normal, 1/m
         for (int d = 0; d < dim; ++d)
-          slope += direction[d] * functions.slope(k, d);
+          slope += direction[d] * support.gradient[k][d];
         impulses.add_share(parts.bodies[body]->description.nodal_field,
-                           functions.node(k),
-                           functions.value(k) - near.reach * slope);
+                           support.node[k],
+                           support.value[k] - near.reach * slope);
       }
     touches.push_back({near.obstacle,
                        near.x - near.reach * normal - way.before.centre(),
@@ -381,11 +365,8 @@ namespace limber
 
 
   template <int dim>
-  template <class Functions>
   void
-  ObstacleContact<dim>::add_to_nodes(const unsigned int body,
-                                     const Near        &near,
-                                     Functions         &functions)
+  ObstacleContact<dim>::add_to_nodes(const unsigned int body, const Near &near)
   {
     if (near.distance.value > near.reach)
       return;
@@ -393,11 +374,12 @@ namespace limber
                       parts.bodies[body]->description.nodal_field];
     const PointView<dim> points = parts.bodies[body]->points.view();
     const double         mass   = points.mass[near.point];
-    functions.go_to(points, near.point);
-    for (int k = 0; k < functions.n; ++k)
+    const auto           support =
+      support_of_point<dim, false>(parts.nodes.view(), points, near.point);
+    for (int k = 0; k < support.n; ++k)
       impulses.for_each_master(
-        functions.node(k), [&](const std::uint32_t node, const double share) {
-          const double  weight = mass * share * functions.value(k);
+        support.node[k], [&](const std::uint32_t node, const double share) {
+          const double  weight = mass * share * support.value[k];
           double *const record =
             some.records.data() + std::size_t(node) * Sums::stride;
           for (int d = 0; d < dim; ++d)

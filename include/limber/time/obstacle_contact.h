@@ -151,21 +151,17 @@ namespace limber
               const ObstaclePlace<dim> &place,
               const dealii::Point<dim> &middle,
               std::uint32_t             cell);
-    template <class Functions>
     void
     find_points(unsigned int body, const std::vector<Way> &ways, double step);
     double
     stretch_along(unsigned int body, std::size_t p, const Vector &normal) const;
-    template <class Functions>
     void
     add_surface(unsigned int body,
                 const Near  &near,
-                Functions   &functions,
                 const Way   &way,
                 double       step);
-    template <class Functions>
     void
-    add_to_nodes(unsigned int body, const Near &near, Functions &functions);
+    add_to_nodes(unsigned int body, const Near &near);
     void
     clear_sums();
     void
