@@ -70,6 +70,22 @@ namespace limber
 
 
 
+    /** Whether it matters where the material of points ends. */
+    template <int dim>
+    bool
+    presses_at_points(const Problem<dim> &problem)
+    {
+      return !problem.obstacles.empty() ||
+             (is_spline(problem.grid.kernel) &&
+              std::any_of(problem.contacts.begin(),
+                          problem.contacts.end(),
+                          [](const ContactPair &pair) {
+                            return pair.law == ContactLaw::separate;
+                          }));
+    }
+
+
+
     /** The body without points. */
     template <int dim>
     std::unique_ptr<MaterialBody<dim>>
@@ -96,7 +112,7 @@ namespace limber
       layout.volumetric    = stress->volumetric();
       layout.affine        = problem.method.transfer == Transfer::apic;
       layout.crossings     = !body.is_liquid && body.frame == Frame::current;
-      layout.reach         = !problem.obstacles.empty() && !body.is_liquid;
+      layout.reach         = presses_at_points(problem) && !body.is_liquid;
       layout.domains       = domain_form(kernel);
       layout.initial_frame = body.frame == Frame::initial;
       layout.size_class    = grid.has_levels();

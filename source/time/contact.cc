@@ -24,6 +24,11 @@ namespace limber
     : parts(parts)
     , n_fields(n_nodal_fields(parts.problem))
     , laws(n_fields * n_fields)
+    , edge(n_fields)
+    , impulses(parts.nodes)
+    , at_nodes(parts.problem.grid.kernel == KernelKind::linear)
+    , this_rank(
+        dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator))
   {
     for (const ContactPair &pair : parts.problem.contacts)
       {
@@ -34,56 +39,37 @@ namespace limber
         if (pair.law == ContactLaw::separate)
           parting.push_back({{std::min(a, b), std::max(a, b)}});
       }
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points  = body->points.view();
+        double               largest = 0; // kg
+        for (std::size_t p = 0; p < points.size; ++p)
+          largest = std::max(largest, points.mass[p]);
+        double &of_field = edge[body->description.nodal_field];
+        of_field =
+          std::max(of_field,
+                   2 * half_edge_of<dim>(dealii::Utilities::MPI::max(
+                                           largest, parts.grid.communicator) /
+                                         body->stress->density()));
+      }
     reinit();
   }
 
 
 
-  // m_r |s| <= mu J_n, where both have the reduced mass as a factor.
+  // What one field would have: the means over masses.
   template <int dim>
-  typename Contact<dim>::State
-  Contact<dim>::decide(const Touch  &touch,
-                       const Vector &v_a,
-                       const Vector &v_b) const
-  {
-    const Law &law = this->law(touch.a, touch.b);
-    if (law.law == ContactLaw::stick)
-      return State::sticking;
-    const Vector relative = v_a - v_b;
-    const double approach = relative * touch.normal;
-    if (!(approach > 0) || !touch.points_touch)
-      return State::free;
-    return along_surface(relative, touch.normal).norm() <=
-               law.friction * approach ?
-             State::sticking :
-             State::sliding;
-  }
-
-
-
-  // work(touch, relative velocity, reduced mass) before it is changed.
-  template <int dim>
-  template <class Work>
   void
-  Contact<dim>::for_each_held(const unsigned int slot, const Work &work)
+  Contact<dim>::join(const unsigned int slot)
   {
     for (const Touch &touch : touches)
-      if (touch.state != State::free)
+      if (law(touch.a, touch.b).law == ContactLaw::stick)
         {
           double *const        a   = parts.nodes.record(touch.a, touch.node),
                         *const b   = parts.nodes.record(touch.b, touch.node);
-          const double         m_a = a[Layout::mass], m_b = b[Layout::mass],
-                       mass     = m_a * m_b / (m_a + m_b);
-          const Vector v_a      = vector_in<dim>(a + slot),
-                       v_b      = vector_in<dim>(b + slot);
-          const Vector relative = v_a - v_b;
-          work(touch, relative, mass);
-          const Vector taken =
-            mass * (touch.state == State::sticking ?
-                      relative :
-                      (relative * touch.normal) * touch.normal);
-          store_vector<dim>(v_a - taken / m_a, a + slot);
-          store_vector<dim>(v_b + taken / m_b, b + slot);
+          const double         m_a = a[Layout::mass], m_b = b[Layout::mass];
+          for (unsigned int d = slot; d < slot + dim; ++d)
+            a[d] = b[d] = (m_a * a[d] + m_b * b[d]) / (m_a + m_b);
         }
   }
 
@@ -93,7 +79,9 @@ namespace limber
   void
   Contact<dim>::hold(const unsigned int slot)
   {
-    for_each_held(slot, [](const Touch &, const Vector &, double) {});
+    join(slot);
+    if (impulses.any())
+      impulses.hold(slot);
   }
 
 
@@ -102,78 +90,44 @@ namespace limber
   void
   Contact<dim>::hold_before(const unsigned int slot, const double step)
   {
-    for (Touch &touch : touches)
-      {
-        const auto expected = [&](const unsigned int field) {
-          const double *const record = parts.nodes.record(field, touch.node);
-          return Vector((vector_in<dim>(record + Layout::momentum) +
-                         step * vector_in<dim>(record + Layout::force)) /
-                        record[Layout::mass]);
-        };
-        touch.state = decide(touch, expected(touch.a), expected(touch.b));
-      }
-    hold(slot);
+    join(slot);
+    if (!impulses.any())
+      return;
+    holds_before = true;
+    impulses.expect(step, parts.problem.loads.gravity);
+    const std::vector<Vector> &held = impulses.hold(slot);
+    for (std::size_t p = 0; p < exchanges.size(); ++p)
+      exchanges[p].held = held[p];
   }
 
 
 
+  // See ObstacleContact::exchange().
   template <int dim>
   void
   Contact<dim>::exchange()
   {
-    for (Touch &touch : touches)
-      if (law(touch.a, touch.b).law == ContactLaw::stick)
-        join(touch);
-      else
-        exchange(touch);
-  }
-
-
-
-  // FLIP points whose nodes bring the relative velocity w and give back w*
-  // gain (J + dt f) (w + w*) / 2 and lose nothing to a strain that has none of
-  // it: J + dt f = -m_r w takes m_r w (w + w*) / 2, of which the first part is
-  // counted here and the second in hold_after().
-  template <int dim>
-  void
-  Contact<dim>::exchange(Touch &touch)
-  {
-    double *const        a   = parts.nodes.record(touch.a, touch.node),
-                  *const b   = parts.nodes.record(touch.b, touch.node);
-    const double         m_a = a[Layout::mass], m_b = b[Layout::mass],
-                 mass     = m_a * m_b / (m_a + m_b);
-    const Vector v_a      = vector_in<dim>(a + Layout::velocity),
-                 v_b      = vector_in<dim>(b + Layout::velocity),
-                 dv_a     = vector_in<dim>(a + Layout::increment),
-                 dv_b     = vector_in<dim>(b + Layout::increment);
-    const Vector relative = v_a - v_b;
-    touch.state           = decide(touch, v_a, v_b);
-    if (touch.state == State::free)
+    join(Layout::velocity);
+    join(Layout::increment);
+    if (!impulses.any())
       return;
-
-    const double pressing = mass * (relative * touch.normal); // kg m/s
-    const Vector sliding  = along_surface(relative, touch.normal);
-    touch.brought         = relative - (dv_a - dv_b);
-    touch.rubbing =
-      touch.state == State::sticking ?
-        mass * sliding :
-        law(touch.a, touch.b).friction * pressing * sliding / sliding.norm();
-    touch.slides = sliding - touch.rubbing / mass;
-
-    const Vector impulse = pressing * touch.normal + touch.rubbing;
-    store_vector<dim>(v_a - impulse / m_a, a + Layout::velocity);
-    store_vector<dim>(v_b + impulse / m_b, b + Layout::velocity);
-    store_vector<dim>(dv_a - impulse / m_a, a + Layout::increment);
-    store_vector<dim>(dv_b + impulse / m_b, b + Layout::increment);
-
-    if (!parts.nodes.owns(touch.node))
-      return;
-    const double normal = touch.brought * touch.normal;
-    const Vector along  = along_surface(touch.brought, touch.normal);
-    parts.ledger.contact += 0.5 * mass * normal * normal;
-    parts.ledger.friction += touch.state == State::sticking ?
-                               0.5 * mass * along.norm_square() :
-                               0.5 * touch.rubbing * (along + touch.slides);
+    const auto &places = impulses.all();
+    impulses.find_relative(Layout::increment);
+    for (std::size_t p = 0; p < places.size(); ++p)
+      exchanges[p].increase = places[p].relative;
+    impulses.find_relative(Layout::velocity);
+    for (std::size_t p = 0; p < places.size(); ++p)
+      exchanges[p].brought = places[p].relative - exchanges[p].increase;
+    impulses.exchange();
+    impulses.find_relative(Layout::velocity);
+    for (std::size_t p = 0; p < places.size(); ++p)
+      {
+        exchanges[p].after = places[p].relative;
+        account(exchanges[p].brought + exchanges[p].after,
+                exchanges[p].held,
+                p,
+                0.5);
+      }
   }
 
 
@@ -182,37 +136,46 @@ namespace limber
   void
   Contact<dim>::hold_after(const unsigned int slot, const double flip_share)
   {
-    for_each_held(
-      slot, [&](const Touch &touch, const Vector &relative, const double mass) {
-        if (!parts.nodes.owns(touch.node) ||
-            law(touch.a, touch.b).law == ContactLaw::stick)
-          return;
-        const double share = 0.5 * flip_share;
-        const Vector along = along_surface(relative, touch.normal);
-        parts.ledger.contact += share * mass * (touch.brought * touch.normal) *
-                                (relative * touch.normal);
-        parts.ledger.friction +=
-          share * (touch.state == State::sticking ?
-                     mass * (touch.brought * along) :
-                     touch.rubbing * (along - touch.slides));
-      });
+    join(slot);
+    if (!impulses.any())
+      return;
+    impulses.find_relative(slot);
+    for (std::size_t p = 0; p < exchanges.size(); ++p)
+      exchanges[p].brought = impulses.all()[p].relative;
+    const std::vector<Vector> &held = impulses.hold(slot);
+    for (std::size_t p = 0; p < exchanges.size(); ++p)
+      account(exchanges[p].brought - exchanges[p].after,
+              holds_before ? held[p] : 2 * held[p],
+              p,
+              0.5 * flip_share);
   }
 
 
 
-  // What one field would have: the sums of masses, momenta and forces.
+  // Where places are nodes, what strains the points has nothing left of what is
+  // held, and forces lose nothing to it. What is lost across the surface is
+  // that of the impact, along it heat.
   template <int dim>
   void
-  Contact<dim>::join(Touch &touch)
+  Contact<dim>::account(const Vector     &velocity,
+                        const Vector     &held,
+                        const std::size_t p,
+                        const double      share)
   {
-    touch.state              = State::sticking;
-    double *const        a   = parts.nodes.record(touch.a, touch.node),
-                  *const b   = parts.nodes.record(touch.b, touch.node);
-    const double         m_a = a[Layout::mass], m_b = b[Layout::mass];
-    for (const unsigned int slot : {Layout::velocity, Layout::increment})
-      for (int d = 0; d < dim; ++d)
-        a[slot + d] = b[slot + d] =
-          (m_a * a[slot + d] + m_b * b[slot + d]) / (m_a + m_b);
+    const auto &place = impulses.all()[p];
+    if (!place.is_own || (at_nodes && !place.presses()))
+      return;
+    const Vector  normal   = place.normal;
+    const Vector &increase = exchanges[p].increase;
+    const Vector  holds =
+      !at_nodes ?
+         held :
+         -place.mass * (place.sticks ? velocity : (velocity * normal) * normal);
+    const double all    = increase * holds - place.impulse * velocity;
+    const double across = (increase * normal) * (holds * normal) -
+                          (place.impulse * normal) * (velocity * normal);
+    parts.ledger.contact += share * across;
+    parts.ledger.friction += share * (all - across);
   }
 
 

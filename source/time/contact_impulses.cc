@@ -11,7 +11,9 @@ namespace limber
   {
     // After four, what is pressed and what rolls does what it does after
     // sixteen.
-    constexpr unsigned int n_passes = 4;
+    constexpr unsigned int passes_of_places = 4;
+
+    constexpr int tag_of_places = 4711;
   } // namespace
 
 
@@ -61,6 +63,7 @@ namespace limber
     shares.swap(former_shares);
     places.clear();
     shares.clear();
+    peers.clear();
     any_place = false;
   }
 
@@ -95,13 +98,41 @@ namespace limber
 
   template <int dim>
   void
-  ContactImpulses<dim>::finish_adding()
+  ContactImpulses<dim>::finish_adding(std::vector<Peer> &&of_places)
   {
+    peers      = std::move(of_places);
+    everywhere = false;
+    n_passes   = passes_of_places;
     any_place =
       dealii::Utilities::MPI::max<unsigned int>(places.empty() ? 0 : 1,
                                                 nodes.grid.communicator) > 0;
-    if (!any_place)
-      return;
+    if (any_place)
+      find_relaxation();
+  }
+
+
+
+  // Where no node has two of them, they do not know of each other: one pass is
+  // exact.
+  template <int dim>
+  void
+  ContactImpulses<dim>::finish_adding_nodes()
+  {
+    everywhere = true;
+    any_place  = !places.empty();
+    n_passes   = 1;
+    for (std::size_t p = 1; p < places.size(); ++p)
+      if (shares[places[p].begin].node == shares[places[p - 1].begin].node)
+        n_passes = passes_of_places;
+    find_relaxation();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_relaxation()
+  {
     const auto mass = [this](const Share &share) -> double & {
       return given[share.field]
         .records[share.node * Given::stride + Given::mass];
@@ -111,23 +142,109 @@ namespace limber
         mass(shares[k]) += std::abs(shares[k].value) * place.mass;
     for (Given &of_field : given)
       {
-        of_field.exchange.start(nodes.node_plan(),
-                                of_field.records.data(),
-                                Given::mass,
-                                Given::mass + 1);
-        of_field.exchange.finish(of_field.records.data());
+        sum_given(of_field, Given::mass, Given::mass + 1);
         for (const std::uint32_t node : nodes.active_nodes())
           if (of_field.records[node * Given::stride + Given::mass] > 0)
             of_field.nodes.push_back(node);
       }
     for (Place &place : places)
       {
-        double sum = 0;
+        place.relative = 0;
         for (std::size_t k = place.begin; k < place.end; ++k)
-          sum += std::abs(shares[k].value) * mass(shares[k]) /
-                 nodes.record(shares[k].field, shares[k].node)[Layout::mass];
-        place.relaxation = place.mass / sum;
+          place.relative[0] +=
+            std::abs(shares[k].value) * mass(shares[k]) /
+            nodes.record(shares[k].field, shares[k].node)[Layout::mass];
       }
+    complete();
+    for (Place &place : places)
+      place.relaxation = place.mass / place.relative[0];
+  }
+
+
+
+  // Each rank knows the velocity of the nodes that its part of a place sees.
+  // The owner adds them up and tells the sum: all do the same with it.
+  template <int dim>
+  void
+  ContactImpulses<dim>::complete()
+  {
+    if (peers.empty())
+      return;
+    const auto exchange = [this](const auto send, const auto take) {
+      std::vector<std::vector<double>> sent(peers.size()),
+        received(peers.size());
+      std::vector<MPI_Request> requests;
+      for (std::size_t k = 0; k < peers.size(); ++k)
+        {
+          const auto &from = peers[k].*send;
+          const auto &to   = peers[k].*take;
+          for (const std::uint32_t p : from)
+            for (int d = 0; d < dim; ++d)
+              sent[k].push_back(places[p].relative[d]);
+          received[k].resize(to.size() * dim);
+          if (!to.empty())
+            MPI_Irecv(received[k].data(),
+                      static_cast<int>(received[k].size()),
+                      MPI_DOUBLE,
+                      static_cast<int>(peers[k].rank),
+                      tag_of_places,
+                      nodes.grid.communicator,
+                      &requests.emplace_back());
+          if (!from.empty())
+            MPI_Isend(sent[k].data(),
+                      static_cast<int>(sent[k].size()),
+                      MPI_DOUBLE,
+                      static_cast<int>(peers[k].rank),
+                      tag_of_places,
+                      nodes.grid.communicator,
+                      &requests.emplace_back());
+        }
+      MPI_Waitall(static_cast<int>(requests.size()),
+                  requests.data(),
+                  MPI_STATUSES_IGNORE);
+      for (std::size_t k = 0; k < peers.size(); ++k)
+        for (std::size_t i = 0; i < (peers[k].*take).size(); ++i)
+          {
+            Place &place = places[(peers[k].*take)[i]];
+            if (!place.is_own)
+              place.relative = 0;
+            for (int d = 0; d < dim; ++d)
+              place.relative[d] += received[k][i * dim + d];
+          }
+    };
+    exchange(&Peer::parts, &Peer::own);
+    exchange(&Peer::own, &Peer::parts);
+  }
+
+
+
+  template <int dim>
+  template <class Velocity>
+  void
+  ContactImpulses<dim>::find_relative_of(const Velocity &velocity)
+  {
+    for (Place &place : places)
+      {
+        place.relative = 0;
+        if (place.is_own)
+          place.relative -= place.velocity;
+        for (std::size_t k = place.begin; k < place.end; ++k)
+          place.relative +=
+            shares[k].value *
+            vector_in<dim>(velocity(shares[k].field, shares[k].node));
+      }
+    complete();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_relative(const unsigned int slot)
+  {
+    find_relative_of([&](const unsigned int field, const std::uint32_t node) {
+      return nodes.record(field, node) + slot;
+    });
   }
 
 
@@ -168,21 +285,6 @@ namespace limber
 
 
   template <int dim>
-  template <class Velocity>
-  typename ContactImpulses<dim>::Vector
-  ContactImpulses<dim>::relative_velocity(const Place    &place,
-                                          const Velocity &velocity) const
-  {
-    Vector result = -place.velocity;
-    for (std::size_t k = place.begin; k < place.end; ++k)
-      result += shares[k].value *
-                vector_in<dim>(velocity(shares[k].field, shares[k].node));
-    return result;
-  }
-
-
-
-  template <int dim>
   void
   ContactImpulses<dim>::give(const Place &place, const Vector &impulse)
   {
@@ -198,6 +300,23 @@ namespace limber
 
 
 
+  template <int dim>
+  void
+  ContactImpulses<dim>::sum_given(Given             &of_field,
+                                  const unsigned int first,
+                                  const unsigned int last)
+  {
+    if (everywhere)
+      return;
+    of_field.exchange.start(nodes.node_plan(),
+                            of_field.records.data(),
+                            first,
+                            last);
+    of_field.exchange.finish(of_field.records.data());
+  }
+
+
+
   // add(field, node, change of velocity)
   template <int dim>
   template <class Add>
@@ -207,11 +326,7 @@ namespace limber
     for (unsigned int field = 0; field < given.size(); ++field)
       {
         double *const records = given[field].records.data();
-        given[field].exchange.start(nodes.node_plan(),
-                                    records,
-                                    Given::momentum,
-                                    Given::momentum + dim);
-        given[field].exchange.finish(records);
+        sum_given(given[field], Given::momentum, Given::momentum + dim);
         for (const std::uint32_t node : given[field].nodes)
           {
             double *const momentum =
@@ -235,12 +350,12 @@ namespace limber
   {
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
+        find_relative_of(velocity);
         for (Place &place : places)
           {
-            const Vector relative = relative_velocity(place, velocity);
             const Vector wanted =
               place.impulse +
-              place.relaxation * (place.least * place.normal - relative);
+              place.relaxation * (place.least * place.normal - place.relative);
             const double pressing = std::max(0., wanted * place.normal);
             Vector       along    = along_surface(wanted, place.normal);
             const double rubbing  = along.norm();
@@ -327,13 +442,13 @@ namespace limber
     };
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
+        find_relative(slot);
         for (std::size_t p = 0; p < places.size(); ++p)
           {
             const Place &place = places[p];
             if (!place.presses())
               continue;
-            Vector lacking =
-              place.least * place.normal - relative_velocity(place, velocity);
+            Vector lacking = place.least * place.normal - place.relative;
             if (!place.sticks)
               lacking -= along_surface(lacking, place.normal);
             const Vector impulse = place.relaxation * lacking;

@@ -27,12 +27,13 @@ namespace limber
 
   template <int dim>
   void
-  Contact<dim>::find()
+  Contact<dim>::find(const double step)
   {
     find_nodes();
     find_neighbours();
     find_gradients();
     find_normals();
+    find_places(step);
   }
 
 
@@ -42,6 +43,13 @@ namespace limber
   Contact<dim>::reinit()
   {
     touches.clear();
+    impulses.reinit();
+    of_pair_at.reinit(parts.grid.vertices.n());
+    marked.clear();
+    ranks_of_vertex.clear();
+    for (const auto &neighbour : parts.grid.vertices.shared.neighbours)
+      for (const std::uint32_t vertex : neighbour.records)
+        ranks_of_vertex[vertex].push_back(neighbour.rank);
     first_of.reinit(parts.nodes.table.n());
     if (!parts.grid.has_levels())
       return;
@@ -163,25 +171,6 @@ namespace limber
       if ((touches[t].a == field || touches[t].b == field) &&
           law(touches[t].a, touches[t].b).law == ContactLaw::separate)
         corners.push_back({static_cast<std::uint32_t>(t), k, share});
-  }
-
-
-
-  // work(neighbours, points, 1 / density of their body)
-  template <int dim>
-  template <class Work>
-  void
-  Contact<dim>::for_each_neighbour(const Work &work)
-  {
-    for (std::size_t k = 0; k < neighbours.size();)
-      {
-        const unsigned int   body   = neighbours[k].body;
-        const PointView<dim> points = parts.bodies[body]->points.view();
-        const double         inverse_density =
-          1 / parts.bodies[body]->stress->density();
-        for (; k < neighbours.size() && neighbours[k].body == body; ++k)
-          work(neighbours[k], points, inverse_density);
-      }
   }
 
 
@@ -366,7 +355,7 @@ namespace limber
   template void
   Contact<3>::reinit();
   template void
-  Contact<2>::find();
+  Contact<2>::find(double);
   template void
-  Contact<3>::find();
+  Contact<3>::find(double);
 } // namespace limber

@@ -89,7 +89,7 @@ namespace limber
   ExplicitIntegrator<dim>::find_contact()
   {
     if (contact)
-      contact->find();
+      contact->find(step);
     if (obstacles)
       obstacles->find(time, step);
     lap(Verb::touch);

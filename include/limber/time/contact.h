@@ -3,8 +3,11 @@
 #define limber_time_contact_h
 
 #include <limber/points/cell_batch.h>
+#include <limber/time/contact_impulses.h>
 #include <limber/time/integrator.h>
 
+#include <map>
+#include <unordered_map>
 #include <vector>
 
 namespace limber
@@ -17,30 +20,38 @@ namespace limber
 
 
   /**
-   * Contact of bodies that have fields of nodes of their own, at nodes where
-   * two fields have mass. There bodies press on each other if their new
-   * velocities approach along the normal n, from a to b, and their points
-   * touch:
+   * Contact of bodies that have fields of nodes of their own, where the
+   * material of their points ends (ContactImpulses). A point p of a that faces
+   * the points q of b, with the normal n out of a, and how far the material of
+   * points goes towards the other body, R, has the gap
    *
-   *   (v_a - v_b) . n > 0,  min_b (x . n - R) - max_a (x . n + R) <= 0,
+   *   g_p = sum_q w_q ((x_q - x_p) . n - R_q) - R_p
    *
-   * over the points that see the node, with half their edge R. The impulse
+   * over points whose edges overlap along the surface, with weights that fall
+   * linearly with the distance along it: from point to point of b, its surface
+   * is what lies between their ends. The gap grows by the relative velocity
+   * there,
    *
-   *   J = m_r ((v_a - v_b) . n n + s),  m_r = m_a m_b / (m_a + m_b),
+   *   sum_q w_q (v_b + grad v_b d_q)(x_q) - (v_a + grad v_a R_p n)(x_p),
    *
-   * with the sliding velocity s, or as much of it that m_r |s| is mu J_n
-   * (Coulomb), goes from a to b. The normal is one for both: of -g_b, g_a and
+   * with d_q from x_q to the place, which is therefore at least -g_p / dt. The
+   * impulse that this takes acts there, on both. a is the one whose points are
+   * smaller.
+   *
+   * With linear functions the velocity of what is outside its cell depends on
+   * nodes that hardly have any mass, and jumps when points enter cells. There
+   * impulses act at nodes at which both have mass, w = v_a - v_b, if the points
+   * that see them touch, min_b (x . n - R) - max_a (x . n + R) <= 0.
+   *
+   * What presses in the new velocity does so in every other one of the step. So
+   * momentum is kept, and energy does not grow.
+   *
+   * Normals are those of nodes at which both bodies have mass: of -g_b, g_a and
    * g_a - g_b, with the gradient of volume g = sum V grad N of each body, the
-   * direction along which the points are furthest apart. What presses in the
-   * new velocity does so in every other one of the step: relative velocities
-   * that J has taken away, trial velocities do not have either. So momentum is
-   * kept, and energy does not grow.
+   * direction along which the points are furthest apart.
    *
    * Bodies of different fields that are in no pair stick together: both have
    * the velocity and the increment that one field would give them.
-   *
-   * (Bardenhagen, Brackbill and Sulsky, CMAME 187, 2000; Nairn, Hammerquist and
-   * Smith, CMAME 362, 2020, for contact that is decided by points)
    */
   template <int dim>
   class Contact
@@ -54,11 +65,11 @@ namespace limber
 
     /** Where bodies touch; the masses of nodes are known. Collective. */
     void
-    find();
+    find(double step);
 
     /**
      * Hold the velocity at @p slot as the new one is going to be held, that is
-     * (p + dt f) / m, with the force in the records.
+     * (p + dt f) / m + dt g, with the force in the records.
      */
     void
     hold_before(unsigned int slot, double step);
@@ -82,13 +93,6 @@ namespace limber
     using Layout = NodeLayout<dim>;
     using Vector = dealii::Tensor<1, dim>;
 
-    enum class State
-    {
-      free,
-      sliding,
-      sticking
-    };
-
     /** Two fields that have mass at a node. */
     struct Touch
     {
@@ -97,10 +101,45 @@ namespace limber
       Vector        gradient_a, gradient_b; // of volume, m^(dim-1)
       Vector        normal;
       bool          points_touch = false;
-      State         state        = State::free;
-      // Of the exchange, for the ledger: velocity of a against b as they have
-      // been brought, and sliding afterwards, m/s; impulse of friction
-      Vector brought, slides, rubbing;
+    };
+
+    /** A point near another body. */
+    struct Candidate
+    {
+      dealii::Point<dim> place;
+      Vector             normal;   // out of its body
+      Vector             velocity; // m/s
+      double             reach;    // from the point to the end of its material
+      double             width;    // half of its edge along the surface, m
+      double             mass;     // kg
+      std::uint32_t      body, point;
+      unsigned int       rank;
+    };
+
+    /** Those of one side of a pair, found by place. */
+    struct Side
+    {
+      std::vector<Candidate>                               all;
+      std::vector<std::pair<std::uint64_t, std::uint32_t>> by_bin;
+    };
+
+    using Sides = std::array<Side, 2>;
+
+    /** What the ledger wants to know of an impulse. */
+    struct Exchange
+    {
+      Vector increase; // of relative velocity without contact, m/s
+      // Relative velocity, m/s: brought or given back; the new one
+      Vector brought, after;
+      Vector held; // impulse that holds what is brought, kg m/s
+    };
+
+    /** What places of this rank have of points of another one. */
+    struct PartsElsewhere
+    {
+      std::vector<std::uint32_t> places;
+      std::vector<double>        numbers;     // see ask_for_part()
+      std::size_t                n_parts = 0; // where their number stands
     };
 
     /** How far apart two bodies are at a node along some directions, m. */
@@ -196,19 +235,50 @@ namespace limber
     void
     find_normals();
 
-    State
-    decide(const Touch &touch, const Vector &v_a, const Vector &v_b) const;
-    template <class Work>
     void
-    for_each_held(unsigned int slot, const Work &work);
+    find_places(double step);
     void
-    exchange(Touch &touch);
+    add_nodes();
+    template <int degree>
     void
-    join(Touch &touch);
+    gather(const std::array<unsigned int, 2> &pair, Sides &sides);
+    void
+    tell_candidates(std::vector<Sides> &sides);
+    template <int degree>
+    void
+    add_points(const std::array<unsigned int, 2> &pair,
+               Sides                             &sides,
+               double                             step);
+    template <int degree>
+    void
+    add_places(const Side &acting,
+               const Side &other,
+               double      spacing,
+               const Law  &law,
+               double      step);
+    template <int degree>
+    void
+    add_part(const Candidate &candidate, const Vector &arm, double weight);
+    void
+    ask_for_part(std::uint32_t    place_number,
+                 const Candidate &candidate,
+                 const Vector    &arm,
+                 double           weight);
+    template <int degree>
+    std::vector<typename ContactImpulses<dim>::Peer>
+    exchange_parts();
+    void
+    join(unsigned int slot);
+    void
+    account(const Vector &velocity,
+            const Vector &held,
+            std::size_t   place,
+            double        share);
 
     const RunParts<dim> parts;
     const unsigned int  n_fields;
     std::vector<Law>    laws;
+    std::vector<double> edge; // of the largest point of a field, m
     // Fields a < b that may part, in the same order on all ranks
     std::vector<std::array<unsigned int, 2>> parting;
     std::vector<Touch>       touches;  // those of a node side by side
@@ -220,7 +290,38 @@ namespace limber
     std::vector<Separation>  separations; // of the touches
     std::vector<double>      half_edges;  // m, of the points of a batch
     SharedSlots              gradients{2 * dim, false}, extents{6, true};
+    ContactImpulses<dim>     impulses;
+    std::vector<Exchange>    exchanges;            // of the impulses
+    const bool               at_nodes;             // whether these are at nodes
+    bool                     holds_before = false; // in this step
+    const unsigned int       this_rank;
+    // Of vertices that other ranks hold as well: who does
+    std::unordered_map<std::uint32_t, std::vector<unsigned int>>
+                                           ranks_of_vertex;
+    std::map<unsigned int, PartsElsewhere> parts_elsewhere;
+    // By vertex: bit s where side s of a pair has points in a cell of it
+    LazyArray<std::uint8_t>    of_pair_at;
+    std::vector<std::uint32_t> marked; // those that have any
   };
+
+
+
+  // work(neighbours, points, 1 / density of their body)
+  template <int dim>
+  template <class Work>
+  void
+  Contact<dim>::for_each_neighbour(const Work &work)
+  {
+    for (std::size_t k = 0; k < neighbours.size();)
+      {
+        const unsigned int   body   = neighbours[k].body;
+        const PointView<dim> points = parts.bodies[body]->points.view();
+        const double         inverse_density =
+          1 / parts.bodies[body]->stress->density();
+        for (; k < neighbours.size() && neighbours[k].body == body; ++k)
+          work(neighbours[k], points, inverse_density);
+      }
+  }
 } // namespace limber
 
 #endif

@@ -53,6 +53,16 @@ namespace limber
       std::size_t begin = 0, end = 0;
       double      relaxation = 0; // m_p / s_p, kg
       bool        sticks     = false;
+      bool        is_own     = true; // counted on this rank
+      Vector      relative;          // w_p, m/s
+    };
+
+    /** Places that have parts on two ranks, in the same order on both. */
+    struct Peer
+    {
+      unsigned int               rank;
+      std::vector<std::uint32_t> own;   // those of this rank, a part is there
+      std::vector<std::uint32_t> parts; // those of that rank, a part is here
     };
 
     explicit ContactImpulses(NodalFields<dim> &nodes);
@@ -102,9 +112,20 @@ namespace limber
         work(node, 1.);
     }
 
-    /** After all of these; masses of nodes are known. Collective. */
+    /**
+     * After all of these; masses of nodes are known. Collective. Places of a
+     * rank are its own, apart from those with parts elsewhere, which @p peers
+     * names by rank.
+     */
     void
-    finish_adding();
+    finish_adding(std::vector<Peer> &&peers = {});
+
+    /**
+     * The same of places at nodes, of two fields each, of which each rank has
+     * all that it holds: nothing has to be summed up.
+     */
+    void
+    finish_adding_nodes();
 
     /** Whether there is any on any rank. */
     bool
@@ -122,6 +143,10 @@ namespace limber
     /** sum_i a_pi of the vector at a slot of the records. */
     Vector
     at(const Place &place, unsigned int slot) const;
+
+    /** Find w_p of all places, of the vector at a slot of the records. */
+    void
+    find_relative(unsigned int slot);
 
     /**
      * Find the impulses that the velocities (p + dt f) / m + g dt would have.
@@ -172,8 +197,14 @@ namespace limber
         const std::vector<Share> &of_places,
         unsigned int              slot) const;
     template <class Velocity>
-    Vector
-    relative_velocity(const Place &place, const Velocity &velocity) const;
+    void
+    find_relative_of(const Velocity &velocity);
+    void
+    find_relaxation();
+    void
+    complete();
+    void
+    sum_given(Given &of_field, unsigned int first, unsigned int last);
     void
     give(const Place &place, const Vector &impulse);
     template <class Add>
@@ -190,7 +221,12 @@ namespace limber
     std::vector<LazyArray<double>> expected; // per field, dim numbers a node
     std::vector<Vector>            holding;
     std::vector<std::uint32_t>     hanging; // 1 + place in the table, or 0
-    bool                           any_place = false;
+    std::vector<Peer>              peers;
+    unsigned int                   n_passes   = 0;
+    bool                           any_place  = false;
+    bool                           everywhere = false; // whether all ranks
+                                                       // that hold a node have
+                                                       // all of its places
   };
 } // namespace limber
 
