@@ -458,6 +458,14 @@ TEST(Scenes, AutomaticFrameAndKernelKeepSolidsFromCreeping)
               .grid.kernel,
             KernelKind::linear);
 
+  // What turns where it is meets no side, however far a run is extended; what
+  // flies does.
+  EXPECT_EQ(read("verification/spinning_disc.prm", {}).bodies[0].frame,
+            Frame::initial);
+  EXPECT_EQ(
+    read("verification/bouncing_ball.prm", {"End time=0.01"}).bodies[0].frame,
+    Frame::current);
+
   const auto liquid = read("dam_break.prm", {});
   EXPECT_EQ(liquid.bodies[0].frame, Frame::current);
   EXPECT_EQ(liquid.grid.kernel, KernelKind::linear);
