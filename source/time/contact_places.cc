@@ -15,14 +15,6 @@ namespace limber
 {
   namespace
   {
-    // Of R_p: what is as near may press in a step in which it does not come
-    // nearer by itself.
-    constexpr double near_by = 0.02;
-
-    // Of what has gone in, what comes out in a step, and of R_p at most.
-    constexpr double back_out      = 0.1;
-    constexpr double most_back_out = 0.02;
-
     /** Bins of equal edges over all space, numbered along rows. */
     template <int dim>
     struct Bins
@@ -434,16 +426,13 @@ namespace limber
         gap /= sum;
         aside /= sum;
         approach = std::max(0., approach / sum);
-        if (gap > 2 * step * approach + near_by * p.reach)
+        if (!may_press(gap, step * approach, p.reach))
           continue;
         const auto place_number =
           static_cast<std::uint32_t>(impulses.all().size());
-        auto &place  = impulses.add_place();
-        place.normal = -p.normal;
-        place.least =
-          (gap > 0 ? -gap :
-                     std::min(-back_out * gap, most_back_out * p.reach)) /
-          step;
+        auto &place    = impulses.add_place();
+        place.normal   = -p.normal;
+        place.least    = least_growth(gap, p.reach) / step;
         place.friction = law.friction;
         place.mass     = p.mass;
         add_part<degree>(p, p.reach * p.normal, 1);

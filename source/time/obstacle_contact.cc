@@ -12,14 +12,6 @@ namespace limber
 {
   namespace
   {
-    // Of R_p: what is as near may press in a step in which it does not come
-    // nearer by itself.
-    constexpr double touching = 0.02;
-
-    // Of what has gone in, what comes out in a step, and of R_p at most.
-    constexpr double out      = 0.1;
-    constexpr double most_out = 0.02;
-
     // Of the mass of a node that holds a liquid, what has to touch. Splines see
     // more points beyond those that touch.
     double
@@ -318,14 +310,13 @@ namespace limber
       velocity[d] = points.velocity[d][near.point];
     const double gap      = near.distance.value - near.reach;
     const double approach = std::max(0., (against - velocity) * normal);
-    if (gap > 2 * step * approach + touching * near.reach)
+    if (!may_press(gap, step * approach, near.reach))
       return;
 
-    Place &place   = impulses.add_place();
-    place.normal   = normal;
-    place.velocity = against;
-    place.least =
-      (gap > 0 ? -gap : std::min(-out * gap, most_out * near.reach)) / step;
+    Place &place           = impulses.add_place();
+    place.normal           = normal;
+    place.velocity         = against;
+    place.least            = least_growth(gap, near.reach) / step;
     place.friction         = obstacle.friction;
     place.mass             = points.mass[near.point];
     const Vector direction = against_gradients(points, near.point, normal);
