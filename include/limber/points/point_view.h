@@ -90,8 +90,8 @@ namespace limber
     double        *volumetric = nullptr;
     std::uint32_t *cell       = nullptr; // of the place
     double        *crossings  = nullptr; // cells entered since the start
-    // From the point to where its material ends towards an obstacle, m
-    // (time/obstacle_contact.h)
+    // From the point to where its material ends towards what it may touch, m,
+    // before it is stretched (time/obstacle_contact.h)
     double *reach = nullptr;
 
     /** Whether the functions of the grid are those of the initial places. */
