@@ -34,6 +34,10 @@ namespace limber
    *
    * In the initial frame grad N = F^-T grad_X N and b = F F^T.
    *
+   * A liquid has no surface that its points could tell: it is held at nodes of
+   * whose mass enough is that of points within half their edge of the obstacle,
+   * with the mean of their normals.
+   *
    * What presses in the new velocity does so in every other one of the step.
    * The velocity of the obstacle is that of its way over the step, so that its
    * place and that of what it pushes stay together.
