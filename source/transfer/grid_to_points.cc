@@ -134,7 +134,15 @@ namespace limber
 
 
 
-    template <class Basis, bool affine, bool remap, bool moves>
+    /**
+     * Velocities @p take_velocity of the grid besides their increments; else
+     * that is all the points need.
+     */
+    template <class Basis,
+              bool affine,
+              bool remap,
+              bool moves,
+              bool take_velocity>
     VelocitySummary
     sweep(const PointView<Basis::dim> &points,
           const GridView<Basis::dim>  &grid,
@@ -151,8 +159,10 @@ namespace limber
         points, [&](const CellBatch &batch) __attribute__((always_inline)) {
           const CellGeometry<dim> &cell = grid.cells[batch.cell];
           // velocity increment and, right behind it, the new velocity
-          const NodalCoefficients<Basis, Layout::increment, 2 * dim> nodal(
-            grid, batch.cell);
+          const NodalCoefficients<Basis,
+                                  Layout::increment,
+                                  take_velocity ? 2 * dim : dim>
+            nodal(grid, batch.cell);
 
           for_each_pack<dim>(
             batch, [&](const auto &lanes) __attribute__((always_inline)) {
@@ -162,23 +172,26 @@ namespace limber
               [[maybe_unused]] std::array<Number, dim> shift;
               for (int d = 0; d < dim; ++d)
                 {
-                  const auto   grid_velocity = nodal.component(dim + d);
                   const Number flip =
                     lanes.load(points.velocity[d]) +
                     Basis::template value<Number>(nodal.component(d), xi);
-                  Number velocity = flip;
+                  Number     velocity = flip;
+                  const auto of_grid  = [&]() __attribute__((always_inline))
+                  {
+                    return Basis::template value<Number>(nodal.component(dim +
+                                                                         d),
+                                                         xi);
+                  };
                   if constexpr (affine)
-                    velocity = Basis::template value<Number>(grid_velocity, xi);
-                  else if (what.flip_share != 1.)
-                    velocity +=
-                      (1. - what.flip_share) *
-                      (Basis::template value<Number>(grid_velocity, xi) - flip);
+                    velocity = of_grid();
+                  else if constexpr (take_velocity)
+                    if (what.flip_share != 1.)
+                      velocity += (1. - what.flip_share) * (of_grid() - flip);
                   lanes.store(velocity, points.velocity[d]);
                   kept_squared += flip * flip;
                   squared += velocity * velocity;
                   if constexpr (moves)
-                    shift[d] = what.move *
-                               Basis::template value<Number>(grid_velocity, xi);
+                    shift[d] = what.move * of_grid();
                 }
               if constexpr (affine)
                 set_affine<dim>(
@@ -226,11 +239,29 @@ namespace limber
       return grid_to_domains(points, grid, what);
     const auto choose = [&](const auto basis, const auto affine) {
       using Basis = std::decay_t<decltype(basis)>;
-      return what.remap ?
-               sweep<Basis, affine, true, false>(points, grid, what, sums) :
-             what.move != 0 ?
-               sweep<Basis, affine, false, true>(points, grid, what, sums) :
-               sweep<Basis, affine, false, false>(points, grid, what, sums);
+      if (what.move != 0)
+        return sweep<Basis, affine, false, true, true>(points,
+                                                       grid,
+                                                       what,
+                                                       sums);
+      if constexpr (!affine)
+        if (what.flip_share == 1.)
+          return what.remap ? sweep<Basis, false, true, false, false>(points,
+                                                                      grid,
+                                                                      what,
+                                                                      sums) :
+                              sweep<Basis, false, false, false, false>(points,
+                                                                       grid,
+                                                                       what,
+                                                                       sums);
+      return what.remap ? sweep<Basis, affine, true, false, true>(points,
+                                                                  grid,
+                                                                  what,
+                                                                  sums) :
+                          sweep<Basis, affine, false, false, true>(points,
+                                                                   grid,
+                                                                   what,
+                                                                   sums);
     };
     return with_basis(grid, [&](const auto basis) {
       return what.affine ? choose(basis, std::true_type()) :

@@ -94,9 +94,10 @@ namespace limber
 
 
   /**
-   * Eight doubles as two packs, where these fill the registers of the machine:
-   * GCC keeps vectors of its own of such a length in memory, whatever is done
-   * with them. A double counts as a pack with equal lanes.
+   * Eight doubles as two packs: where these fill the registers of the machine,
+   * as GCC keeps vectors of its own of such a length in memory, whatever is
+   * done with them, and where half of the work is for the lower lanes alone. A
+   * double counts as a pack with equal lanes.
    */
   struct SplitPack
   {
@@ -109,6 +110,21 @@ namespace limber
       : lower(lower)
       , upper(upper)
     {}
+
+    // Half by half: a copy of the whole waits until both have left for the
+    // cache.
+    __attribute__((always_inline)) SplitPack(const SplitPack &other)
+      : lower(other.lower)
+      , upper(other.upper)
+    {}
+
+    __attribute__((always_inline)) SplitPack &
+    operator=(const SplitPack &other)
+    {
+      lower = other.lower;
+      upper = other.upper;
+      return *this;
+    }
 
     __attribute__((always_inline)) SplitPack &
     operator+=(const SplitPack &other)
@@ -245,6 +261,20 @@ namespace limber
   doubled(const Pack<2> &half)
   {
     return __builtin_shufflevector(half, half, 0, 1, 0, 1);
+  }
+
+
+
+  /** Four lanes of a pack from @p first on, 0 or 4. */
+  template <class Number>
+  __attribute__((always_inline)) inline Pack<4>
+  four_lanes(const Number &pack, const int first)
+  {
+    if constexpr (pack_width<Number> == 4)
+      return pack;
+    else
+      return first == 0 ? __builtin_shufflevector(pack, pack, 0, 1, 2, 3) :
+                          __builtin_shufflevector(pack, pack, 4, 5, 6, 7);
   }
 
 

@@ -38,22 +38,6 @@ namespace limber
 
 
 
-  namespace internal
-  {
-    /** A record from its lower lanes and its upper ones. */
-    template <class Record, class Half>
-    __attribute__((always_inline)) inline Record
-    record_of(const Half &lower, const Half &upper)
-    {
-      if constexpr (std::is_same_v<Record, SplitPack>)
-        return {lower, upper};
-      else
-        return joined(lower, upper);
-    }
-  } // namespace internal
-
-
-
   /**
    * From values of the points of a pack, by slot of a record, to one record
    * for each point.
@@ -64,34 +48,25 @@ namespace limber
   {
     constexpr int n_points = pack_width<Number>, n = pack_width<Record>;
     std::array<Record, n_points> result;
-    if constexpr (n == n_points)
-      {
-        result = slots;
-        transpose<n>(result);
-      }
-    else if constexpr (n == 2 * n_points)
-      {
-        std::array<Number, n_points> lower, upper;
-        for (int i = 0; i < n_points; ++i)
-          {
-            lower[i] = slots[i];
-            upper[i] = slots[i + n_points];
-          }
-        transpose<n_points>(lower);
-        transpose<n_points>(upper);
-        for (int p = 0; p < n_points; ++p)
-          result[p] = internal::record_of<Record>(lower[p], upper[p]);
-      }
-    else
-      {
-        static_assert(2 * n == n_points);
-        std::array<Number, n_points> padded{};
-        for (int i = 0; i < n; ++i)
-          padded[i] = slots[i];
-        transpose<n_points>(padded);
-        for (int p = 0; p < n_points; ++p)
-          result[p] = some_lanes<Record>(padded[p], 0);
-      }
+    std::array<Pack<4>, 4>       block;
+    // Blocks of four points and, but for the shortest records, four slots
+    for (int first = 0; first < n_points; first += 4)
+      for (int slot = 0; slot < n; slot += 4)
+        {
+          for (int i = 0; i < 4; ++i)
+            block[i] =
+              slot + i < n ? four_lanes(slots[slot + i], first) : Pack<4>{};
+          transpose<4>(block);
+          for (int p = 0; p < 4; ++p)
+            if constexpr (n == 2)
+              result[first + p] = some_lanes<Record>(block[p], 0);
+            else if constexpr (n == 4)
+              result[first + p] = block[p];
+            else if (slot == 0)
+              result[first + p].lower = block[p];
+            else
+              result[first + p].upper = block[p];
+        }
     return result;
   }
 

@@ -74,7 +74,9 @@ namespace limber
         if (begins)
           set_zero(of_plane);
         else
-          std::copy_n(&sums[plane * n * n], n * n, of_plane.begin());
+#pragma GCC unroll 16
+          for (int i = 0; i < n * n; ++i)
+            of_plane[i] = sums[plane * n * n + i];
         for (int p = 0; p < n_points; ++p)
           {
             Record to_plane{};
@@ -119,7 +121,9 @@ namespace limber
                   }
               }
           }
-        std::copy_n(of_plane.begin(), n * n, &sums[plane * n * n]);
+#pragma GCC unroll 16
+        for (int i = 0; i < n * n; ++i)
+          sums[plane * n * n + i] = of_plane[i];
       }
   }
 } // namespace limber

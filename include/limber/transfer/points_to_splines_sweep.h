@@ -106,7 +106,7 @@ namespace limber
               Sums                           &sums)
     {
       constexpr int dim = Basis::dim;
-      using Record      = typename Sums::Record;
+      using Record      = typename Sums::ForceRecord;
       std::array<Record, dim> columns{};
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)

@@ -182,7 +182,8 @@ namespace
     for (int s = 0; s < n_slots; ++s)
       for (int p = 0; p < width; ++p)
         slots[s][p] = 10. * s + p;
-    const auto records = records_of<Pack<n_slots>>(slots);
+    using Record = std::conditional_t<n_slots == 8, SplitPack, Pack<n_slots>>;
+    const auto records = records_of<Record>(slots);
     for (int p = 0; p < width; ++p)
       for (int s = 0; s < n_slots; ++s)
         EXPECT_EQ(records[p][s], 10. * s + p);
