@@ -17,11 +17,47 @@ namespace limber
 {
   namespace
   {
+    /**
+     * C = grad v of a point that carries an affine velocity: the slopes of the
+     * formula over @p half_edge (m) to either side, as a point stands for that
+     * much material. A formula that has no value on one side gives its slope to
+     * the other.
+     */
+    template <int dim>
+    void
+    set_affine_velocity(const Formula<dim>       &velocity,
+                        const dealii::Point<dim> &place,
+                        const double              half_edge,
+                        const PointView<dim>     &points,
+                        const std::size_t         p)
+    {
+      for (int e = 0; e < dim; ++e)
+        {
+          dealii::Point<dim> below = place, above = place;
+          below[e] -= half_edge;
+          above[e] += half_edge;
+          if (!velocity.is_finite(below, 0))
+            below = place;
+          if (!velocity.is_finite(above, 0))
+            above = place;
+          const double distance = above[e] - below[e];
+          if (!(distance > 0))
+            continue;
+          const auto change =
+            velocity.vector(above, 0) - velocity.vector(below, 0);
+          for (int d = 0; d < dim; ++d)
+            points.affine[d * dim + e][p] = change[d] / distance;
+        }
+    }
+
+
+
     template <int dim>
     void
     set_initial_state(const Problem<dim> &problem, MaterialBody<dim> &body)
     {
-      const PointView<dim>    points = body.points.view();
+      const PointView<dim>    points   = body.points.view();
+      const Formula<dim>     &velocity = body.description.initial_velocity;
       const InitialState<dim> initial(problem, body.description, *body.stress);
       for (std::size_t p = 0; p < points.size; ++p)
         {
@@ -30,12 +66,18 @@ namespace limber
             place[d] = points.position[d][p];
           if (!body.stress->initialise(points, p, initial.at(place)))
             initial.refuse(place);
-          if (body.description.initial_velocity.empty())
+          if (velocity.empty())
             continue;
-          const auto velocity =
-            body.description.initial_velocity.vector(place, 0);
+          const auto v = velocity.vector(place, 0);
           for (int d = 0; d < dim; ++d)
-            points.velocity[d][p] += velocity[d]; // to that of a point list
+            points.velocity[d][p] += v[d]; // to that of a point list
+          if (points.affine[0] != nullptr)
+            set_affine_velocity(velocity,
+                                place,
+                                half_edge_of<dim>(points.mass[p] /
+                                                  body.description.density()),
+                                points,
+                                p);
         }
     }
   } // namespace

@@ -65,9 +65,13 @@ namespace limber
     /**
      * The affine velocity field C of the points of a pack for APIC: with
      * linear functions the gradient of the velocity of the grid ...
+     *
+     * Returns twice the work, per mass (J/kg), that the increments of the nodes
+     * do on the former C: sum_i N_i dv_i . C (x_i - x). It is in the momentum
+     * of the nodes but not in the velocity of the points.
      */
     template <int dim, class Lanes, class Nodal>
-    __attribute__((always_inline)) inline void
+    __attribute__((always_inline)) inline PointPack<dim>
     set_affine(const Linear<dim>,
                const PointView<dim>                  &points,
                const GridView<dim>                   &grid,
@@ -76,14 +80,28 @@ namespace limber
                const std::array<PointPack<dim>, dim> &xi,
                const Nodal                           &nodal)
     {
+      using Number = PointPack<dim>;
+      // sum_i N_i (x_i - x)^2 of each direction, in edges
+      std::array<Number, dim> D;
+      for (int e = 0; e < dim; ++e)
+        D[e] = xi[e] * (1. - xi[e]);
+      Number work{};
       for (int d = 0; d < dim; ++d)
         {
-          const auto gradient = Linear<dim>::template gradient<PointPack<dim>>(
-            nodal.component(dim + d), xi);
+          const auto gradient =
+            Linear<dim>::template gradient<Number>(nodal.component(dim + d),
+                                                   xi);
+          const auto change =
+            Linear<dim>::template gradient<Number>(nodal.component(d), xi);
           for (int e = 0; e < dim; ++e)
-            lanes.store(gradient[e] * grid.cells[cell].inverse_edge[e],
-                        points.affine[d * dim + e]);
+            {
+              const double inverse_edge = grid.cells[cell].inverse_edge[e];
+              double *const C           = points.affine[d * dim + e];
+              work += lanes.load(C) * D[e] * change[e] / inverse_edge;
+              lanes.store(gradient[e] * inverse_edge, C);
+            }
         }
+      return 2. * work;
     }
 
 
@@ -95,7 +113,7 @@ namespace limber
      * 2015, sec. 5.3).
      */
     template <int dim, int degree, class Lanes, class Nodal>
-    inline void
+    inline PointPack<dim>
     set_affine(const Spline<dim, degree>,
                const PointView<dim>                  &points,
                const GridView<dim>                   &grid,
@@ -109,10 +127,11 @@ namespace limber
       const CellGeometry<dim>          &geometry = grid.cells[cell];
       const auto                       &nodes    = Basis::nodes_of(grid, cell);
       const SplineWeights<Basis, false> weights(geometry, nodes, xi);
+      Number                            work{};
       for (int e = 0; e < dim; ++e)
         {
           const auto              places = Basis::places(nodes, e);
-          std::array<Number, dim> B{};
+          std::array<Number, dim> B{}, change{};
           Number                  D{};
           for (int i = 0; i < Basis::n_nodes; ++i)
             {
@@ -120,16 +139,23 @@ namespace limber
               const Number weight = arm * load<Number>(weights.value[i]);
               D += weight * arm;
               for (int d = 0; d < dim; ++d)
-                B[d] +=
-                  weight *
-                  grid.nodes[nodes.node[i] + NodeLayout<dim>::velocity + d];
+                {
+                  const double *const record = grid.nodes + nodes.node[i];
+                  B[d] += weight * record[NodeLayout<dim>::velocity + d];
+                  change[d] += weight * record[NodeLayout<dim>::increment + d];
+                }
             }
           // No arm is left to a point that lies in a side of the grid.
           const Number inverse =
             geometry.inverse_edge[e] / larger(D, broadcast<Number>(1e-30));
           for (int d = 0; d < dim; ++d)
-            lanes.store(B[d] * inverse, points.affine[d * dim + e]);
+            {
+              double *const C = points.affine[d * dim + e];
+              work += lanes.load(C) * change[d] / geometry.inverse_edge[e];
+              lanes.store(B[d] * inverse, C);
+            }
         }
+      return 2. * work;
     }
 
 
@@ -194,7 +220,7 @@ namespace limber
                     shift[d] = what.move * of_grid();
                 }
               if constexpr (affine)
-                set_affine<dim>(
+                kept_squared += set_affine<dim>(
                   Basis(), points, grid, batch.cell, lanes, xi, nodal);
               speed_squared = larger(speed_squared, lanes.only_active(squared));
               if (affine || what.flip_share != 1.)
