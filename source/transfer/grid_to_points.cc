@@ -95,8 +95,8 @@ namespace limber
             Linear<dim>::template gradient<Number>(nodal.component(d), xi);
           for (int e = 0; e < dim; ++e)
             {
-              const double inverse_edge = grid.cells[cell].inverse_edge[e];
-              double *const C           = points.affine[d * dim + e];
+              const double  inverse_edge = grid.cells[cell].inverse_edge[e];
+              double *const C            = points.affine[d * dim + e];
               work += lanes.load(C) * D[e] * change[e] / inverse_edge;
               lanes.store(gradient[e] * inverse_edge, C);
             }
