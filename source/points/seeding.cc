@@ -85,6 +85,16 @@ namespace limber
     Site<dim>
     inside_of(const Shape<dim> &shape, const Corners<dim> &box)
     {
+      if (const auto part = shape.inside_of(box))
+        {
+          double volume = 1;
+          for (int d = 0; d < dim; ++d)
+            volume *= box.second[d] - box.first[d];
+          // Decimal fractions need not meet exactly.
+          const double weight = part->volume / volume;
+          return {part->centroid, weight > 1e-6 ? weight : 0.};
+        }
+
       using Geometry      = dealii::GeometryInfo<dim>;
       const auto place_at = [&](const dealii::Point<dim> &xi) {
         dealii::Point<dim> place = box.first;

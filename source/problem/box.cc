@@ -4,6 +4,8 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/signed_distance.h>
 
+#include <algorithm>
+
 namespace limber
 {
   using dealii::Point;
@@ -43,6 +45,23 @@ namespace limber
       if (point[d] < lower[d] || point[d] > upper[d])
         return false;
     return true;
+  }
+
+
+
+  template <int dim>
+  std::optional<PartInside<dim>>
+  BoxShape<dim>::inside_of(const Corners<dim> &box) const
+  {
+    PartInside<dim> result{1, {}};
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        const double first  = std::max(lower[d], box.first[d]);
+        const double second = std::min(upper[d], box.second[d]);
+        result.volume *= std::max(0., second - first);
+        result.centroid[d] = 0.5 * (first + second);
+      }
+    return result;
   }
 
 

@@ -170,8 +170,9 @@ namespace limber
 
 
     // Parts of 'regular' are in or out as a whole: a block may be too thick
-    // by one of them, or too thin. A lattice of its own that runs across the
-    // cells fills them unevenly, and such a body is too soft; domains need it.
+    // by one of them, or too thin. A lattice of its own, which domains need,
+    // fills the cells unevenly: what is under stress is not at rest, and
+    // softer. Cut, none but those at the surface are.
     template <int dim>
     void
     choose_placement(const Section &section,
@@ -208,9 +209,13 @@ namespace limber
             least_misfill;
       if (upright && suits)
         return;
-      if (upright || has_domains(problem.grid.kernel))
+      if (has_domains(problem.grid.kernel))
         choose(Placement::fitted,
                "fitted",
+               "its faces do not lie between the points of 'regular'");
+      else if (upright)
+        choose(Placement::cut,
+               "cut",
                "its faces do not lie between the points of 'regular'");
       else
         choose(Placement::cut, "cut", "its faces run across the cells");

@@ -166,10 +166,10 @@ namespace limber
     static const Words<Placement> words = {
       {"auto",
        Placement::automatic,
-       "'regular', but for boxes and blocks of solids on cells of one size: "
-       "'cut' if their faces run across the cells, 'fitted' if these do not "
-       "and 'regular' would miss the volume by more than 2 %, or, with "
-       "several bodies, the faces"},
+       "'regular', but for boxes and blocks of solids on cells of one size "
+       "'cut' if their faces run across the cells, or 'regular' would miss "
+       "the volume by more than 2 % (with several bodies, the faces), and "
+       "'fitted' with domains"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
       {"jittered", Placement::jittered, "regular, moved at random"},

@@ -74,12 +74,17 @@ namespace limber
         const auto beyond = farthest(state, body->points.view());
         for (unsigned int side = 0; side < 2 * dim; ++side)
           {
-            const double    edge   = state.problem.grid.edge(side / 2);
-            const double    chance = chance_overstep * edge;
-            const Overstep &by     = beyond[side];
-            const double    most   = std::max(by.neighbours, by.others);
-            if (state.problem.sides[side].held == HeldComponents::none ||
-                most <= chance)
+            const double     edge   = state.problem.grid.edge(side / 2);
+            const double     chance = chance_overstep * edge;
+            const Overstep  &by     = beyond[side];
+            const double     most   = std::max(by.neighbours, by.others);
+            const Side<dim> &wall   = state.problem.sides[side];
+            // A side that moves takes along what it holds, and the rest behind.
+            const bool moves =
+              !wall.velocity.empty() && !wall.velocity.is_zero();
+            const double taken_along = moves ? std::max(0., by.neighbours) : 0;
+            if (wall.held == HeldComponents::none ||
+                most <= taken_along + chance)
               continue;
             const std::string name = side_names(dim)[side];
             const std::string who = "Body " + in_quotes(body->description.name);

@@ -26,6 +26,9 @@ namespace limber
     bool
     contains(const dealii::Point<dim> &point) const override;
 
+    std::optional<PartInside<dim>>
+    inside_of(const Corners<dim> &box) const override;
+
     std::optional<SignedDistance<dim>>
     signed_distance(const dealii::Point<dim> &point) const override;
 

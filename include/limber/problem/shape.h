@@ -35,6 +35,16 @@ namespace limber
 
 
 
+  /** What of a region is inside a shape. */
+  template <int dim>
+  struct PartInside
+  {
+    double             volume = 0; // m^dim
+    dealii::Point<dim> centroid;
+  };
+
+
+
   /**
    * The region that a body fills at the start, or an obstacle; boundaries
    * belong to it.
@@ -55,6 +65,13 @@ namespace limber
     /** m^dim, where a formula gives it. */
     virtual std::optional<double>
     exact_volume() const
+    {
+      return std::nullopt;
+    }
+
+    /** What of a box along the axes is inside, where a formula gives it. */
+    virtual std::optional<PartInside<dim>>
+    inside_of(const Corners<dim> &) const
     {
       return std::nullopt;
     }

@@ -11,7 +11,8 @@ namespace limber
    * A body that is computed in its initial frame feels a side of the box only
    * where it touched it at the start. Throws ComputationError where a point
    * has passed a side that is not free. What was next to that side at the start
-   * may bulge by half a cell, with a warning.
+   * may bulge by half a cell, with a warning; or go where it wants if the side
+   * moves, which takes it along.
    * Collective, a pass over the points of such bodies.
    */
   template <int dim>

@@ -117,6 +117,26 @@ TEST(Seeding, CutPartsHaveTheVolumeOfWhatIsInside)
 
 
 
+// Of a box they have all of it, however thin it is: between the centres and
+// the corners of parts, and with a face as good as on the edge of some: what
+// is beyond, 1e-12 high, makes no points.
+TEST(Seeding, CutPartsOfABoxAreExact)
+{
+  for (const double top : {0.55, 0.62, 1.0 + 1e-12, 2.71})
+    {
+      const Point<2> lower(1.03, 0.52), upper(3.21, top);
+      const Filled   cut(std::make_shared<BoxShape<2>>(lower, upper),
+                       Placement::cut);
+      const double   area = (upper[0] - lower[0]) * (upper[1] - lower[1]);
+      EXPECT_NEAR(cut.volume, area, 1e-11 * area) << top;
+      EXPECT_LT((cut.centroid - 0.5 * (lower + upper)).norm(), 1e-11) << top;
+      for (const double volume : cut.volumes)
+        EXPECT_GT(volume, 1e-6);
+    }
+}
+
+
+
 // Where no part is cut, 'cut' is 'regular'.
 TEST(Seeding, CutLeavesWholePartsAlone)
 {

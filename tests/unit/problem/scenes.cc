@@ -278,6 +278,10 @@ TEST(Scenes, PlacementFollowsTheFaces)
   EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.06"}), // 1 %
             Placement::regular);
   EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12"}), // 2.3 %
+            Placement::cut);
+  EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12",
+                       "Method/Kernel=cpdi",
+                       "Body block/Frame=current"}),
             Placement::fitted);
   EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12",
                        "Body block/Material=newtonian fluid"}),
