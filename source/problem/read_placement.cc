@@ -172,10 +172,13 @@ namespace limber
     // Parts of 'regular' are in or out as a whole: a block may be too thick
     // by one of them, or too thin. A lattice of its own, which domains need,
     // fills the cells unevenly: what is under stress is not at rest, and
-    // softer. Cut, none but those at the surface are.
+    // softer. Cut, none but those at the surface are; but linear functions take
+    // the edges of points for where bodies touch, and thin parts then touch
+    // from afar.
     template <int dim>
     void
     choose_placement(const Section &section,
+                     const bool     touches,
                      Body<dim>     &body,
                      Problem<dim>  &problem)
     {
@@ -209,7 +212,8 @@ namespace limber
             least_misfill;
       if (upright && suits)
         return;
-      if (has_domains(problem.grid.kernel))
+      if (has_domains(problem.grid.kernel) ||
+          (upright && touches && !is_spline(problem.grid.kernel)))
         choose(Placement::fitted,
                "fitted",
                "its faces do not lie between the points of 'regular'");
@@ -260,10 +264,13 @@ namespace limber
 
   template <int dim>
   void
-  read_placement(const Section &section, Body<dim> &body, Problem<dim> &problem)
+  read_placement(const Section &section,
+                 const bool     touches,
+                 Body<dim>     &body,
+                 Problem<dim>  &problem)
   {
     read_points(section, problem.grid, body);
-    choose_placement(section, body, problem);
+    choose_placement(section, touches, body, problem);
     check_point_list(section, problem.grid, body);
     read_lattice(section, problem.grid, body);
   }
@@ -271,7 +278,7 @@ namespace limber
 
 
   template void
-  read_placement(const Section &, Body<2> &, Problem<2> &);
+  read_placement(const Section &, bool, Body<2> &, Problem<2> &);
   template void
-  read_placement(const Section &, Body<3> &, Problem<3> &);
+  read_placement(const Section &, bool, Body<3> &, Problem<3> &);
 } // namespace limber

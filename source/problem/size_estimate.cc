@@ -210,10 +210,13 @@ namespace limber
                                                        dim * dim;
           const double own =
             per_point + (domains ? of_domain * sizeof(double) : 0);
-          // The places in one cell are kept while points are placed.
+          // The places in one cell are kept while points are placed; a lattice
+          // of the body's own has none.
+          const double places = body.placement == Placement::fitted ?
+                                  0 :
+                                  product(body.points_per_cell_edge);
           size.bytes_of_points.push_back(size.points.back() * own +
-                                         product(body.points_per_cell_edge) *
-                                           sizeof(double) * (dim + 1));
+                                         places * sizeof(double) * (dim + 1));
         }
       if (!pictures)
         return size;

@@ -168,8 +168,8 @@ namespace limber
        Placement::automatic,
        "'regular', but for boxes and blocks of solids on cells of one size "
        "'cut' if their faces run across the cells, or 'regular' would miss "
-       "the volume by more than 2 % (with several bodies, the faces), and "
-       "'fitted' with domains"},
+       "the volume by more than 2 % (with several bodies, the faces); "
+       "'fitted' with domains, or linear functions and contact"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
       {"jittered", Placement::jittered, "regular, moved at random"},

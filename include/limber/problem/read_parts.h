@@ -204,10 +204,14 @@ namespace limber
 
   // Where the points of bodies are (source/problem/read_placement.cc)
 
-  /** How many points a body has, and where; its shape and kernel are known. */
+  /**
+   * How many points a body has, and where; its shape and kernel are known.
+   * @p touches: there are obstacles or bodies that touch each other.
+   */
   template <int dim>
   void
   read_placement(const Section &section,
+                 bool           touches,
                  Body<dim>     &body,
                  Problem<dim>  &problem);
 

@@ -243,6 +243,11 @@ TEST(GuardedDoor, WhatDoesNotFitIsRefused)
                             "Body soil & rock/Placement=regular",
                             "Body soil & rock/Points per cell edge=100000"}),
               {"points", "Points per cell edge"});
+  // a lattice of its own has no places in cells
+  EXPECT_EQ(said_of_size({"Body soil & rock/Box/Upper corner=1e-9, 1e-9",
+                          "Body soil & rock/Placement=fitted",
+                          "Body soil & rock/Points per cell edge=100000"}),
+            "");
   expect_said(said_of_size({"Body soil & rock/Placement=fitted",
                             "Body soil & rock/Points along edges=1e5, 1e5"}),
               {"1e+10 points", "Points along edges"});
