@@ -26,7 +26,6 @@ namespace limber
     , laws(n_fields * n_fields)
     , edge(n_fields)
     , impulses(parts.nodes)
-    , at_nodes(parts.problem.grid.kernel == KernelKind::linear)
     , this_rank(
         dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator))
   {
@@ -80,8 +79,7 @@ namespace limber
   Contact<dim>::hold(const unsigned int slot)
   {
     join(slot);
-    if (impulses.any())
-      impulses.hold(slot);
+    impulses.hold(slot);
   }
 
 
@@ -91,43 +89,18 @@ namespace limber
   Contact<dim>::hold_before(const unsigned int slot, const double step)
   {
     join(slot);
-    if (!impulses.any())
-      return;
-    holds_before = true;
-    impulses.expect(step, parts.problem.loads.gravity);
-    const std::vector<Vector> &held = impulses.hold(slot);
-    for (std::size_t p = 0; p < exchanges.size(); ++p)
-      exchanges[p].held = held[p];
+    impulses.hold_before(slot, step, parts.problem.loads.gravity);
   }
 
 
 
-  // See ObstacleContact::exchange().
   template <int dim>
   void
   Contact<dim>::exchange()
   {
     join(Layout::velocity);
     join(Layout::increment);
-    if (!impulses.any())
-      return;
-    const auto &places = impulses.all();
-    impulses.find_relative(Layout::increment);
-    for (std::size_t p = 0; p < places.size(); ++p)
-      exchanges[p].increase = places[p].relative;
-    impulses.find_relative(Layout::velocity);
-    for (std::size_t p = 0; p < places.size(); ++p)
-      exchanges[p].brought = places[p].relative - exchanges[p].increase;
-    impulses.exchange();
-    impulses.find_relative(Layout::velocity);
-    for (std::size_t p = 0; p < places.size(); ++p)
-      {
-        exchanges[p].after = places[p].relative;
-        account(exchanges[p].brought + exchanges[p].after,
-                exchanges[p].held,
-                p,
-                0.5);
-      }
+    parts.ledger.add(impulses.exchange());
   }
 
 
@@ -137,45 +110,7 @@ namespace limber
   Contact<dim>::hold_after(const unsigned int slot, const double flip_share)
   {
     join(slot);
-    if (!impulses.any())
-      return;
-    impulses.find_relative(slot);
-    for (std::size_t p = 0; p < exchanges.size(); ++p)
-      exchanges[p].brought = impulses.all()[p].relative;
-    const std::vector<Vector> &held = impulses.hold(slot);
-    for (std::size_t p = 0; p < exchanges.size(); ++p)
-      account(exchanges[p].brought - exchanges[p].after,
-              holds_before ? held[p] : 2 * held[p],
-              p,
-              0.5 * flip_share);
-  }
-
-
-
-  // Where places are nodes, what strains the points has nothing left of what is
-  // held, and forces lose nothing to it. What is lost across the surface is
-  // that of the impact, along it heat.
-  template <int dim>
-  void
-  Contact<dim>::account(const Vector     &velocity,
-                        const Vector     &held,
-                        const std::size_t p,
-                        const double      share)
-  {
-    const auto &place = impulses.all()[p];
-    if (!place.is_own || (at_nodes && !place.presses()))
-      return;
-    const Vector  normal   = place.normal;
-    const Vector &increase = exchanges[p].increase;
-    const Vector  holds =
-      !at_nodes ?
-         held :
-         -place.mass * (place.sticks ? velocity : (velocity * normal) * normal);
-    const double all    = increase * holds - place.impulse * velocity;
-    const double across = (increase * normal) * (holds * normal) -
-                          (place.impulse * normal) * (velocity * normal);
-    parts.ledger.contact += share * across;
-    parts.ledger.friction += share * (all - across);
+    parts.ledger.add(impulses.hold_after(slot, flip_share));
   }
 
 

@@ -4,6 +4,7 @@
 #include <limber/time/contact_impulses.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace limber
 {
@@ -19,10 +20,12 @@ namespace limber
 
 
   template <int dim>
-  ContactImpulses<dim>::ContactImpulses(NodalFields<dim> &nodes)
+  ContactImpulses<dim>::ContactImpulses(NodalFields<dim> &nodes,
+                                        const bool        leapfrogs)
     : nodes(nodes)
+    , leapfrogs(leapfrogs)
+    , seen_as(nodes.n_fields())
     , given(nodes.n_fields())
-    , expected(nodes.n_fields())
   {
     reinit();
   }
@@ -34,12 +37,13 @@ namespace limber
   ContactImpulses<dim>::reinit()
   {
     const std::size_t n = nodes.table.n();
+    seen.clear();
     clear();
     former_places.clear();
+    for (auto &of_field : seen_as)
+      of_field.reinit(n);
     for (Given &of_field : given)
-      of_field.records.reinit(n * Given::stride);
-    for (auto &velocities : expected)
-      velocities.reinit(n * dim);
+      of_field.records.reinit(shares_nodes() ? n * Given::stride : 0);
     hanging.clear();
     if (!nodes.table.hanging.empty())
       hanging.resize(n);
@@ -50,21 +54,31 @@ namespace limber
 
 
   template <int dim>
+  bool
+  ContactImpulses<dim>::shares_nodes() const
+  {
+    return !nodes.table.shared.neighbours.empty();
+  }
+
+
+
+  template <int dim>
   void
   ContactImpulses<dim>::clear()
   {
-    for (Given &of_field : given)
+    for (const Node &node : seen)
+      seen_as[node.field][node.number] = 0;
+    if (leapfrogs)
       {
-        for (const std::uint32_t node : of_field.nodes)
-          of_field.records[node * Given::stride + Given::mass] = 0;
-        of_field.nodes.clear();
+        places.swap(former_places);
+        shares.swap(former_shares);
+        seen.swap(former_seen);
       }
-    places.swap(former_places);
-    shares.swap(former_shares);
     places.clear();
     shares.clear();
+    seen.clear();
     peers.clear();
-    any_place = false;
+    any_place = holds_before = false;
   }
 
 
@@ -81,16 +95,41 @@ namespace limber
 
 
   template <int dim>
+  std::uint32_t
+  ContactImpulses<dim>::see(const unsigned int  field,
+                            const std::uint32_t number)
+  {
+    std::uint32_t &as = seen_as[field][number];
+    if (as == 0)
+      {
+        seen.push_back({nodes.record(field, number), no_share, field, number});
+        as = static_cast<std::uint32_t>(seen.size());
+      }
+    return as - 1;
+  }
+
+
+
+  // A place has one share of a node, however many points see it for it.
+  template <int dim>
   void
   ContactImpulses<dim>::add_share(const unsigned int  field,
                                   const std::uint32_t node,
                                   const double        share)
   {
-    if (share != 0)
-      for_each_master(node,
-                      [&](const std::uint32_t master, const double weight) {
-                        shares.push_back({master, field, weight * share});
-                      });
+    if (share == 0)
+      return;
+    for_each_master(node, [&](const std::uint32_t master, const double weight) {
+      const std::uint32_t as   = see(field, master);
+      std::size_t        &last = seen[as].last_share;
+      if (last != no_share && last >= places.back().begin)
+        shares[last].value += weight * share;
+      else
+        {
+          last = shares.size();
+          shares.push_back({as, weight * share});
+        }
+    });
     places.back().end = shares.size();
   }
 
@@ -100,9 +139,9 @@ namespace limber
   void
   ContactImpulses<dim>::finish_adding(std::vector<Peer> &&of_places)
   {
-    peers      = std::move(of_places);
-    everywhere = false;
-    n_passes   = passes_of_places;
+    peers    = std::move(of_places);
+    at_nodes = false;
+    n_passes = passes_of_places;
     any_place =
       dealii::Utilities::MPI::max<unsigned int>(places.empty() ? 0 : 1,
                                                 nodes.grid.communicator) > 0;
@@ -118,11 +157,12 @@ namespace limber
   void
   ContactImpulses<dim>::finish_adding_nodes()
   {
-    everywhere = true;
-    any_place  = !places.empty();
-    n_passes   = 1;
+    at_nodes  = true;
+    any_place = !places.empty();
+    n_passes  = 1;
     for (std::size_t p = 1; p < places.size(); ++p)
-      if (shares[places[p].begin].node == shares[places[p - 1].begin].node)
+      if (seen[shares[places[p].begin].node].number ==
+          seen[shares[places[p - 1].begin].node].number)
         n_passes = passes_of_places;
     find_relaxation();
   }
@@ -133,31 +173,72 @@ namespace limber
   void
   ContactImpulses<dim>::find_relaxation()
   {
-    const auto mass = [this](const Share &share) -> double & {
-      return given[share.field]
-        .records[share.node * Given::stride + Given::mass];
-    };
+    bears.assign(seen.size(), 0.);
     for (const Place &place : places)
       for (std::size_t k = place.begin; k < place.end; ++k)
-        mass(shares[k]) += std::abs(shares[k].value) * place.mass;
-    for (Given &of_field : given)
+        bears[shares[k].node] += std::abs(shares[k].value) * place.mass;
+    if (!at_nodes && shares_nodes())
+      see_those_of_others();
+
+    inverse_mass.resize(seen.size());
+    for (std::size_t i = 0; i < seen.size(); ++i)
       {
-        sum_given(of_field, Given::mass, Given::mass + 1);
-        for (const std::uint32_t node : nodes.active_nodes())
-          if (of_field.records[node * Given::stride + Given::mass] > 0)
-            of_field.nodes.push_back(node);
+        const double mass = seen[i].record[Layout::mass];
+        inverse_mass[i]   = mass > 0 ? 1 / mass : 0;
       }
+    velocity.resize(seen.size());
+    momentum.assign(seen.size(), Vector());
+
     for (Place &place : places)
       {
-        place.relative = 0;
+        double sum = 0; // s_p
         for (std::size_t k = place.begin; k < place.end; ++k)
-          place.relative[0] +=
-            std::abs(shares[k].value) * mass(shares[k]) /
-            nodes.record(shares[k].field, shares[k].node)[Layout::mass];
+          {
+            const std::uint32_t i = shares[k].node;
+            // At the edge of what a function reaches it has a slope, but the
+            // node no mass.
+            if (inverse_mass[i] == 0)
+              shares[k].value = 0;
+            sum += std::abs(shares[k].value) * bears[i] * inverse_mass[i];
+          }
+        place.relative    = 0;
+        place.relative[0] = sum;
       }
     complete();
     for (Place &place : places)
       place.relaxation = place.mass / place.relative[0];
+  }
+
+
+
+  // Nodes that only places of other ranks see get impulses as well.
+  template <int dim>
+  void
+  ContactImpulses<dim>::see_those_of_others()
+  {
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      given[seen[i].field]
+        .records[seen[i].number * Given::stride + Given::mass] = bears[i];
+    for (unsigned int field = 0; field < given.size(); ++field)
+      {
+        double *const records = given[field].records.data();
+        for (const auto &neighbour : nodes.node_plan().neighbours)
+          for (const std::uint32_t node : neighbour.send)
+            if (seen_as[field][node] == 0)
+              records[node * Given::stride + Given::mass] = 0;
+        for (const std::uint32_t node : nodes.node_plan().received)
+          if (seen_as[field][node] == 0)
+            records[node * Given::stride + Given::mass] = 0;
+      }
+    sum_given(Given::mass, Given::mass + 1);
+    for (unsigned int field = 0; field < given.size(); ++field)
+      for (const std::uint32_t node : nodes.node_plan().received)
+        if (given[field].records[node * Given::stride + Given::mass] > 0)
+          see(field, node);
+    bears.resize(seen.size());
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      bears[i] = given[seen[i].field]
+                   .records[seen[i].number * Given::stride + Given::mass];
   }
 
 
@@ -219,67 +300,50 @@ namespace limber
 
 
   template <int dim>
-  template <class Velocity>
   void
-  ContactImpulses<dim>::find_relative_of(const Velocity &velocity)
+  ContactImpulses<dim>::sum_given(const unsigned int first,
+                                  const unsigned int last)
+  {
+    for (Given &of_field : given)
+      {
+        of_field.exchange.start(nodes.node_plan(),
+                                of_field.records.data(),
+                                first,
+                                last);
+        of_field.exchange.finish(of_field.records.data());
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::load(const unsigned int slot)
+  {
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      velocity[i] = vector_in<dim>(seen[i].record + slot);
+  }
+
+
+
+  // The others are not asked for it.
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_relative(const bool only_of_pressing)
   {
     for (Place &place : places)
       {
-        place.relative = 0;
-        if (place.is_own)
-          place.relative -= place.velocity;
-        for (std::size_t k = place.begin; k < place.end; ++k)
-          place.relative +=
-            shares[k].value *
-            vector_in<dim>(velocity(shares[k].field, shares[k].node));
+        Vector sum;
+        if (!only_of_pressing || place.presses())
+          {
+            if (place.is_own)
+              sum -= place.velocity;
+            for (std::size_t k = place.begin; k < place.end; ++k)
+              sum += shares[k].value * velocity[shares[k].node];
+          }
+        place.relative = sum;
       }
     complete();
-  }
-
-
-
-  template <int dim>
-  void
-  ContactImpulses<dim>::find_relative(const unsigned int slot)
-  {
-    find_relative_of([&](const unsigned int field, const std::uint32_t node) {
-      return nodes.record(field, node) + slot;
-    });
-  }
-
-
-
-  template <int dim>
-  typename ContactImpulses<dim>::Vector
-  ContactImpulses<dim>::sum(const Place              &place,
-                            const std::vector<Share> &of_places,
-                            const unsigned int        slot) const
-  {
-    Vector result;
-    for (std::size_t k = place.begin; k < place.end; ++k)
-      result += of_places[k].value *
-                vector_in<dim>(
-                  nodes.record(of_places[k].field, of_places[k].node) + slot);
-    return result;
-  }
-
-
-
-  template <int dim>
-  typename ContactImpulses<dim>::Vector
-  ContactImpulses<dim>::at(const Place &place, const unsigned int slot) const
-  {
-    return sum(place, shares, slot);
-  }
-
-
-
-  template <int dim>
-  typename ContactImpulses<dim>::Vector
-  ContactImpulses<dim>::at_former(const Place       &place,
-                                  const unsigned int slot) const
-  {
-    return sum(place, former_shares, slot);
   }
 
 
@@ -289,54 +353,31 @@ namespace limber
   ContactImpulses<dim>::give(const Place &place, const Vector &impulse)
   {
     for (std::size_t k = place.begin; k < place.end; ++k)
+      momentum[shares[k].node] += shares[k].value * impulse;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::add_given()
+  {
+    if (!at_nodes && shares_nodes())
       {
-        double *const record = given[shares[k].field].records.data() +
-                               std::size_t(shares[k].node) * Given::stride +
-                               Given::momentum;
-        for (int d = 0; d < dim; ++d)
-          record[d] += shares[k].value * impulse[d];
+        const auto record = [this](const std::size_t i) {
+          return given[seen[i].field].records.data() +
+                 std::size_t(seen[i].number) * Given::stride + Given::momentum;
+        };
+        for (std::size_t i = 0; i < seen.size(); ++i)
+          store_vector<dim>(momentum[i], record(i));
+        sum_given(Given::momentum, Given::momentum + dim);
+        for (std::size_t i = 0; i < seen.size(); ++i)
+          momentum[i] = vector_in<dim>(record(i));
       }
-  }
-
-
-
-  template <int dim>
-  void
-  ContactImpulses<dim>::sum_given(Given             &of_field,
-                                  const unsigned int first,
-                                  const unsigned int last)
-  {
-    if (everywhere)
-      return;
-    of_field.exchange.start(nodes.node_plan(),
-                            of_field.records.data(),
-                            first,
-                            last);
-    of_field.exchange.finish(of_field.records.data());
-  }
-
-
-
-  // add(field, node, change of velocity)
-  template <int dim>
-  template <class Add>
-  void
-  ContactImpulses<dim>::add_given(const Add &add)
-  {
-    for (unsigned int field = 0; field < given.size(); ++field)
+    for (std::size_t i = 0; i < seen.size(); ++i)
       {
-        double *const records = given[field].records.data();
-        sum_given(given[field], Given::momentum, Given::momentum + dim);
-        for (const std::uint32_t node : given[field].nodes)
-          {
-            double *const momentum =
-              records + std::size_t(node) * Given::stride + Given::momentum;
-            add(field,
-                node,
-                vector_in<dim>(momentum) /
-                  nodes.record(field, node)[Layout::mass]);
-            std::fill_n(momentum, dim, 0.);
-          }
+        velocity[i] += inverse_mass[i] * momentum[i];
+        momentum[i] = 0;
       }
   }
 
@@ -344,31 +385,36 @@ namespace limber
 
   // From the impulses that places have and the velocity has.
   template <int dim>
-  template <class Velocity, class Add>
   void
-  ContactImpulses<dim>::press(const Velocity &velocity, const Add &add)
+  ContactImpulses<dim>::press(bool relative_is_known)
   {
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
-        find_relative_of(velocity);
+        if (!std::exchange(relative_is_known, false))
+          find_relative(false);
         for (Place &place : places)
           {
             const Vector wanted =
               place.impulse +
               place.relaxation * (place.least * place.normal - place.relative);
-            const double pressing = std::max(0., wanted * place.normal);
-            Vector       along    = along_surface(wanted, place.normal);
-            const double rubbing  = along.norm();
-            // not mu J_n where mu may be infinite and J_n zero
-            const double most = pressing > 0 ? place.friction * pressing : 0;
-            place.sticks      = pressing > 0 && rubbing <= most;
-            if (rubbing > most)
-              along *= most / rubbing;
-            const Vector impulse = pressing * place.normal + along;
-            give(place, impulse - place.impulse);
+            const double pressing = wanted * place.normal;
+            Vector       impulse;
+            place.sticks = false;
+            if (pressing > 0)
+              {
+                Vector       along   = along_surface(wanted, place.normal);
+                const double rubbing = along.norm();
+                const double most    = place.friction * pressing;
+                place.sticks         = rubbing <= most;
+                if (rubbing > most)
+                  along *= most / rubbing;
+                impulse = pressing * place.normal + along;
+              }
+            if (impulse != place.impulse)
+              give(place, impulse - place.impulse);
             place.impulse = impulse;
           }
-        add_given(add);
+        add_given();
       }
   }
 
@@ -378,74 +424,145 @@ namespace limber
   void
   ContactImpulses<dim>::expect(const double step, const Vector &gravity)
   {
-    for (Place &place : places)
-      place.impulse = 0;
-    const auto velocity = [this](const unsigned int  field,
-                                 const std::uint32_t node) {
-      return expected[field].data() + std::size_t(node) * dim;
-    };
-    for (unsigned int field = 0; field < given.size(); ++field)
-      for (const std::uint32_t node : given[field].nodes)
-        {
-          const double *const record = nodes.record(field, node);
-          store_vector<dim>((vector_in<dim>(record + Layout::momentum) +
-                             step * vector_in<dim>(record + Layout::force)) /
-                                record[Layout::mass] +
-                              step * gravity,
-                            velocity(field, node));
-        }
-    press(velocity,
-          [&](const unsigned int  field,
-              const std::uint32_t node,
-              const Vector       &change) {
-            for (int d = 0; d < dim; ++d)
-              velocity(field, node)[d] += change[d];
-          });
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      velocity[i] = inverse_mass[i] *
+                      (vector_in<dim>(seen[i].record + Layout::momentum) +
+                       step * vector_in<dim>(seen[i].record + Layout::force)) +
+                    step * gravity;
+    press(false);
   }
 
 
 
   template <int dim>
   void
+  ContactImpulses<dim>::hold_before(const unsigned int slot,
+                                    const double       step,
+                                    const Vector      &gravity)
+  {
+    if (!any())
+      return;
+    holds_before = true;
+    expect(step, gravity);
+    hold_and_tell(slot, true);
+  }
+
+
+
+  // What is brought is without the increase.
+  template <int dim>
+  ContactLoss
   ContactImpulses<dim>::exchange()
   {
-    const auto add = [this](const unsigned int  field,
-                            const std::uint32_t node,
-                            const Vector       &change) {
-      double *const record = nodes.record(field, node);
-      for (int d = 0; d < dim; ++d)
-        {
-          record[Layout::velocity + d] += change[d];
-          record[Layout::increment + d] += change[d];
-        }
-    };
-    for (const Place &place : places)
-      give(place, place.impulse);
-    add_given(add);
-    press(
-      [this](const unsigned int field, const std::uint32_t node) {
-        return nodes.record(field, node) + Layout::velocity;
-      },
-      add);
+    ContactLoss loss;
+    account_former(loss);
+    if (!any())
+      return loss;
+    load(Layout::increment);
+    find_relative(false);
+    for (Place &place : places)
+      place.increase = place.relative + place.velocity;
+    load(Layout::velocity);
+    find_relative(false);
+    for (Place &place : places)
+      place.brought = place.relative - place.increase;
+    if (holds_before)
+      {
+        for (const Place &place : places)
+          if (place.presses())
+            give(place, place.impulse);
+        add_given();
+      }
+    press(!holds_before);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      {
+        double *const        new_velocity = seen[i].record + Layout::velocity,
+                      *const increment    = seen[i].record + Layout::increment;
+        for (int d = 0; d < dim; ++d)
+          {
+            increment[d] += velocity[i][d] - new_velocity[d];
+            new_velocity[d] = velocity[i][d];
+          }
+      }
+    find_relative(true);
+    for (Place &place : places)
+      {
+        place.after = place.relative;
+        account(loss,
+                place,
+                place.brought + place.after,
+                leapfrogs ? Vector() : place.held,
+                0.5);
+      }
+    return loss;
+  }
+
+
+
+  // What has been held at the end of the step before was held at the beginning
+  // of this one as well.
+  template <int dim>
+  void
+  ContactImpulses<dim>::account_former(ContactLoss &loss)
+  {
+    for (Place &place : former_places)
+      {
+        place.increase = 0;
+        for (std::size_t k = place.begin; k < place.end; ++k)
+          place.increase +=
+            former_shares[k].value *
+            vector_in<dim>(former_seen[former_shares[k].node].record +
+                           Layout::increment);
+        account(loss, place, {}, place.held, 0.5);
+      }
   }
 
 
 
   template <int dim>
-  const std::vector<typename ContactImpulses<dim>::Vector> &
+  ContactLoss
+  ContactImpulses<dim>::hold_after(const unsigned int slot,
+                                   const double       flip_share)
+  {
+    ContactLoss loss;
+    if (!any())
+      return loss;
+    for (Place &place : places)
+      place.held = 0;
+    hold_and_tell(slot, true);
+    for (const Place &place : places)
+      account(loss,
+              place,
+              place.brought - place.after,
+              holds_before || leapfrogs ? place.held : 2 * place.held,
+              0.5 * flip_share);
+    return loss;
+  }
+
+
+
+  template <int dim>
+  void
   ContactImpulses<dim>::hold(const unsigned int slot)
   {
-    holding.assign(places.size(), Vector());
-    const auto velocity = [&](const unsigned int  field,
-                              const std::uint32_t node) {
-      return nodes.record(field, node) + slot;
-    };
+    hold_and_tell(slot, false);
+  }
+
+
+
+  // With @p tell, places learn what was there and what holds it.
+  template <int dim>
+  void
+  ContactImpulses<dim>::hold_and_tell(const unsigned int slot, const bool tell)
+  {
+    if (!any())
+      return;
+    load(slot);
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
-        find_relative(slot);
-        for (std::size_t p = 0; p < places.size(); ++p)
+        find_relative(true);
+        for (Place &place : places)
           {
-            const Place &place = places[p];
             if (!place.presses())
               continue;
             Vector lacking = place.least * place.normal - place.relative;
@@ -453,16 +570,40 @@ namespace limber
               lacking -= along_surface(lacking, place.normal);
             const Vector impulse = place.relaxation * lacking;
             give(place, impulse);
-            holding[p] += impulse;
+            if (!tell)
+              continue;
+            if (pass == 0)
+              place.brought = place.relative;
+            place.held += impulse;
           }
-        add_given([&](const unsigned int  field,
-                      const std::uint32_t node,
-                      const Vector       &change) {
-          for (int d = 0; d < dim; ++d)
-            velocity(field, node)[d] += change[d];
-        });
+        add_given();
       }
-    return holding;
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      store_vector<dim>(velocity[i], seen[i].record + slot);
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::account(ContactLoss  &loss,
+                                const Place  &place,
+                                const Vector &velocity,
+                                const Vector &held,
+                                const double  share) const
+  {
+    if (!place.is_own || (at_nodes && !place.presses()))
+      return;
+    const Vector &normal = place.normal;
+    const Vector  holds =
+      !at_nodes ?
+         held :
+         -place.mass * (place.sticks ? velocity : (velocity * normal) * normal);
+    const double all    = place.increase * holds - place.impulse * velocity;
+    const double across = (place.increase * normal) * (holds * normal) -
+                          (place.impulse * normal) * (velocity * normal);
+    loss.across += share * across;
+    loss.along += share * (all - across);
   }
 
 

@@ -50,7 +50,6 @@ namespace limber
   Contact<dim>::find_places(const double step)
   {
     impulses.clear();
-    holds_before = false;
     with_degree(parts.nodes.view(), [&](const auto degree) {
       constexpr int n = decltype(degree)::value;
       if constexpr (n == 1)
@@ -66,7 +65,6 @@ namespace limber
           impulses.finish_adding(exchange_parts<n>());
         }
     });
-    exchanges.assign(impulses.all().size(), {});
   }
 
 

@@ -69,9 +69,8 @@ namespace limber
   ObstacleContact<dim>::ObstacleContact(const RunParts<dim> &parts,
                                         const bool           leapfrogs)
     : parts(parts)
-    , impulses(parts.nodes)
+    , impulses(parts.nodes, leapfrogs)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
-    , leapfrogs(leapfrogs)
     , cell_distance(parts.problem.obstacles.size())
   {
     parts.ledger.obstacles.resize(parts.problem.obstacles.size());
@@ -114,9 +113,7 @@ namespace limber
   ObstacleContact<dim>::find(const double time, const double step)
   {
     impulses.clear();
-    touches.swap(former);
     touches.clear();
-    holds_before = false;
     std::vector<Way> ways;
     for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
       {
@@ -330,12 +327,8 @@ namespace limber
                            support.node[k],
                            support.value[k] - near.reach * slope);
       }
-    touches.push_back({near.obstacle,
-                       near.x - near.reach * normal - way.before.centre(),
-                       {},
-                       {},
-                       {},
-                       {}});
+    touches.push_back(
+      {near.obstacle, near.x - near.reach * normal - way.before.centre()});
   }
 
 
@@ -422,8 +415,7 @@ namespace limber
             if (parts.problem.obstacles[obstacle].moves())
               place.velocity = ways[obstacle].velocity(x, step);
             impulses.add_share(field, node, 1);
-            touches.push_back(
-              {obstacle, x - ways[obstacle].before.centre(), {}, {}, {}, {}});
+            touches.push_back({obstacle, x - ways[obstacle].before.centre()});
           }
       }
   }
@@ -434,8 +426,7 @@ namespace limber
   void
   ObstacleContact<dim>::hold(const unsigned int slot)
   {
-    if (impulses.any())
-      impulses.hold(slot);
+    impulses.hold(slot);
   }
 
 
@@ -444,58 +435,22 @@ namespace limber
   void
   ObstacleContact<dim>::hold_before(const unsigned int slot, const double step)
   {
-    if (!impulses.any())
-      return;
-    holds_before = true;
-    impulses.expect(step, parts.problem.loads.gravity);
-    const std::vector<Vector> &held = impulses.hold(slot);
-    for (std::size_t p = 0; p < touches.size(); ++p)
-      touches[p].held = held[p];
+    impulses.hold_before(slot, step, parts.problem.loads.gravity);
   }
 
 
 
-  // FLIP points whose nodes bring the velocity b, get the increase a and the
-  // impulses J, and give back the velocity r gain J . (b + r) / 2 by contact.
-  // They are strained by b + K_b / m and r + K_r / m, with the impulses K that
-  // hold these: so the forces have done a . (K_b + K_r) / 2 less on them than
-  // they have lost to strain. Here r is taken as the new velocity, that of PIC;
-  // hold_after() corrects it. In the initial frame K_b is the K_r of the step
-  // before. Seen from the box, impulses work with the velocity of the obstacle
-  // besides.
+  // Seen from the box, impulses work with the velocity of the obstacle besides
+  // what points lose.
   template <int dim>
   void
   ObstacleContact<dim>::exchange()
   {
-    if (leapfrogs)
-      for (std::size_t p = 0; p < former.size(); ++p)
-        {
-          const Place &place = impulses.all_former()[p];
-          former[p].increase = impulses.at_former(place, Layout::increment);
-          account(place, former[p], {}, former[p].held, 0.5);
-        }
-    if (!impulses.any())
-      return;
-    const auto against = [this](const Place &place) {
-      return impulses.at(place, Layout::velocity) - place.velocity;
-    };
+    parts.ledger.add(impulses.exchange());
     for (std::size_t p = 0; p < touches.size(); ++p)
       {
-        const Place &place  = impulses.all()[p];
-        touches[p].increase = impulses.at(place, Layout::increment);
-        touches[p].brought  = against(place) - touches[p].increase;
-      }
-    impulses.exchange();
-    for (std::size_t p = 0; p < touches.size(); ++p)
-      {
-        const Place &place = impulses.all()[p];
-        Touch       &touch = touches[p];
-        touch.after        = against(place);
-        account(place,
-                touch,
-                touch.brought + touch.after,
-                leapfrogs ? Vector() : touch.held,
-                0.5);
+        const Place         &place  = impulses.all()[p];
+        const Touch         &touch  = touches[p];
         ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
         action.impulse += place.impulse;
         action.moment += moment_of<dim>(touch.arm, place.impulse);
@@ -505,49 +460,12 @@ namespace limber
 
 
 
-  // Points that nothing has strained at the beginning of the step are strained
-  // by r alone.
   template <int dim>
   void
   ObstacleContact<dim>::hold_after(const unsigned int slot,
                                    const double       flip_share)
   {
-    if (!impulses.any())
-      return;
-    for (std::size_t p = 0; p < touches.size(); ++p)
-      {
-        const Place &place = impulses.all()[p];
-        touches[p].brought = impulses.at(place, slot) - place.velocity;
-      }
-    const std::vector<Vector> &held = impulses.hold(slot);
-    for (std::size_t p = 0; p < touches.size(); ++p)
-      {
-        account(impulses.all()[p],
-                touches[p],
-                touches[p].brought - touches[p].after,
-                holds_before || leapfrogs ? held[p] : 2 * held[p],
-                0.5 * flip_share);
-        touches[p].held = held[p];
-      }
-  }
-
-
-
-  // What is lost across the surface is that of the impact, along it heat.
-  template <int dim>
-  void
-  ObstacleContact<dim>::account(const Place  &place,
-                                const Touch  &touch,
-                                const Vector &velocity,
-                                const Vector &held,
-                                const double  share)
-  {
-    const double loss = touch.increase * held - place.impulse * velocity;
-    const double across =
-      (touch.increase * place.normal) * (held * place.normal) -
-      (place.impulse * place.normal) * (velocity * place.normal);
-    parts.ledger.contact += share * across;
-    parts.ledger.friction += share * (loss - across);
+    parts.ledger.add(impulses.hold_after(slot, flip_share));
   }
 
 

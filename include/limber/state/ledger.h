@@ -21,6 +21,15 @@ namespace limber
 
 
 
+  /** What points lose where they touch something, J. */
+  struct ContactLoss
+  {
+    double across = 0; // the surface: that of the impact
+    double along  = 0; // it: heat of friction
+  };
+
+
+
   /**
    * What has happened to energy and momentum since the start, summed step by
    * step on this rank; sum_over_ranks() completes it. Energies in J,
@@ -52,6 +61,13 @@ namespace limber
 
     // Of each obstacle of the scene on the material
     std::vector<ObstacleAction<dim>> obstacles;
+
+    void
+    add(const ContactLoss &loss)
+    {
+      contact += loss.across;
+      friction += loss.along;
+    }
 
     Ledger
     sum_over_ranks(MPI_Comm communicator) const

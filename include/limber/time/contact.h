@@ -125,15 +125,6 @@ namespace limber
 
     using Sides = std::array<Side, 2>;
 
-    /** What the ledger wants to know of an impulse. */
-    struct Exchange
-    {
-      Vector increase; // of relative velocity without contact, m/s
-      // Relative velocity, m/s: brought or given back; the new one
-      Vector brought, after;
-      Vector held; // impulse that holds what is brought, kg m/s
-    };
-
     /** What places of this rank have of points of another one. */
     struct PartsElsewhere
     {
@@ -269,11 +260,6 @@ namespace limber
     exchange_parts();
     void
     join(unsigned int slot);
-    void
-    account(const Vector &velocity,
-            const Vector &held,
-            std::size_t   place,
-            double        share);
 
     const RunParts<dim> parts;
     const unsigned int  n_fields;
@@ -291,9 +277,6 @@ namespace limber
     std::vector<double>      half_edges;  // m, of the points of a batch
     SharedSlots              gradients{2 * dim, false}, extents{6, true};
     ContactImpulses<dim>     impulses;
-    std::vector<Exchange>    exchanges;            // of the impulses
-    const bool               at_nodes;             // whether these are at nodes
-    bool                     holds_before = false; // in this step
     const unsigned int       this_rank;
     // Of vertices that other ranks hold as well: who does
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>

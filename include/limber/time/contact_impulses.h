@@ -3,6 +3,7 @@
 #define limber_time_contact_impulses_h
 
 #include <limber/grid/nodal_fields.h>
+#include <limber/state/ledger.h>
 
 #include <vector>
 
@@ -27,6 +28,20 @@ namespace limber
    * the same at all places is right after one pass, and nothing overshoots.
    * All of them are found together, so that it does not matter how many places
    * or obstacles a node sees; functions may be those of any kernel.
+   *
+   * Of a step, FLIP points lose by them what ContactLoss tells: with the
+   * velocity b that they bring to a place, r that they give back, the increase
+   * a by all other forces, and the impulses K_b and K_r that hold these
+   * velocities where they strain the points,
+   *
+   *   - J . (b + r) / 2 + a . (K_b + K_r) / 2,
+   *
+   * since forces have done a . (K_b + K_r) / 2 less on the points than they
+   * have lost to strain. Points that nothing has strained at the beginning of
+   * the step are strained by r alone. Where places are nodes, what strains the
+   * points has nothing left of what is held, K = -m_p b or r where it presses.
+   *
+   * Nodes that no place sees are not met by any of this.
    */
   template <int dim>
   class ContactImpulses
@@ -36,12 +51,13 @@ namespace limber
 
     struct Place
     {
-      Vector normal;       // out of what is touched, of unit length
-      Vector velocity;     // v_p: of what is touched, m/s
-      double least    = 0; // m/s
-      double friction = 0; // mu; infinite where what presses sticks
-      double mass     = 0; // m_p, kg: by what share it bears
-      Vector impulse;      // J, kg m/s
+      Vector normal;        // out of what is touched, of unit length
+      Vector velocity;      // v_p: of what is touched, m/s
+      double least    = 0;  // m/s
+      double friction = 0;  // mu; infinite where what presses sticks
+      double mass     = 0;  // m_p, kg: by what share it bears
+      Vector impulse;       // J, kg m/s
+      bool   is_own = true; // counted on this rank
 
       bool
       presses() const
@@ -53,8 +69,10 @@ namespace limber
       std::size_t begin = 0, end = 0;
       double      relaxation = 0; // m_p / s_p, kg
       bool        sticks     = false;
-      bool        is_own     = true; // counted on this rank
-      Vector      relative;          // w_p, m/s
+      Vector      relative; // w_p, m/s
+
+      // What ContactLoss wants to know: a, b or r, the new velocity; K
+      Vector increase, brought, after, held;
     };
 
     /** Places that have parts on two ranks, in the same order on both. */
@@ -65,28 +83,20 @@ namespace limber
       std::vector<std::uint32_t> parts; // those of that rank, a part is here
     };
 
-    explicit ContactImpulses(NodalFields<dim> &nodes);
+    /**
+     * With @p leapfrogs (the initial frame) the velocity that points give back
+     * in a step strains them in the next as well: K_b is K_r of the step
+     * before.
+     */
+    explicit ContactImpulses(NodalFields<dim> &nodes, bool leapfrogs = false);
 
     /** Adopt a changed mesh. */
     void
     reinit();
 
-    /** Forget all places; those that there were are the former ones. */
+    /** Forget all places. */
     void
     clear();
-
-    /**
-     * The same as at(), of a former place: in the initial frame, where nodes
-     * stay what they were.
-     */
-    Vector
-    at_former(const Place &place, unsigned int slot) const;
-
-    const std::vector<Place> &
-    all_former() const
-    {
-      return former_places;
-    }
 
     /** The next place; its nodes follow by add_share(). */
     Place &
@@ -134,99 +144,128 @@ namespace limber
       return any_place;
     }
 
-    std::vector<Place> &
-    all()
+    const std::vector<Place> &
+    all() const
     {
       return places;
     }
 
-    /** sum_i a_pi of the vector at a slot of the records. */
-    Vector
-    at(const Place &place, unsigned int slot) const;
-
-    /** Find w_p of all places, of the vector at a slot of the records. */
-    void
-    find_relative(unsigned int slot);
-
     /**
-     * Find the impulses that the velocities (p + dt f) / m + g dt would have.
+     * Hold the velocity that points bring, at a slot of the records, as the new
+     * one is going to be held: (p + dt f) / m + g dt.
      */
     void
-    expect(double step, const Vector &gravity);
+    hold_before(unsigned int slot, double step, const Vector &gravity);
 
     /**
      * Find the impulses that the new velocities have, from what was expected,
-     * and give them to these and to their increments.
+     * and give them to these and to their increments. Returns what PIC loses.
      */
-    void
+    ContactLoss
     exchange();
 
     /**
-     * Bring another velocity to the least one where places press, and to rest
-     * along the surface where they stick. Returns the impulses which that
-     * takes, one per place.
+     * Hold the velocity that points have given back, at a slot of the records.
+     * Returns what they lose beyond that, by the share of FLIP.
      */
-    const std::vector<Vector> &
+    ContactLoss
+    hold_after(unsigned int slot, double flip_share);
+
+    /**
+     * Bring another velocity to the least one where places press, and to rest
+     * along the surface where they stick.
+     */
+    void
     hold(unsigned int slot);
 
   private:
     using Layout = NodeLayout<dim>;
 
+    /** A node of a field that any place sees, on any rank. */
+    struct Node
+    {
+      double      *record;
+      std::size_t  last_share; // that a place has of it, before none: no_share
+      unsigned int field, number;
+    };
+
+    static constexpr std::size_t no_share = std::size_t(-1);
+
     struct Share
     {
-      std::uint32_t node;
-      unsigned int  field;
+      std::uint32_t node;  // of those seen
       double        value; // a_pi
     };
 
-    // Momentum that places give to the nodes of a field in a pass, or the mass
-    // M_i; a record has both
+    // What ranks tell each other of the nodes of a field: momentum that places
+    // give in a pass, or the mass M_i; a record has both
     struct Given
     {
       static constexpr unsigned int momentum = 0;
       static constexpr unsigned int mass     = dim;
       static constexpr unsigned int stride   = dim + 1;
 
-      LazyArray<double>          records;
-      RecordExchange             exchange{stride};
-      std::vector<std::uint32_t> nodes; // that any place sees, on any rank
+      LazyArray<double> records;
+      RecordExchange    exchange{stride};
     };
 
-    Vector
-    sum(const Place              &place,
-        const std::vector<Share> &of_places,
-        unsigned int              slot) const;
-    template <class Velocity>
+    std::uint32_t
+    see(unsigned int field, std::uint32_t number);
     void
-    find_relative_of(const Velocity &velocity);
+    load(unsigned int slot);
+    void
+    expect(double step, const Vector &gravity);
+    void
+    find_relative(bool only_of_pressing);
     void
     find_relaxation();
     void
-    complete();
+    see_those_of_others();
     void
-    sum_given(Given &of_field, unsigned int first, unsigned int last);
+    complete();
+    bool
+    shares_nodes() const;
+    void
+    sum_given(unsigned int first, unsigned int last);
     void
     give(const Place &place, const Vector &impulse);
-    template <class Add>
     void
-    add_given(const Add &add);
-    template <class Velocity, class Add>
+    add_given();
     void
-    press(const Velocity &velocity, const Add &add);
+    press(bool relative_is_known);
+    void
+    account_former(ContactLoss &loss);
+    void
+    hold_and_tell(unsigned int slot, bool tell);
+    void
+    account(ContactLoss  &loss,
+            const Place  &place,
+            const Vector &velocity,
+            const Vector &held,
+            double        share) const;
 
-    NodalFields<dim>              &nodes;
-    std::vector<Place>             places, former_places;
-    std::vector<Share>             shares, former_shares;
-    std::vector<Given>             given;    // per field
-    std::vector<LazyArray<double>> expected; // per field, dim numbers a node
-    std::vector<Vector>            holding;
-    std::vector<std::uint32_t>     hanging; // 1 + place in the table, or 0
-    std::vector<Peer>              peers;
-    unsigned int                   n_passes   = 0;
-    bool                           any_place  = false;
-    bool                           everywhere = false; // whether all ranks
-                                                       // that hold a node have
-                                                       // all of its places
+    NodalFields<dim>                     &nodes;
+    const bool                            leapfrogs;
+    std::vector<Place>                    places;
+    std::vector<Share>                    shares;
+    std::vector<Node>                     seen;
+    std::vector<LazyArray<std::uint32_t>> seen_as; // per field, by node: 1 +
+                                                   // its place in these, or 0
+    // Of those seen: 1 / m_i; M_i; the velocity that is dealt with; the
+    // momentum that places give in a pass
+    std::vector<double>        inverse_mass, bears;
+    std::vector<Vector>        velocity, momentum;
+    std::vector<Given>         given;   // per field
+    std::vector<std::uint32_t> hanging; // 1 + place in the table, or 0
+    std::vector<Peer>          peers;
+    unsigned int               n_passes     = 0;
+    bool                       any_place    = false;
+    bool                       at_nodes     = false; // finish_adding_nodes()
+    bool                       holds_before = false; // in this step
+    // With leapfrogs, of the step before
+    std::vector<Place> former_places;
+    std::vector<Share> former_shares;
+    std::vector<Node>  former_seen;
   };
 } // namespace limber
 

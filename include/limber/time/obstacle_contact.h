@@ -91,15 +91,11 @@ namespace limber
     using Vector = dealii::Tensor<1, dim>;
     using Place  = typename ContactImpulses<dim>::Place;
 
-    /** What the ledger wants to know of an impulse. */
+    /** What belongs to an impulse. */
     struct Touch
     {
       unsigned int obstacle;
-      Vector       arm;      // from the centre of the obstacle, m
-      Vector       increase; // of velocity without contact, m/s
-      // Velocity against the obstacle, m/s: brought or given back; the new one
-      Vector brought, after;
-      Vector held; // impulse that holds what is brought, kg m/s
+      Vector       arm; // from the centre of the obstacle, m
     };
 
     /** Where obstacles are at the ends of a step. */
@@ -169,23 +165,12 @@ namespace limber
     void
     clear_sums();
     void
-    add_nodes(const std::vector<Way> &ways, double step);
-    void
-    account(const Place  &place,
-            const Touch  &touch,
-            const Vector &relative,
-            const Vector &held,
-            double        share);
-
+                         add_nodes(const std::vector<Way> &ways, double step);
     const RunParts<dim>  parts;
     std::vector<double>  edge; // largest of the points of a body, m
     ContactImpulses<dim> impulses;
-    std::vector<Sums>    sums;            // of an obstacle and a field
-    std::vector<Touch>   touches, former; // of each impulse
-    // Whether what points bring to this step has been held
-    bool holds_before = false;
-    // Whether it is what they have given back in the former one
-    const bool leapfrogs;
+    std::vector<Sums>    sums;    // of an obstacle and a field
+    std::vector<Touch>   touches; // of each impulse
     // From the middles of what is in cells when they asked, m, 0 where nobody
     // has; and where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;
