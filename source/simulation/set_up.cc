@@ -8,7 +8,7 @@
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 #include <limber/simulation/set_up.h>
-#include <limber/time/contact_geometry.h>
+#include <limber/transfer/meeting_bodies.h>
 
 #include <algorithm>
 #include <cmath>

@@ -25,7 +25,9 @@ namespace limber
     , n_fields(n_nodal_fields(parts.problem))
     , laws(n_fields * n_fields)
     , edge(n_fields)
+    , reach(n_fields)
     , impulses(parts.nodes)
+    , stretches(parts.bodies.size())
     , this_rank(
         dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator))
   {
@@ -38,20 +40,36 @@ namespace limber
         if (pair.law == ContactLaw::separate)
           parting.push_back({{std::min(a, b), std::max(a, b)}});
       }
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  Contact<dim>::find_reaches()
+  {
+    std::fill(edge.begin(), edge.end(), 0.);
+    std::fill(reach.begin(), reach.end(), 0.);
     for (const auto &body : parts.bodies)
       {
-        const PointView<dim> points  = body->points.view();
-        double               largest = 0; // kg
-        for (std::size_t p = 0; p < points.size; ++p)
-          largest = std::max(largest, points.mass[p]);
-        double &of_field = edge[body->description.nodal_field];
-        of_field =
-          std::max(of_field,
-                   2 * half_edge_of<dim>(dealii::Utilities::MPI::max(
-                                           largest, parts.grid.communicator) /
-                                         body->stress->density()));
+        const PointView<dim> of_body  = body->points.view();
+        double               largest  = 0; // kg
+        double               furthest = 0; // m
+        for (std::size_t p = 0; p < of_body.size; ++p)
+          largest = std::max(largest, of_body.mass[p]);
+        if (of_body.reach != nullptr && of_body.size > 0)
+          furthest =
+            *std::max_element(of_body.reach, of_body.reach + of_body.size);
+        const unsigned int field = body->description.nodal_field;
+        const double       whole =
+          2 * half_edge_of<dim>(largest / body->stress->density());
+        edge[field]  = std::max(edge[field], whole);
+        reach[field] = std::max({reach[field], furthest, whole / 2});
       }
-    reinit();
+    for (auto *const of_fields : {&edge, &reach})
+      for (double &length : *of_fields)
+        length = dealii::Utilities::MPI::max(length, parts.grid.communicator);
   }
 
 

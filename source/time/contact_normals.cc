@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/node_vector.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
 #include <limber/time/contact_geometry.h>
@@ -29,8 +30,11 @@ namespace limber
   void
   Contact<dim>::find(const double step)
   {
+    points.clear();
+    for (const auto &body : parts.bodies)
+      points.push_back(body->points.view());
     find_nodes();
-    find_neighbours();
+    find_batches();
     find_gradients();
     find_normals();
     find_places(step);
@@ -42,15 +46,17 @@ namespace limber
   void
   Contact<dim>::reinit()
   {
-    touches.clear();
+    find_reaches();
     impulses.reinit();
-    of_pair_at.reinit(parts.grid.vertices.n());
-    marked.clear();
+    touches.clear();
+    first_of.reinit(parts.nodes.table.n());
+    rim_of.reinit(std::size_t(parts.grid.n_cells()) * n_fields);
+    looked_at.clear();
+    forget_rims();
     ranks_of_vertex.clear();
     for (const auto &neighbour : parts.grid.vertices.shared.neighbours)
       for (const std::uint32_t vertex : neighbour.records)
         ranks_of_vertex[vertex].push_back(neighbour.rank);
-    first_of.reinit(parts.nodes.table.n());
     if (!parts.grid.has_levels())
       return;
     hanging_of.reinit(parts.nodes.table.n());
@@ -61,13 +67,13 @@ namespace limber
 
 
 
+  // Nearly always they are those of the step before, and what belongs to them
+  // stays.
   template <int dim>
   void
   Contact<dim>::find_nodes()
   {
-    for (const Touch &touch : touches)
-      first_of[touch.node] = 0;
-    touches.clear();
+    found.clear();
     for (const std::uint32_t node : parts.nodes.active_nodes())
       for (unsigned int a = 0; a + 1 < n_fields; ++a)
         {
@@ -75,63 +81,84 @@ namespace limber
             continue;
           for (unsigned int b = a + 1; b < n_fields; ++b)
             if (parts.nodes.record(b, node)[Layout::mass] > 0)
-              {
-                Touch touch;
-                touch.node = node;
-                touch.a    = a;
-                touch.b    = b;
-                touches.push_back(touch);
-                if (first_of[node] == 0)
-                  first_of[node] = static_cast<std::uint32_t>(touches.size());
-              }
+              found.push_back({node, a, b});
         }
+    if (found == touches)
+      return;
+    for (const Touch &touch : touches)
+      first_of[touch.node] = 0;
+    touches.swap(found);
+    for (std::size_t t = touches.size(); t-- > 0;)
+      first_of[touches[t].node] = static_cast<std::uint32_t>(t + 1);
+    forget_rims();
+  }
+
+
+
+  template <int dim>
+  void
+  Contact<dim>::forget_rims()
+  {
+    for (const std::uint32_t cell : looked_at)
+      rim_of[cell] = 0;
+    looked_at.clear();
+    rims.clear();
+    corners.clear();
   }
 
 
 
   // Batches with a node at which their body may part from another one. Most
-  // points are met by nothing but the look at the nodes of their cell.
+  // points are met by nothing but the look at their cell.
   template <int dim>
   void
-  Contact<dim>::find_neighbours()
+  Contact<dim>::find_batches()
   {
-    neighbours.clear();
-    corners.clear();
+    batches.clear();
+    groups.clear();
     if (touches.empty())
       return;
-    const GridView<dim> grid = parts.nodes.view();
-    with_degree(grid, [&](const auto degree) {
-      for (unsigned int b = 0; b < parts.bodies.size(); ++b)
-        for_each_batch(
-          parts.bodies[b]->points.view(), [&](const CellBatch &batch) {
-            const auto &nodes =
-              CellFunctions<dim, decltype(degree)::value>::nodes_of(grid,
-                                                                    batch.cell);
-            if (!may_touch(nodes))
-              return;
-            const std::size_t first = corners.size();
-            add_corners(b, nodes);
-            if (corners.size() > first)
-              neighbours.push_back({b, batch, first, corners.size()});
-          });
-    });
+    for (unsigned int b = 0; b < parts.bodies.size(); ++b)
+      {
+        const unsigned int         field = field_of(b);
+        const std::size_t          first = batches.size();
+        const std::uint32_t *const of_cell =
+          rim_of.data() + std::size_t(parts.grid.n_cells()) * field;
+        for_each_batch(points[b], [&](const CellBatch &batch) {
+          std::uint32_t rim = of_cell[batch.cell];
+          if (rim == 0)
+            rim = find_rim(field, batch.cell);
+          if (rim > 1)
+            batches.push_back(
+              {batch, b, rims[rim - 2].first, rims[rim - 2].last});
+        });
+        if (batches.size() > first)
+          groups.push_back({b, first, batches.size()});
+      }
   }
 
 
 
-  // One look without a branch per node, which nearly all batches end with.
   template <int dim>
-  template <std::size_t n>
-  bool
-  Contact<dim>::may_touch(const std::array<std::uint32_t, n> &nodes) const
+  std::uint32_t
+  Contact<dim>::find_rim(const unsigned int field, const std::uint32_t cell)
   {
-    std::uint32_t found = 0;
-    for (const std::uint32_t node : nodes)
-      found |= first_of[node / Layout::stride];
-    if (hanging_of.size() > 0)
-      for (const std::uint32_t node : nodes)
-        found |= hanging_of[node / Layout::stride];
-    return found != 0;
+    const auto first = static_cast<std::uint32_t>(corners.size());
+    with_degree(parts.nodes.view(), [&](const auto degree) {
+      add_corners(field,
+                  CellFunctions<dim, decltype(degree)::value>::nodes_of(
+                    parts.nodes.view(), cell));
+    });
+    const std::size_t at   = std::size_t(parts.grid.n_cells()) * field + cell;
+    const auto        last = static_cast<std::uint32_t>(corners.size());
+    looked_at.push_back(static_cast<std::uint32_t>(at));
+    rim_of[at] = 1;
+    if (last > first)
+      {
+        rims.push_back({first, last});
+        rim_of[at] = static_cast<std::uint32_t>(1 + rims.size());
+      }
+    return rim_of[at];
   }
 
 
@@ -139,10 +166,9 @@ namespace limber
   template <int dim>
   template <std::size_t n>
   void
-  Contact<dim>::add_corners(const unsigned int                  body,
+  Contact<dim>::add_corners(const unsigned int                  field,
                             const std::array<std::uint32_t, n> &nodes)
   {
-    const unsigned int field = field_of(body);
     for (unsigned int k = 0; k < n; ++k)
       {
         const std::uint32_t node = nodes[k] / Layout::stride;
@@ -170,7 +196,22 @@ namespace limber
          ++t)
       if ((touches[t].a == field || touches[t].b == field) &&
           law(touches[t].a, touches[t].b).law == ContactLaw::separate)
-        corners.push_back({static_cast<std::uint32_t>(t), k, share});
+        corners.push_back(
+          {static_cast<std::uint32_t>(2 * t + (touches[t].a == field ? 0 : 1)),
+           k,
+           share});
+  }
+
+
+
+  template <int dim>
+  MeetingBatches
+  Contact<dim>::batches_of(const Group &group) const
+  {
+    return {batches.data() + group.first,
+            batches.data() + group.last,
+            corners.data(),
+            1 / parts.bodies[group.body]->stress->density()};
   }
 
 
@@ -226,46 +267,39 @@ namespace limber
   void
   Contact<dim>::find_gradients()
   {
-    const GridView<dim> grid = parts.nodes.view();
-    with_degree(grid, [&](const auto degree) {
-      using Functions = CellFunctions<dim, decltype(degree)::value>;
-      for_each_neighbour([&](const Neighbours     &some,
-                             const PointView<dim> &points,
-                             const double          inverse_density) {
-        Functions                        functions(grid, some.batch.cell);
-        std::array<Vector, Functions::n> of_nodes; // of the cell
-        for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
-          {
-            const double volume = points.mass[p] * inverse_density;
-            functions.go_to(points, p);
-            for (int k = 0; k < Functions::n; ++k)
-              for (int d = 0; d < dim; ++d)
-                of_nodes[k][d] += volume * functions.slope(k, d);
-          }
-        for (std::size_t c = some.first; c < some.last; ++c)
-          {
-            Touch &touch = touches[corners[c].touch];
-            (field_of(some.body) == touch.a ? touch.gradient_a :
-                                              touch.gradient_b) +=
-              corners[c].share * of_nodes[corners[c].k];
-          }
-      });
-    });
-    share(gradients, [this](const std::size_t t) {
+    volume_gradients.assign(touches.size() * 2 * dim, 0.);
+    for (const Group &group : groups)
+      add_volume_gradients<dim>(points[group.body],
+                                parts.nodes.view(),
+                                batches_of(group),
+                                volume_gradients.data());
+    share(gradients_of_ranks, [this](const std::size_t t) {
       std::array<double *, 2 * dim> slots;
-      for (int d = 0; d < dim; ++d)
-        {
-          slots[d]       = &touches[t].gradient_a[d];
-          slots[dim + d] = &touches[t].gradient_b[d];
-        }
+      for (int d = 0; d < 2 * dim; ++d)
+        slots[d] = &volume_gradients[t * 2 * dim + d];
       return slots;
     });
     // As if the material went on behind a side that holds it.
-    for (Touch &touch : touches)
-      for (unsigned int side = 0; side < 2 * dim; ++side)
-        if ((parts.nodes.table.sides[touch.node] >> side & 1) &&
-            parts.problem.sides[side].held != HeldComponents::none)
-          touch.gradient_a[side / 2] = touch.gradient_b[side / 2] = 0;
+    for (std::size_t t = 0; t < touches.size(); ++t)
+      if (const auto sides_of_box = parts.nodes.table.sides[touches[t].node])
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          if ((sides_of_box >> side & 1) &&
+              parts.problem.sides[side].held != HeldComponents::none)
+            for (unsigned int body = 0; body < 2; ++body)
+              volume_gradients[(2 * t + body) * dim + side / 2] = 0;
+  }
+
+
+
+  // Of g_a, -g_b and the sum of their directions.
+  template <int dim>
+  std::array<dealii::Tensor<1, dim>, n_separations>
+  Contact<dim>::directions_at(const std::size_t touch) const
+  {
+    const double *const gradients = &volume_gradients[touch * 2 * dim];
+    const Vector        of_a      = unit(vector_in<dim>(gradients)),
+                 of_b             = unit(vector_in<dim>(gradients + dim));
+    return {{of_a, -1. * of_b, unit(of_a - of_b)}};
   }
 
 
@@ -278,74 +312,53 @@ namespace limber
   void
   Contact<dim>::find_normals()
   {
-    separations.assign(touches.size(), {});
+    directions.resize(touches.size() * n_separations * dim);
     for (std::size_t t = 0; t < touches.size(); ++t)
       {
-        const Vector of_a        = unit(touches[t].gradient_a),
-                     of_b        = unit(touches[t].gradient_b);
-        separations[t].direction = {{of_a, -1. * of_b, unit(of_a - of_b)}};
+        double *slot = &directions[t * n_separations * dim];
+        for (const Vector &direction : directions_at(t))
+          {
+            store_vector<dim>(direction, slot);
+            slot += dim;
+          }
       }
-    for_each_neighbour([&](const Neighbours     &some,
-                           const PointView<dim> &points,
-                           const double          inverse_density) {
-      half_edges.clear();
-      for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
-        half_edges.push_back(
-          half_edge_of<dim>(points.mass[p] * inverse_density));
-      for (std::size_t c = some.first; c < some.last; ++c)
-        extend(some, points, corners[c]);
-    });
-    share(extents, [this](const std::size_t t) {
-      std::array<double *, 6> slots;
-      for (unsigned int k = 0; k < 3; ++k)
+    extents.clear(2 * touches.size());
+    for (const Group &group : groups)
+      extents.add(points[group.body], batches_of(group), directions.data());
+    extents.find_largest();
+    const auto furthest = [this](const std::size_t slot,
+                                 const int         k) -> double & {
+      return extents.numbers[slot * Extents<dim>::n + k * Extents<dim>::lanes];
+    };
+    share(extents_of_ranks, [&](const std::size_t t) {
+      std::array<double *, 2 * n_separations> slots;
+      for (int k = 0; k < n_separations; ++k)
         {
-          slots[k]     = &separations[t].furthest_a[k];
-          slots[3 + k] = &separations[t].furthest_b[k];
+          slots[k]                 = &furthest(2 * t, k);
+          slots[n_separations + k] = &furthest(2 * t + 1, k);
         }
       return slots;
     });
+    faces.assign(touches.size(), {{}, {{-1e300, -1e300}}});
+    points_touch.assign(touches.size(), 0);
     for (std::size_t t = 0; t < touches.size(); ++t)
       {
-        const Separation &separation = separations[t];
-        double            largest    = -1e300;
-        for (unsigned int k = 0; k < separation.direction.size(); ++k)
-          if (const double distance =
-                -separation.furthest_b[k] - separation.furthest_a[k];
-              distance > largest && separation.direction[k] != Vector())
-            {
-              largest           = distance;
-              touches[t].normal = separation.direction[k];
-            }
-        touches[t].points_touch = largest <= 0;
+        double largest = -1e300;
+        for (int k = 0; k < n_separations; ++k)
+          {
+            const Vector direction =
+              vector_in<dim>(&directions[(t * n_separations + k) * dim]);
+            const double of_a = furthest(2 * t, k),
+                         of_b = furthest(2 * t + 1, k);
+            if (-of_b - of_a > largest && direction != Vector())
+              {
+                largest = -of_b - of_a;
+                store_vector<dim>(direction, faces[t].normal.data());
+                faces[t].furthest = {{of_a, of_b}};
+              }
+          }
+        points_touch[t] = largest <= 0;
       }
-  }
-
-
-
-  // How far the points of a batch go along the directions of a touch.
-  template <int dim>
-  void
-  Contact<dim>::extend(const Neighbours     &some,
-                       const PointView<dim> &points,
-                       const Corner         &corner)
-  {
-    Separation &separation = separations[corner.touch];
-    const bool  is_a       = field_of(some.body) == touches[corner.touch].a;
-    auto       &furthest = is_a ? separation.furthest_a : separation.furthest_b;
-    auto        extent   = furthest;
-    auto        direction = separation.direction;
-    if (!is_a)
-      for (Vector &n : direction)
-        n *= -1;
-    for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
-      for (unsigned int k = 0; k < direction.size(); ++k)
-        {
-          double along = half_edges[p - some.batch.begin];
-          for (int d = 0; d < dim; ++d)
-            along += points.place[d][p] * direction[k][d];
-          extent[k] = std::max(extent[k], along);
-        }
-    furthest = extent;
   }
 
 

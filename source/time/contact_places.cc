@@ -15,33 +15,105 @@ namespace limber
 {
   namespace
   {
-    /** Bins of equal edges over all space, numbered along rows. */
-    template <int dim>
-    struct Bins
-    {
-      double inverse_edge;
-
-      std::array<std::int64_t, dim>
-      at(const dealii::Point<dim> &place) const
-      {
-        std::array<std::int64_t, dim> result;
-        for (int d = 0; d < dim; ++d)
-          result[d] = std::int64_t(std::floor(place[d] * inverse_edge));
-        return result;
-      }
-
-      static std::uint64_t
-      key(const std::array<std::int64_t, dim> &bin)
-      {
-        constexpr int bits   = 64 / dim;
-        std::uint64_t result = 0;
-        for (int d = dim - 1; d >= 0; --d)
-          result = (result << bits) +
-                   std::uint64_t(bin[d] + (std::int64_t(1) << (bits - 1)));
-        return result;
-      }
-    };
+    // Steps after which one looks how much bodies are stretched: it decides
+    // what points are looked at, with room for half as much again.
+    constexpr unsigned int steps_of_a_stretch = 32;
   } // namespace
+
+
+
+  template <int dim>
+  typename Contact<dim>::Bins::Bin
+  Contact<dim>::Bins::at(const dealii::Point<dim> &place) const
+  {
+    Bin result;
+    for (int d = 0; d < dim; ++d)
+      result[d] = std::int64_t(std::floor(place[d] * inverse_edge));
+    return result;
+  }
+
+
+
+  template <int dim>
+  std::uint64_t
+  Contact<dim>::Bins::key(const Bin &bin)
+  {
+    constexpr int bits   = 64 / dim;
+    std::uint64_t result = 0;
+    for (int d = dim - 1; d >= 0; --d)
+      result = (result << bits) +
+               std::uint64_t(bin[d] + (std::int64_t(1) << (bits - 1)));
+    return result;
+  }
+
+
+
+  // That of the key, or the free one where it would be. (Fibonacci hashing;
+  // Knuth, The Art of Computer Programming 3, 6.4)
+  template <int dim>
+  std::size_t
+  Contact<dim>::Bins::entry(const std::uint64_t key) const
+  {
+    const std::size_t mask = first.size() - 1;
+    std::size_t       at   = (key * 0x9e3779b97f4a7c15u >> 32) & mask;
+    while (first[at] != none && keys[at] != key)
+      at = (at + 1) & mask;
+    return at;
+  }
+
+
+
+  template <int dim>
+  void
+  Contact<dim>::Bins::fill(const std::vector<Candidate> &candidates,
+                           const double                  edge)
+  {
+    inverse_edge     = 1 / edge;
+    knows_last       = false;
+    std::size_t size = 16;
+    while (size < 2 * candidates.size())
+      size *= 2;
+    first.assign(size, none);
+    keys.resize(size);
+    next.resize(candidates.size());
+    for (std::size_t k = candidates.size(); k-- > 0;)
+      {
+        const std::uint64_t of_bin = key(at(candidates[k].place));
+        const std::size_t   slot   = entry(of_bin);
+        keys[slot]                 = of_bin;
+        next[k]                    = first[slot];
+        first[slot]                = static_cast<std::uint32_t>(k);
+      }
+  }
+
+
+
+  // Points come in the order of cells: many ask for the same bin.
+  template <int dim>
+  const std::vector<std::uint32_t> &
+  Contact<dim>::Bins::around(const dealii::Point<dim> &place)
+  {
+    const Bin middle = at(place);
+    if (knows_last && middle == last)
+      return found;
+    last       = middle;
+    knows_last = true;
+    found.clear();
+    constexpr int n = dim == 2 ? 9 : 27;
+    for (int k = 0; k < n; ++k)
+      {
+        Bin bin = middle;
+        bin[0] += k % 3 - 1;
+        bin[1] += k / 3 % 3 - 1;
+        if (dim == 3)
+          bin[dim - 1] += k / 9 - 1;
+        for (std::uint32_t candidate = first[entry(key(bin))];
+             candidate != none;
+             candidate = next[candidate])
+          found.push_back(candidate);
+      }
+    return found;
+  }
 
 
 
@@ -56,10 +128,13 @@ namespace limber
         add_nodes();
       else
         {
-          std::vector<Sides> sides(parting.size());
-          for (std::size_t k = 0; k < parting.size(); ++k)
-            gather<n>(parting[k], sides[k]);
-          tell_candidates(sides);
+          sides.resize(parting.size());
+          for (Sides &both : sides)
+            for (auto &side : both)
+              side.clear();
+          for (const Group &group : groups)
+            gather<n>(group);
+          tell_candidates();
           for (std::size_t k = 0; k < parting.size(); ++k)
             add_points<n>(parting[k], sides[k], step);
           impulses.finish_adding(exchange_parts<n>());
@@ -74,16 +149,17 @@ namespace limber
   void
   Contact<dim>::add_nodes()
   {
-    for (const Touch &touch : touches)
-      if (law(touch.a, touch.b).law == ContactLaw::separate &&
-          touch.points_touch)
+    for (std::size_t t = 0; t < touches.size(); ++t)
+      if (const Touch &touch = touches[t];
+          points_touch[t] && law(touch.a, touch.b).law == ContactLaw::separate)
         {
           const double a =
                          parts.nodes.record(touch.a, touch.node)[Layout::mass],
                        b =
                          parts.nodes.record(touch.b, touch.node)[Layout::mass];
-          auto &place    = impulses.add_place();
-          place.normal   = -touch.normal;
+          auto &place = impulses.add_place();
+          for (int d = 0; d < dim; ++d)
+            place.normal[d] = -faces[t].normal[d];
           place.friction = law(touch.a, touch.b).friction;
           place.mass     = a * b / (a + b);
           place.is_own   = parts.nodes.owns(touch.node);
@@ -98,7 +174,7 @@ namespace limber
   // What is near cells of another rank, it has to know.
   template <int dim>
   void
-  Contact<dim>::tell_candidates(std::vector<Sides> &sides)
+  Contact<dim>::tell_candidates()
   {
     if (ranks_of_vertex.empty())
       return;
@@ -107,10 +183,10 @@ namespace limber
     std::vector<unsigned int>                   ranks;
     for (std::size_t k = 0; k < sides.size(); ++k)
       for (unsigned int s = 0; s < 2; ++s)
-        for (const Candidate &candidate : sides[k][s].all)
+        for (const Candidate &candidate : sides[k][s])
           {
             const std::uint32_t cell =
-              parts.bodies[candidate.body]->points.view().cell[candidate.point];
+              points[candidate.body].cell[candidate.point];
             ranks.clear();
             for (const std::uint32_t node : grid.cells[cell].node)
               if (const auto found =
@@ -157,7 +233,7 @@ namespace limber
           candidate.mass  = *number++;
           candidate.body  = static_cast<std::uint32_t>(*number++);
           candidate.point = static_cast<std::uint32_t>(*number++);
-          sides[side / 2][side % 2].all.push_back(candidate);
+          sides[side / 2][side % 2].push_back(candidate);
         }
   }
 
@@ -204,6 +280,7 @@ namespace limber
               const double weight = *number++;
               add_part<degree>(candidate, arm, weight);
             }
+          finish_part<degree>();
         }
     for (auto &[rank, peer] : peers)
       {
@@ -219,28 +296,43 @@ namespace limber
   template <int degree>
   void
   Contact<dim>::add_points(const std::array<unsigned int, 2> &pair,
-                           Sides                             &sides,
+                           const Sides                       &both,
                            const double                       step)
   {
     double widest = 0;
-    for (Side &side : sides)
-      for (const Candidate &candidate : side.all)
+    for (const auto &side : both)
+      for (const Candidate &candidate : side)
         widest = std::max({widest, candidate.reach, candidate.width});
-    if (widest == 0)
-      return;
-    const double    spacing = 4 * widest;
-    const Bins<dim> bins{1 / spacing};
-    for (Side &side : sides)
-      {
-        for (std::uint32_t k = 0; k < side.all.size(); ++k)
-          side.by_bin.emplace_back(Bins<dim>::key(bins.at(side.all[k].place)),
-                                   k);
-        std::sort(side.by_bin.begin(), side.by_bin.end());
-      }
     // the smaller points meet all that the larger ones do
     const unsigned int acting = edge[pair[1]] < edge[pair[0]] ? 1 : 0;
+    if (both[acting].empty() || both[1 - acting].empty())
+      return;
+    const double spacing = 4 * widest;
+    bins.fill(both[1 - acting], spacing);
     add_places<degree>(
-      sides[acting], sides[1 - acting], spacing, law(pair[0], pair[1]), step);
+      both[acting], both[1 - acting], spacing, law(pair[0], pair[1]), step);
+  }
+
+
+
+  // The largest across a surface of the points of a body that meet another one.
+  template <int dim>
+  double
+  Contact<dim>::stretch_of(const Group &group)
+  {
+    Stretch &stretch = stretches[group.body];
+    if (stretch.age++ % steps_of_a_stretch == 0)
+      {
+        stretch.largest = 1;
+        for (std::size_t k = group.first; k < group.last; ++k)
+          stretch.largest =
+            std::max(stretch.largest,
+                     parts.bodies[group.body]->stress->stretch_along(
+                       points[group.body],
+                       batches[k].batch.begin,
+                       faces[corners[batches[k].first].slot / 2].normal));
+      }
+    return stretch.largest;
   }
 
 
@@ -248,83 +340,92 @@ namespace limber
   template <int dim>
   template <int degree>
   void
-  Contact<dim>::gather(const std::array<unsigned int, 2> &pair, Sides &sides)
+  Contact<dim>::gather(const Group &group)
   {
-    const GridView<dim> grid = parts.nodes.view();
-    for (const std::uint32_t vertex : marked)
-      of_pair_at[vertex] = 0;
-    marked.clear();
-    for (const Neighbours &some : neighbours)
+    const GridView<dim>      grid    = parts.nodes.view();
+    const PointView<dim>    &of_body = points[group.body];
+    const StressUpdate<dim> &stress  = *parts.bodies[group.body]->stress;
+    const unsigned int       field   = field_of(group.body);
+    const double             stretch = stretch_of(group);
+    const double             inverse_density = 1 / stress.density();
+    double                   largest_reach   = 0; // of those that may be met
+    for (const auto &pair : parting)
       for (unsigned int s = 0; s < 2; ++s)
-        if (field_of(some.body) == pair[s])
-          for (const std::uint32_t node : grid.cells[some.batch.cell].node)
-            {
-              of_pair_at[node / Layout::stride] |= 1 + s;
-              marked.push_back(node / Layout::stride);
-            }
-    for_each_neighbour([&](const Neighbours     &some,
-                           const PointView<dim> &points,
-                           const double          inverse_density) {
-      const unsigned int field = field_of(some.body);
-      if (field != pair[0] && field != pair[1])
-        return;
-      const bool is_a    = field == pair[0];
-      bool       is_near = false;
-      for (const std::uint32_t node : grid.cells[some.batch.cell].node)
-        is_near |= (of_pair_at[node / Layout::stride] & (is_a ? 2 : 1)) != 0 ||
-                   (!ranks_of_vertex.empty() &&
-                    ranks_of_vertex.count(node / Layout::stride) > 0);
-      if (!is_near)
-        return;
-      const StressUpdate<dim>   &stress = *parts.bodies[some.body]->stress;
-      CellFunctions<dim, degree> functions(grid, some.batch.cell);
-      for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
-        {
-          functions.go_to(points, p);
-          Vector normal;
-          for (std::size_t c = some.first; c < some.last; ++c)
-            {
-              const Touch &touch = touches[corners[c].touch];
-              if (touch.a == pair[0] && touch.b == pair[1])
-                normal += corners[c].share * functions.value(corners[c].k) *
-                          touch.normal;
-            }
-          const double length = normal.norm();
-          if (!(length > 0))
-            continue;
-          Candidate candidate;
-          candidate.normal = normal / (is_a ? length : -length);
-          for (int d = 0; d < dim; ++d)
-            {
-              candidate.place[d]    = points.position[d][p];
-              candidate.velocity[d] = points.velocity[d][p];
-            }
-          candidate.mass = points.mass[p];
-          const double half_edge =
-            half_edge_of<dim>(points.mass[p] * inverse_density);
-          std::array<double, dim> across, along;
-          for (int d = 0; d < dim; ++d)
-            across[d] = candidate.normal[d];
-          along.fill(0);
-          if constexpr (dim == 2)
-            along = {{-across[1], across[0]}};
-          candidate.reach =
-            (points.reach != nullptr ? points.reach[p] : half_edge) *
-            stress.stretch_along(points, p, across);
-          candidate.width = half_edge;
-          if (dim == 2)
-            candidate.width *= stress.stretch_along(points, p, along);
-          candidate.body  = some.body;
-          candidate.point = static_cast<std::uint32_t>(p);
-          candidate.rank  = this_rank;
-          sides[is_a ? 0 : 1].all.push_back(candidate);
-        }
-    });
+        if (pair[s] == field)
+          largest_reach = std::max(largest_reach, reach[pair[1 - s]]);
+    for (std::size_t b = group.first; b < group.last; ++b)
+      {
+        const MeetingBatch &some = batches[b];
+        near.clear();
+        list_near_points<dim>(of_body,
+                              some,
+                              corners.data(),
+                              inverse_density,
+                              faces.data(),
+                              stretch,
+                              largest_reach,
+                              near);
+        CellFunctions<dim, degree> functions(grid, some.batch.cell);
+        for (const std::uint32_t p : near)
+          {
+            functions.go_to(of_body, p);
+            for (std::size_t k = 0; k < parting.size(); ++k)
+              {
+                const auto &pair = parting[k];
+                if (field != pair[0] && field != pair[1])
+                  continue;
+                const bool is_a = field == pair[0];
+                Vector     normal;
+                for (std::uint32_t c = some.first; c < some.last; ++c)
+                  {
+                    const MeetingCorner &corner = corners[c];
+                    const Touch         &touch  = touches[corner.slot / 2];
+                    if (touch.a != pair[0] || touch.b != pair[1])
+                      continue;
+                    const double weight =
+                      corner.share * functions.value(corner.k);
+                    const auto &of_node = faces[corner.slot / 2].normal;
+                    for (int d = 0; d < dim; ++d)
+                      normal[d] += weight * of_node[d];
+                  }
+                const double length = normal.norm();
+                if (!(length > 0))
+                  continue;
+                Candidate candidate;
+                candidate.normal = normal / (is_a ? length : -length);
+                for (int d = 0; d < dim; ++d)
+                  {
+                    candidate.place[d]    = of_body.position[d][p];
+                    candidate.velocity[d] = of_body.velocity[d][p];
+                  }
+                candidate.mass = of_body.mass[p];
+                const double half_edge =
+                  half_edge_of<dim>(candidate.mass * inverse_density);
+                std::array<double, dim> across, along;
+                for (int d = 0; d < dim; ++d)
+                  across[d] = candidate.normal[d];
+                along.fill(0);
+                if constexpr (dim == 2)
+                  along = {{-across[1], across[0]}};
+                candidate.reach =
+                  (of_body.reach != nullptr ? of_body.reach[p] : half_edge) *
+                  stress.stretch_along(of_body, p, across);
+                candidate.width = half_edge;
+                if (dim == 2)
+                  candidate.width *= stress.stretch_along(of_body, p, along);
+                candidate.body  = group.body;
+                candidate.point = p;
+                candidate.rank  = this_rank;
+                sides[k][is_a ? 0 : 1].push_back(candidate);
+              }
+          }
+      }
   }
 
 
 
-  // What side a has at its points, of both: weight * (v + grad v arm).
+  // What side a has at its points, of both: weight * (v + grad v arm). Those of
+  // one cell see the same nodes.
   template <int dim>
   template <int degree>
   void
@@ -332,19 +433,24 @@ namespace limber
                          const Vector    &arm,
                          const double     weight)
   {
-    const PointView<dim> points = parts.bodies[candidate.body]->points.view();
-    CellFunctions<dim, degree> functions(parts.nodes.view(),
-                                         points.cell[candidate.point]);
-    functions.go_to(points, candidate.point);
-    const unsigned int field = field_of(candidate.body);
+    const PointView<dim>      &of_body = points[candidate.body];
+    const std::uint32_t        cell    = of_body.cell[candidate.point];
+    const unsigned int         field   = field_of(candidate.body);
+    CellFunctions<dim, degree> functions(parts.nodes.view(), cell);
+    if (cell != part.cell || field != part.field)
+      {
+        finish_part<degree>();
+        part.cell  = cell;
+        part.field = field;
+        part.shares.assign(functions.n, 0.);
+      }
+    functions.go_to(of_body, candidate.point);
     for (int k = 0; k < functions.n; ++k)
       {
         double slope = 0;
         for (int d = 0; d < dim; ++d)
           slope += arm[d] * functions.slope(k, d);
-        impulses.add_share(field,
-                           functions.node(k),
-                           weight * (functions.value(k) + slope));
+        part.shares[k] += weight * (functions.value(k) + slope);
       }
   }
 
@@ -353,55 +459,48 @@ namespace limber
   template <int dim>
   template <int degree>
   void
-  Contact<dim>::add_places(const Side  &acting,
-                           const Side  &other,
-                           const double spacing,
-                           const Law   &law,
-                           const double step)
+  Contact<dim>::finish_part()
   {
-    struct Facing
-    {
-      std::uint32_t candidate;
-      double        gap, weight;
-      Vector        along;
-    };
-    std::vector<Facing> facing;
-    const Bins<dim>     bins{1 / spacing};
-    constexpr int       n_rows = dim == 2 ? 3 : 9;
-    for (const Candidate &p : acting.all)
+    if (part.cell == Part::no_cell)
+      return;
+    const auto &nodes =
+      CellFunctions<dim, degree>::nodes_of(parts.nodes.view(), part.cell);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      impulses.add_share(part.field, nodes[k] / Layout::stride, part.shares[k]);
+    part.cell = Part::no_cell;
+  }
+
+
+
+  template <int dim>
+  template <int degree>
+  void
+  Contact<dim>::add_places(const std::vector<Candidate> &acting,
+                           const std::vector<Candidate> &other,
+                           const double                  spacing,
+                           const Law                    &law,
+                           const double                  step)
+  {
+    for (const Candidate &p : acting)
       {
         if (p.rank != this_rank)
           continue;
         facing.clear();
-        double     least_gap = 1e300;
-        const auto bin       = bins.at(p.place);
-        for (int row = 0; row < n_rows; ++row)
+        double least_gap = 1e300;
+        for (const std::uint32_t k : bins.around(p.place))
           {
-            auto first = bin;
-            first[0] -= 1;
-            first[1] += row % 3 - 1;
-            if (dim == 3)
-              first[dim - 1] += row / 3 - 1;
-            const std::uint64_t begin = Bins<dim>::key(first);
-            for (auto k = std::lower_bound(other.by_bin.begin(),
-                                           other.by_bin.end(),
-                                           std::make_pair(begin, 0u));
-                 k != other.by_bin.end() && k->first <= begin + 2;
-                 ++k)
-              {
-                const Candidate &q        = other.all[k->second];
-                const Vector     distance = q.place - p.place;
-                const double     across   = distance * p.normal;
-                if (across <= 0)
-                  continue;
-                const Vector along   = distance - across * p.normal;
-                const double overlap = 1 - along.norm() / (p.width + q.width);
-                if (overlap <= 0)
-                  continue;
-                const double gap = across - p.reach - q.reach;
-                least_gap        = std::min(least_gap, gap);
-                facing.push_back({k->second, gap, overlap, along});
-              }
+            const Candidate &q        = other[k];
+            const Vector     distance = q.place - p.place;
+            const double     across   = distance * p.normal;
+            if (across <= 0)
+              continue;
+            const Vector along   = distance - across * p.normal;
+            const double overlap = 1 - along.norm() / (p.width + q.width);
+            if (overlap <= 0)
+              continue;
+            const double gap = across - p.reach - q.reach;
+            least_gap        = std::min(least_gap, gap);
+            facing.push_back({k, gap, overlap, along});
           }
         if (least_gap > spacing)
           continue;
@@ -410,14 +509,12 @@ namespace limber
         for (Facing &q : facing)
           {
             q.weight *=
-              std::max(0.,
-                       1 - (q.gap - least_gap) / other.all[q.candidate].reach);
+              std::max(0., 1 - (q.gap - least_gap) / other[q.candidate].reach);
             sum += q.weight;
             gap += q.weight * q.gap;
             aside += q.weight * q.along;
-            approach +=
-              q.weight *
-              ((p.velocity - other.all[q.candidate].velocity) * p.normal);
+            approach += q.weight *
+                        ((p.velocity - other[q.candidate].velocity) * p.normal);
           }
         if (sum < 0.25)
           continue;
@@ -436,7 +533,7 @@ namespace limber
         add_part<degree>(p, p.reach * p.normal, 1);
         for (const Facing &q : facing)
           {
-            const Candidate &other_point = other.all[q.candidate];
+            const Candidate &other_point = other[q.candidate];
             if (!(q.weight > 0))
               continue;
             const Vector arm    = -other_point.reach * p.normal - aside;
@@ -446,6 +543,7 @@ namespace limber
             else
               ask_for_part(place_number, other_point, arm, weight);
           }
+        finish_part<degree>();
       }
   }
 

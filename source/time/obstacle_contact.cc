@@ -3,6 +3,7 @@
 #include <limber/interpolation/point_support.h>
 #include <limber/time/contact_geometry.h>
 #include <limber/time/obstacle_contact.h>
+#include <limber/transfer/meeting_bodies.h>
 
 #include <algorithm>
 #include <cmath>

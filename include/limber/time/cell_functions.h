@@ -27,18 +27,6 @@ namespace limber
     {
       if constexpr (degree > 1)
         spline = &spline_cell(grid, cell);
-      for (int d = 0; d < dim; ++d)
-        {
-          std::array<double, along> natural;
-          if constexpr (degree == 1)
-            natural = {{0, 1}};
-          else
-            natural =
-              SplineFactors<degree>::places(spline->lower[d], spline->upper[d]);
-          for (int i = 0; i < along; ++i)
-            places[d][i] =
-              this->cell.origin[d] + natural[i] / this->cell.inverse_edge[d];
-        }
     }
 
     /**
@@ -59,13 +47,6 @@ namespace limber
     node(const int k) const
     {
       return nodes[k] / NodeLayout<dim>::stride;
-    }
-
-    /** Where node k is along d, m. */
-    double
-    place(const int k, const int d) const
-    {
-      return places[d][digit(k, d)];
     }
 
     /** Go to the place of a point in the cell. */
@@ -140,7 +121,7 @@ namespace limber
     const CellGeometry<dim>            &cell;
     const std::array<std::uint32_t, n> &nodes;
     const Spline                       *spline = nullptr;
-    Factors                             places, values, slopes;
+    Factors                             values, slopes;
   };
 
 

@@ -2,9 +2,9 @@
 #ifndef limber_time_contact_h
 #define limber_time_contact_h
 
-#include <limber/points/cell_batch.h>
 #include <limber/time/contact_impulses.h>
 #include <limber/time/integrator.h>
+#include <limber/transfer/meeting_bodies.h>
 
 #include <map>
 #include <unordered_map>
@@ -97,10 +97,13 @@ namespace limber
     struct Touch
     {
       std::uint32_t node;
-      unsigned int  a, b;                   // fields
-      Vector        gradient_a, gradient_b; // of volume, m^(dim-1)
-      Vector        normal;
-      bool          points_touch = false;
+      unsigned int  a, b; // fields
+
+      bool
+      operator==(const Touch &other) const
+      {
+        return node == other.node && a == other.a && b == other.b;
+      }
     };
 
     /** A point near another body. */
@@ -116,14 +119,39 @@ namespace limber
       unsigned int       rank;
     };
 
-    /** Those of one side of a pair, found by place. */
-    struct Side
-    {
-      std::vector<Candidate>                               all;
-      std::vector<std::pair<std::uint64_t, std::uint32_t>> by_bin;
-    };
+    /** Those of the two sides of a pair. */
+    using Sides = std::array<std::vector<Candidate>, 2>;
 
-    using Sides = std::array<Side, 2>;
+    /** Candidates by place, in a table of bins of equal edges. */
+    struct Bins
+    {
+      void
+      fill(const std::vector<Candidate> &candidates, double edge);
+
+      /** List those in the bin of a place and next to it. */
+      const std::vector<std::uint32_t> &
+      around(const dealii::Point<dim> &place);
+
+    private:
+      static constexpr std::uint32_t none = std::uint32_t(-1);
+
+      using Bin = std::array<std::int64_t, dim>;
+
+      Bin
+      at(const dealii::Point<dim> &place) const;
+      static std::uint64_t
+      key(const Bin &bin);
+      std::size_t
+      entry(std::uint64_t key) const;
+
+      double                     inverse_edge = 0;
+      std::vector<std::uint64_t> keys;  // of the entries in use
+      std::vector<std::uint32_t> first; // of each entry, or none
+      std::vector<std::uint32_t> next;  // of each candidate
+      Bin                        last{};
+      bool                       knows_last = false;
+      std::vector<std::uint32_t> found; // around the last one
+    };
 
     /** What places of this rank have of points of another one. */
     struct PartsElsewhere
@@ -131,15 +159,6 @@ namespace limber
       std::vector<std::uint32_t> places;
       std::vector<double>        numbers;     // see ask_for_part()
       std::size_t                n_parts = 0; // where their number stands
-    };
-
-    /** How far apart two bodies are at a node along some directions, m. */
-    struct Separation
-    {
-      std::array<Vector, 3> direction;
-      // How far a goes along it, and b against it
-      std::array<double, 3> furthest_a{{-1e300, -1e300, -1e300}};
-      std::array<double, 3> furthest_b{{-1e300, -1e300, -1e300}};
     };
 
     /**
@@ -168,23 +187,24 @@ namespace limber
       double     friction = 0;
     };
 
-    /**
-     * A node of a cell at which two fields touch, or one that hangs on such a
-     * node and has a share of its function.
-     */
-    struct Corner
+    /** Corners of a cell, [first, last), for the bodies of a field. */
+    struct Rim
     {
-      std::uint32_t touch;
-      unsigned int  k; // its number in the cell
-      double        share = 1;
+      std::uint32_t first, last;
     };
 
-    /** Points of a body in a cell with such corners: [first, last). */
-    struct Neighbours
+    /** Those of a body in cells with corners: [first, last). */
+    struct Group
     {
       unsigned int body;
-      CellBatch    batch;
       std::size_t  first, last;
+    };
+
+    /** How much longer than without stress the points of a body are. */
+    struct Stretch
+    {
+      double       largest = 1; // across its surface
+      unsigned int age     = 0; // steps since it has been looked at
     };
 
     const Law &
@@ -200,24 +220,22 @@ namespace limber
     }
 
     void
+    find_reaches();
+    void
     find_nodes();
     void
-    find_neighbours();
-    template <std::size_t n>
-    bool
-    may_touch(const std::array<std::uint32_t, n> &nodes) const;
+    forget_rims();
+    void
+    find_batches();
+    std::uint32_t
+    find_rim(unsigned int field, std::uint32_t cell);
     template <std::size_t n>
     void
-    add_corners(unsigned int body, const std::array<std::uint32_t, n> &nodes);
+    add_corners(unsigned int field, const std::array<std::uint32_t, n> &nodes);
     void
     add_corner(unsigned int field, std::uint32_t node, unsigned int k, double);
-    void
-    extend(const Neighbours     &some,
-           const PointView<dim> &points,
-           const Corner &);
-    template <class Work>
-    void
-    for_each_neighbour(const Work &work);
+    MeetingBatches
+    batches_of(const Group &group) const;
     template <class SlotsOf>
     void
     share(SharedSlots &slots, const SlotsOf &slots_of);
@@ -225,6 +243,8 @@ namespace limber
     find_gradients();
     void
     find_normals();
+    std::array<Vector, n_separations>
+    directions_at(std::size_t touch) const;
 
     void
     find_places(double step);
@@ -232,24 +252,29 @@ namespace limber
     add_nodes();
     template <int degree>
     void
-    gather(const std::array<unsigned int, 2> &pair, Sides &sides);
+    gather(const Group &group);
+    double
+    stretch_of(const Group &group);
     void
-    tell_candidates(std::vector<Sides> &sides);
+    tell_candidates();
     template <int degree>
     void
     add_points(const std::array<unsigned int, 2> &pair,
-               Sides                             &sides,
+               const Sides                       &both,
                double                             step);
     template <int degree>
     void
-    add_places(const Side &acting,
-               const Side &other,
-               double      spacing,
-               const Law  &law,
-               double      step);
+    add_places(const std::vector<Candidate> &acting,
+               const std::vector<Candidate> &other,
+               double                        spacing,
+               const Law                    &law,
+               double                        step);
     template <int degree>
     void
     add_part(const Candidate &candidate, const Vector &arm, double weight);
+    template <int degree>
+    void
+    finish_part();
     void
     ask_for_part(std::uint32_t    place_number,
                  const Candidate &candidate,
@@ -261,50 +286,65 @@ namespace limber
     void
     join(unsigned int slot);
 
+    /** A point of the other body that one faces. */
+    struct Facing
+    {
+      std::uint32_t candidate;
+      double        gap, weight;
+      Vector        along;
+    };
+
+    /** What points of one cell have of a place, before its nodes get it. */
+    struct Part
+    {
+      static constexpr std::uint32_t no_cell = invalid_cell;
+
+      std::uint32_t       cell = no_cell;
+      unsigned int        field;
+      std::vector<double> shares; // of the nodes of the cell
+    };
+
     const RunParts<dim> parts;
     const unsigned int  n_fields;
     std::vector<Law>    laws;
-    std::vector<double> edge; // of the largest point of a field, m
+    std::vector<double> edge;  // of the largest point of a field, m
+    std::vector<double> reach; // the furthest of a point of a field, m
     // Fields a < b that may part, in the same order on all ranks
     std::vector<std::array<unsigned int, 2>> parting;
+    std::vector<PointView<dim>>              points; // of the bodies
     std::vector<Touch>       touches;  // those of a node side by side
+    std::vector<Touch>       found;    // those of this step
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0
     // By node: 1 + its number among those that hang, or 0; empty if none may
     LazyArray<std::uint32_t> hanging_of;
-    std::vector<Neighbours>  neighbours;
-    std::vector<Corner>      corners;     // of the neighbours
-    std::vector<Separation>  separations; // of the touches
-    std::vector<double>      half_edges;  // m, of the points of a batch
-    SharedSlots              gradients{2 * dim, false}, extents{6, true};
-    ContactImpulses<dim>     impulses;
-    const unsigned int       this_rank;
+    // By field and cell: 2 + number of the rim, 1 without corners, 0 where
+    // nobody has looked since the touches were others
+    LazyArray<std::uint32_t>   rim_of;
+    std::vector<std::uint32_t> looked_at; // others than 0 of these
+    std::vector<Rim>           rims;
+    std::vector<MeetingCorner> corners; // of the rims
+    std::vector<MeetingBatch>  batches; // of points in cells with a rim
+    std::vector<Group>         groups;  // of these
+    std::vector<double>        volume_gradients; // in slots, m^(dim-1)
+    std::vector<double>        directions;       // of the touches, see Extents
+    Extents<dim>               extents;
+    std::vector<Faces<dim>>    faces;        // of the touches
+    std::vector<char>          points_touch; // likewise
+    SharedSlots                gradients_of_ranks{2 * dim, false};
+    SharedSlots                extents_of_ranks{2 * n_separations, true};
+    ContactImpulses<dim>       impulses;
+    std::vector<Stretch>       stretches; // of the bodies
+    std::vector<Sides>         sides;     // of the pairs
+    std::vector<std::uint32_t> near;      // points of a batch
+    Bins                       bins;
+    std::vector<Facing>        facing;
+    Part                       part;
+    const unsigned int         this_rank;
     // Of vertices that other ranks hold as well: who does
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
                                            ranks_of_vertex;
     std::map<unsigned int, PartsElsewhere> parts_elsewhere;
-    // By vertex: bit s where side s of a pair has points in a cell of it
-    LazyArray<std::uint8_t>    of_pair_at;
-    std::vector<std::uint32_t> marked; // those that have any
   };
-
-
-
-  // work(neighbours, points, 1 / density of their body)
-  template <int dim>
-  template <class Work>
-  void
-  Contact<dim>::for_each_neighbour(const Work &work)
-  {
-    for (std::size_t k = 0; k < neighbours.size();)
-      {
-        const unsigned int   body   = neighbours[k].body;
-        const PointView<dim> points = parts.bodies[body]->points.view();
-        const double         inverse_density =
-          1 / parts.bodies[body]->stress->density();
-        for (; k < neighbours.size() && neighbours[k].body == body; ++k)
-          work(neighbours[k], points, inverse_density);
-      }
-  }
 } // namespace limber
 
 #endif

@@ -44,15 +44,6 @@ namespace limber
     return gap > 0 ? -gap : std::min(-0.1 * gap, 0.02 * reach);
   }
 
-
-
-  /** Half the edge, m, of a cube of this volume, m^dim. */
-  template <int dim>
-  inline double
-  half_edge_of(const double volume)
-  {
-    return 0.5 * (dim == 2 ? std::sqrt(volume) : std::cbrt(volume));
-  }
 } // namespace limber
 
 #endif
