@@ -71,12 +71,14 @@ namespace limber
     if (leapfrogs)
       {
         places.swap(former_places);
-        shares.swap(former_shares);
+        std::swap(shares, former_shares);
         seen.swap(former_seen);
       }
     places.clear();
-    shares.clear();
+    shares.all.clear();
+    shares.begin.resize(1);
     seen.clear();
+    last_share.clear();
     peers.clear();
     any_place = holds_before = false;
   }
@@ -88,49 +90,8 @@ namespace limber
   ContactImpulses<dim>::add_place()
   {
     places.emplace_back();
-    places.back().begin = places.back().end = shares.size();
+    shares.begin.push_back(shares.all.size());
     return places.back();
-  }
-
-
-
-  template <int dim>
-  std::uint32_t
-  ContactImpulses<dim>::see(const unsigned int  field,
-                            const std::uint32_t number)
-  {
-    std::uint32_t &as = seen_as[field][number];
-    if (as == 0)
-      {
-        seen.push_back({nodes.record(field, number), no_share, field, number});
-        as = static_cast<std::uint32_t>(seen.size());
-      }
-    return as - 1;
-  }
-
-
-
-  // A place has one share of a node, however many points see it for it.
-  template <int dim>
-  void
-  ContactImpulses<dim>::add_share(const unsigned int  field,
-                                  const std::uint32_t node,
-                                  const double        share)
-  {
-    if (share == 0)
-      return;
-    for_each_master(node, [&](const std::uint32_t master, const double weight) {
-      const std::uint32_t as   = see(field, master);
-      std::size_t        &last = seen[as].last_share;
-      if (last != no_share && last >= places.back().begin)
-        shares[last].value += weight * share;
-      else
-        {
-          last = shares.size();
-          shares.push_back({as, weight * share});
-        }
-    });
-    places.back().end = shares.size();
   }
 
 
@@ -161,8 +122,8 @@ namespace limber
     any_place = !places.empty();
     n_passes  = 1;
     for (std::size_t p = 1; p < places.size(); ++p)
-      if (seen[shares[places[p].begin].node].number ==
-          seen[shares[places[p - 1].begin].node].number)
+      if (seen[shares.all[shares.begin[p]].node].number ==
+          seen[shares.all[shares.begin[p - 1]].node].number)
         n_passes = passes_of_places;
     find_relaxation();
   }
@@ -174,9 +135,10 @@ namespace limber
   ContactImpulses<dim>::find_relaxation()
   {
     bears.assign(seen.size(), 0.);
-    for (const Place &place : places)
-      for (std::size_t k = place.begin; k < place.end; ++k)
-        bears[shares[k].node] += std::abs(shares[k].value) * place.mass;
+    for (std::size_t p = 0; p < places.size(); ++p)
+      for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
+        bears[shares.all[k].node] +=
+          std::abs(shares.all[k].value) * places[p].mass;
     if (!at_nodes && shares_nodes())
       see_those_of_others();
 
@@ -186,27 +148,29 @@ namespace limber
         const double mass = seen[i].record[Layout::mass];
         inverse_mass[i]   = mass > 0 ? 1 / mass : 0;
       }
-    velocity.resize(seen.size());
-    momentum.assign(seen.size(), Vector());
+    velocity.assign(seen.size() * lanes, 0.);
+    momentum.assign(seen.size() * lanes, 0.);
+    relative.assign(places.size() * lanes, 0.);
+    given_by_place.assign(places.size() * lanes, 0.);
+    takes_part.assign(places.size(), 1);
 
-    for (Place &place : places)
+    for (std::size_t p = 0; p < places.size(); ++p)
       {
-        double sum = 0; // s_p
-        for (std::size_t k = place.begin; k < place.end; ++k)
+        double &sum = relative[p * lanes]; // s_p
+        for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
           {
-            const std::uint32_t i = shares[k].node;
+            PlaceShare &share = shares.all[k];
             // At the edge of what a function reaches it has a slope, but the
             // node no mass.
-            if (inverse_mass[i] == 0)
-              shares[k].value = 0;
-            sum += std::abs(shares[k].value) * bears[i] * inverse_mass[i];
+            if (inverse_mass[share.node] == 0)
+              share.value = 0;
+            sum += std::abs(share.value) * bears[share.node] *
+                   inverse_mass[share.node];
           }
-        place.relative    = 0;
-        place.relative[0] = sum;
       }
     complete();
-    for (Place &place : places)
-      place.relaxation = place.mass / place.relative[0];
+    for (std::size_t p = 0; p < places.size(); ++p)
+      places[p].relaxation = places[p].mass / relative[p * lanes];
   }
 
 
@@ -261,7 +225,7 @@ namespace limber
           const auto &to   = peers[k].*take;
           for (const std::uint32_t p : from)
             for (int d = 0; d < dim; ++d)
-              sent[k].push_back(places[p].relative[d]);
+              sent[k].push_back(relative[p * lanes + d]);
           received[k].resize(to.size() * dim);
           if (!to.empty())
             MPI_Irecv(received[k].data(),
@@ -286,11 +250,13 @@ namespace limber
       for (std::size_t k = 0; k < peers.size(); ++k)
         for (std::size_t i = 0; i < (peers[k].*take).size(); ++i)
           {
-            Place &place = places[(peers[k].*take)[i]];
-            if (!place.is_own)
-              place.relative = 0;
+            const std::size_t p = (peers[k].*take)[i];
             for (int d = 0; d < dim; ++d)
-              place.relative[d] += received[k][i * dim + d];
+              {
+                double &of_place = relative[p * lanes + d];
+                of_place =
+                  (places[p].is_own ? of_place : 0) + received[k][i * dim + d];
+              }
           }
     };
     exchange(&Peer::parts, &Peer::own);
@@ -321,7 +287,19 @@ namespace limber
   ContactImpulses<dim>::load(const unsigned int slot)
   {
     for (std::size_t i = 0; i < seen.size(); ++i)
-      velocity[i] = vector_in<dim>(seen[i].record + slot);
+      for (int d = 0; d < dim; ++d)
+        velocity[i * lanes + d] = seen[i].record[slot + d];
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::store_velocity(const unsigned int slot)
+  {
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      for (int d = 0; d < dim; ++d)
+        seen[i].record[slot + d] = velocity[i * lanes + d];
   }
 
 
@@ -331,37 +309,27 @@ namespace limber
   void
   ContactImpulses<dim>::find_relative(const bool only_of_pressing)
   {
-    for (Place &place : places)
-      {
-        Vector sum;
-        if (!only_of_pressing || place.presses())
-          {
-            if (place.is_own)
-              sum -= place.velocity;
-            for (std::size_t k = place.begin; k < place.end; ++k)
-              sum += shares[k].value * velocity[shares[k].node];
-          }
-        place.relative = sum;
-      }
+    for (std::size_t p = 0; p < places.size(); ++p)
+      takes_part[p] = !only_of_pressing || places[p].presses();
+    sum_at_places<dim>(shares, takes_part, velocity.data(), relative.data());
+    for (std::size_t p = 0; p < places.size(); ++p)
+      if (places[p].is_own)
+        for (int d = 0; d < dim; ++d)
+          relative[p * lanes + d] -= places[p].velocity[d];
     complete();
   }
 
 
 
+  // From places that take part to the velocities of the nodes.
   template <int dim>
   void
-  ContactImpulses<dim>::give(const Place &place, const Vector &impulse)
+  ContactImpulses<dim>::give_impulses()
   {
-    for (std::size_t k = place.begin; k < place.end; ++k)
-      momentum[shares[k].node] += shares[k].value * impulse;
-  }
-
-
-
-  template <int dim>
-  void
-  ContactImpulses<dim>::add_given()
-  {
+    give_to_nodes<dim>(shares,
+                       takes_part,
+                       given_by_place.data(),
+                       momentum.data());
     if (!at_nodes && shares_nodes())
       {
         const auto record = [this](const std::size_t i) {
@@ -369,16 +337,15 @@ namespace limber
                  std::size_t(seen[i].number) * Given::stride + Given::momentum;
         };
         for (std::size_t i = 0; i < seen.size(); ++i)
-          store_vector<dim>(momentum[i], record(i));
+          store_vector<dim>(vector_at(momentum, i), record(i));
         sum_given(Given::momentum, Given::momentum + dim);
         for (std::size_t i = 0; i < seen.size(); ++i)
-          momentum[i] = vector_in<dim>(record(i));
+          store_at(vector_in<dim>(record(i)), i, momentum);
       }
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      {
-        velocity[i] += inverse_mass[i] * momentum[i];
-        momentum[i] = 0;
-      }
+    take_given<dim>(seen.size(),
+                    inverse_mass.data(),
+                    momentum.data(),
+                    velocity.data());
   }
 
 
@@ -392,11 +359,12 @@ namespace limber
       {
         if (!std::exchange(relative_is_known, false))
           find_relative(false);
-        for (Place &place : places)
+        for (std::size_t p = 0; p < places.size(); ++p)
           {
+            Place       &place = places[p];
             const Vector wanted =
-              place.impulse +
-              place.relaxation * (place.least * place.normal - place.relative);
+              place.impulse + place.relaxation * (place.least * place.normal -
+                                                  vector_at(relative, p));
             const double pressing = wanted * place.normal;
             Vector       impulse;
             place.sticks = false;
@@ -410,11 +378,11 @@ namespace limber
                   along *= most / rubbing;
                 impulse = pressing * place.normal + along;
               }
-            if (impulse != place.impulse)
-              give(place, impulse - place.impulse);
+            takes_part[p] = impulse != place.impulse;
+            store_at(impulse - place.impulse, p, given_by_place);
             place.impulse = impulse;
           }
-        add_given();
+        give_impulses();
       }
   }
 
@@ -425,10 +393,12 @@ namespace limber
   ContactImpulses<dim>::expect(const double step, const Vector &gravity)
   {
     for (std::size_t i = 0; i < seen.size(); ++i)
-      velocity[i] = inverse_mass[i] *
-                      (vector_in<dim>(seen[i].record + Layout::momentum) +
-                       step * vector_in<dim>(seen[i].record + Layout::force)) +
-                    step * gravity;
+      store_at(inverse_mass[i] *
+                   (vector_in<dim>(seen[i].record + Layout::momentum) +
+                    step * vector_in<dim>(seen[i].record + Layout::force)) +
+                 step * gravity,
+               i,
+               velocity);
     press(false);
   }
 
@@ -460,18 +430,20 @@ namespace limber
       return loss;
     load(Layout::increment);
     find_relative(false);
-    for (Place &place : places)
-      place.increase = place.relative + place.velocity;
+    for (std::size_t p = 0; p < places.size(); ++p)
+      places[p].increase = vector_at(relative, p) + places[p].velocity;
     load(Layout::velocity);
     find_relative(false);
-    for (Place &place : places)
-      place.brought = place.relative - place.increase;
+    for (std::size_t p = 0; p < places.size(); ++p)
+      places[p].brought = vector_at(relative, p) - places[p].increase;
     if (holds_before)
       {
-        for (const Place &place : places)
-          if (place.presses())
-            give(place, place.impulse);
-        add_given();
+        for (std::size_t p = 0; p < places.size(); ++p)
+          {
+            takes_part[p] = places[p].presses();
+            store_at(places[p].impulse, p, given_by_place);
+          }
+        give_impulses();
       }
     press(!holds_before);
     for (std::size_t i = 0; i < seen.size(); ++i)
@@ -480,14 +452,15 @@ namespace limber
                       *const increment    = seen[i].record + Layout::increment;
         for (int d = 0; d < dim; ++d)
           {
-            increment[d] += velocity[i][d] - new_velocity[d];
-            new_velocity[d] = velocity[i][d];
+            increment[d] += velocity[i * lanes + d] - new_velocity[d];
+            new_velocity[d] = velocity[i * lanes + d];
           }
       }
     find_relative(true);
-    for (Place &place : places)
+    for (std::size_t p = 0; p < places.size(); ++p)
       {
-        place.after = place.relative;
+        Place &place = places[p];
+        place.after  = vector_at(relative, p);
         account(loss,
                 place,
                 place.brought + place.after,
@@ -505,13 +478,16 @@ namespace limber
   void
   ContactImpulses<dim>::account_former(ContactLoss &loss)
   {
-    for (Place &place : former_places)
+    for (std::size_t p = 0; p < former_places.size(); ++p)
       {
+        Place &place   = former_places[p];
         place.increase = 0;
-        for (std::size_t k = place.begin; k < place.end; ++k)
+        for (std::size_t k = former_shares.begin[p];
+             k < former_shares.begin[p + 1];
+             ++k)
           place.increase +=
-            former_shares[k].value *
-            vector_in<dim>(former_seen[former_shares[k].node].record +
+            former_shares.all[k].value *
+            vector_in<dim>(former_seen[former_shares.all[k].node].record +
                            Layout::increment);
         account(loss, place, {}, place.held, 0.5);
       }
@@ -561,25 +537,26 @@ namespace limber
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
         find_relative(true);
-        for (Place &place : places)
+        for (std::size_t p = 0; p < places.size(); ++p)
           {
-            if (!place.presses())
+            Place &place = places[p];
+            if (!takes_part[p])
               continue;
-            Vector lacking = place.least * place.normal - place.relative;
+            const Vector now     = vector_at(relative, p);
+            Vector       lacking = place.least * place.normal - now;
             if (!place.sticks)
               lacking -= along_surface(lacking, place.normal);
             const Vector impulse = place.relaxation * lacking;
-            give(place, impulse);
+            store_at(impulse, p, given_by_place);
             if (!tell)
               continue;
             if (pass == 0)
-              place.brought = place.relative;
+              place.brought = now;
             place.held += impulse;
           }
-        add_given();
+        give_impulses();
       }
-    for (std::size_t i = 0; i < seen.size(); ++i)
-      store_vector<dim>(velocity[i], seen[i].record + slot);
+    store_velocity(slot);
   }
 
 

@@ -12,24 +12,11 @@
  */
 namespace limber
 {
-  namespace
-  {
-    /** Its direction; zero of zero. */
-    template <int dim>
-    dealii::Tensor<1, dim>
-    unit(const dealii::Tensor<1, dim> &vector)
-    {
-      const double length = vector.norm();
-      return length > 0 ? vector / length : vector;
-    }
-  } // namespace
-
-
-
   template <int dim>
   void
   Contact<dim>::find(const double step)
   {
+    grid = parts.nodes.view();
     points.clear();
     for (const auto &body : parts.bodies)
       points.push_back(body->points.view());
@@ -144,10 +131,10 @@ namespace limber
   Contact<dim>::find_rim(const unsigned int field, const std::uint32_t cell)
   {
     const auto first = static_cast<std::uint32_t>(corners.size());
-    with_degree(parts.nodes.view(), [&](const auto degree) {
+    with_degree(grid, [&](const auto degree) {
       add_corners(field,
-                  CellFunctions<dim, decltype(degree)::value>::nodes_of(
-                    parts.nodes.view(), cell));
+                  CellFunctions<dim, decltype(degree)::value>::nodes_of(grid,
+                                                                        cell));
     });
     const std::size_t at   = std::size_t(parts.grid.n_cells()) * field + cell;
     const auto        last = static_cast<std::uint32_t>(corners.size());
@@ -291,19 +278,6 @@ namespace limber
 
 
 
-  // Of g_a, -g_b and the sum of their directions.
-  template <int dim>
-  std::array<dealii::Tensor<1, dim>, n_separations>
-  Contact<dim>::directions_at(const std::size_t touch) const
-  {
-    const double *const gradients = &volume_gradients[touch * 2 * dim];
-    const Vector        of_a      = unit(vector_in<dim>(gradients)),
-                 of_b             = unit(vector_in<dim>(gradients + dim));
-    return {{of_a, -1. * of_b, unit(of_a - of_b)}};
-  }
-
-
-
   // Of convex bodies the largest separation over all directions is their
   // distance. At the end of the face of one of them, its own gradient points
   // past the corner; that of the other is right, and the points are further
@@ -313,15 +287,9 @@ namespace limber
   Contact<dim>::find_normals()
   {
     directions.resize(touches.size() * n_separations * dim);
-    for (std::size_t t = 0; t < touches.size(); ++t)
-      {
-        double *slot = &directions[t * n_separations * dim];
-        for (const Vector &direction : directions_at(t))
-          {
-            store_vector<dim>(direction, slot);
-            slot += dim;
-          }
-      }
+    find_directions<dim>(touches.size(),
+                         volume_gradients.data(),
+                         directions.data());
     extents.clear(2 * touches.size());
     for (const Group &group : groups)
       extents.add(points[group.body], batches_of(group), directions.data());

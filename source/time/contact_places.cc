@@ -178,7 +178,6 @@ namespace limber
   {
     if (ranks_of_vertex.empty())
       return;
-    const GridView<dim>                         grid = parts.nodes.view();
     std::map<unsigned int, std::vector<double>> told;
     std::vector<unsigned int>                   ranks;
     for (std::size_t k = 0; k < sides.size(); ++k)
@@ -342,7 +341,6 @@ namespace limber
   void
   Contact<dim>::gather(const Group &group)
   {
-    const GridView<dim>      grid    = parts.nodes.view();
     const PointView<dim>    &of_body = points[group.body];
     const StressUpdate<dim> &stress  = *parts.bodies[group.body]->stress;
     const unsigned int       field   = field_of(group.body);
@@ -436,7 +434,7 @@ namespace limber
     const PointView<dim>      &of_body = points[candidate.body];
     const std::uint32_t        cell    = of_body.cell[candidate.point];
     const unsigned int         field   = field_of(candidate.body);
-    CellFunctions<dim, degree> functions(parts.nodes.view(), cell);
+    CellFunctions<dim, degree> functions(grid, cell);
     if (cell != part.cell || field != part.field)
       {
         finish_part<degree>();

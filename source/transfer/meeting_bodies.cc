@@ -225,6 +225,44 @@ namespace limber
 
   template <int dim>
   void
+  find_directions(const std::size_t   n,
+                  const double *const gradients,
+                  double *const       directions)
+  {
+    using Direction           = std::array<double, dim>;
+    const auto inverse_length = [](const Direction &vector) {
+      double square = 0;
+      for (int d = 0; d < dim; ++d)
+        square += vector[d] * vector[d];
+      return square > 0 ? 1 / std::sqrt(square) : 0.;
+    };
+    for (std::size_t k = 0; k < n; ++k)
+      {
+        const double *const g = gradients + k * 2 * dim;
+        Direction           of_a, of_b, of_both;
+        for (int d = 0; d < dim; ++d)
+          {
+            of_a[d] = g[d];
+            of_b[d] = -g[dim + d];
+          }
+        const double a = inverse_length(of_a), b = inverse_length(of_b);
+        for (int d = 0; d < dim; ++d)
+          of_both[d] = (of_a[d] *= a) + (of_b[d] *= b);
+        const double both = inverse_length(of_both);
+        for (int d = 0; d < dim; ++d)
+          {
+            double *const result = directions + k * n_separations * dim + d;
+            result[0]            = of_a[d];
+            result[dim]          = of_b[d];
+            result[2 * dim]      = of_both[d] * both;
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
   Extents<dim>::clear(const std::size_t n_slots)
   {
     numbers.assign(n_slots * n, -1e300);
@@ -341,6 +379,10 @@ namespace limber
 
 
 
+  template void
+  find_directions<2>(std::size_t, const double *, double *);
+  template void
+  find_directions<3>(std::size_t, const double *, double *);
   template struct Extents<2>;
   template struct Extents<3>;
   template void

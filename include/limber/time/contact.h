@@ -243,8 +243,6 @@ namespace limber
     find_gradients();
     void
     find_normals();
-    std::array<Vector, n_separations>
-    directions_at(std::size_t touch) const;
 
     void
     find_places(double step);
@@ -311,7 +309,8 @@ namespace limber
     std::vector<double> reach; // the furthest of a point of a field, m
     // Fields a < b that may part, in the same order on all ranks
     std::vector<std::array<unsigned int, 2>> parting;
-    std::vector<PointView<dim>>              points; // of the bodies
+    GridView<dim>                            grid;   // as of this step
+    std::vector<PointView<dim>>              points; // of the bodies, likewise
     std::vector<Touch>       touches;  // those of a node side by side
     std::vector<Touch>       found;    // those of this step
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0

@@ -4,6 +4,7 @@
 
 #include <limber/grid/nodal_fields.h>
 #include <limber/state/ledger.h>
+#include <limber/transfer/place_sums.h>
 
 #include <vector>
 
@@ -65,11 +66,8 @@ namespace limber
         return impulse * normal > 0;
       }
 
-      // Of the nodes it sees, [begin, end) of all shares
-      std::size_t begin = 0, end = 0;
-      double      relaxation = 0; // m_p / s_p, kg
-      bool        sticks     = false;
-      Vector      relative; // w_p, m/s
+      double relaxation = 0; // m_p / s_p, kg
+      bool   sticks     = false;
 
       // What ContactLoss wants to know: a, b or r, the new velocity; K
       Vector increase, brought, after, held;
@@ -102,9 +100,36 @@ namespace limber
     Place &
     add_place();
 
-    /** Of the last place: a node that it sees, of the grid, with a_pi. */
+    /**
+     * Of the last place: nodes that it sees, by the offsets of their records in
+     * the grid, with a_pi. A place has one share of a node, however often it is
+     * told.
+     */
+    template <class Offsets>
     void
-    add_share(unsigned int field, std::uint32_t node, double share);
+    add_shares(const unsigned int  field,
+               const Offsets      &offsets,
+               const double *const values)
+    {
+      std::size_t k = 0;
+      for (const std::uint32_t offset : offsets)
+        if (const double value = values[k++]; value != 0)
+          add_share(field, offset / Layout::stride, value);
+    }
+
+    void
+    add_share(const unsigned int  field,
+              const std::uint32_t node,
+              const double        value)
+    {
+      if (hanging.empty() || hanging[node] == 0)
+        add_share_of_master(field, node, value);
+      else
+        for_each_master(node,
+                        [&](const std::uint32_t master, const double weight) {
+                          add_share_of_master(field, master, weight * value);
+                        });
+    }
 
     /**
      * Call work(node, weight) with the nodes whose velocities make up that of
@@ -181,20 +206,14 @@ namespace limber
   private:
     using Layout = NodeLayout<dim>;
 
+    static constexpr int         lanes    = vector_lanes<dim>;
+    static constexpr std::size_t no_share = std::size_t(-1);
+
     /** A node of a field that any place sees, on any rank. */
     struct Node
     {
       double      *record;
-      std::size_t  last_share; // that a place has of it, before none: no_share
       unsigned int field, number;
-    };
-
-    static constexpr std::size_t no_share = std::size_t(-1);
-
-    struct Share
-    {
-      std::uint32_t node;  // of those seen
-      double        value; // a_pi
     };
 
     // What ranks tell each other of the nodes of a field: momentum that places
@@ -210,7 +229,52 @@ namespace limber
     };
 
     std::uint32_t
-    see(unsigned int field, std::uint32_t number);
+    see(const unsigned int field, const std::uint32_t number)
+    {
+      std::uint32_t &as = seen_as[field][number];
+      if (as == 0)
+        {
+          seen.push_back({nodes.record(field, number), field, number});
+          last_share.push_back(no_share);
+          as = static_cast<std::uint32_t>(seen.size());
+        }
+      return as - 1;
+    }
+
+    void
+    add_share_of_master(const unsigned int  field,
+                        const std::uint32_t node,
+                        const double        value)
+    {
+      const std::uint32_t as    = see(field, node);
+      std::size_t        &last  = last_share[as];
+      const std::size_t   first = shares.begin[places.size() - 1];
+      if (last != no_share && last >= first)
+        shares.all[last].value += value;
+      else
+        {
+          last = shares.all.size();
+          shares.all.push_back({as, value});
+          shares.begin.back() = shares.all.size();
+        }
+    }
+
+    static Vector
+    vector_at(const std::vector<double> &vectors, const std::size_t i)
+    {
+      Vector result;
+      for (int d = 0; d < dim; ++d)
+        result[d] = vectors[i * lanes + d];
+      return result;
+    }
+
+    static void
+    store_at(const Vector &vector, const std::size_t i, std::vector<double> &to)
+    {
+      for (int d = 0; d < dim; ++d)
+        to[i * lanes + d] = vector[d];
+    }
+
     void
     load(unsigned int slot);
     void
@@ -228,9 +292,9 @@ namespace limber
     void
     sum_given(unsigned int first, unsigned int last);
     void
-    give(const Place &place, const Vector &impulse);
+    give_impulses();
     void
-    add_given();
+    store_velocity(unsigned int slot);
     void
     press(bool relative_is_known);
     void
@@ -247,14 +311,17 @@ namespace limber
     NodalFields<dim>                     &nodes;
     const bool                            leapfrogs;
     std::vector<Place>                    places;
-    std::vector<Share>                    shares;
+    PlaceShares                           shares;
     std::vector<Node>                     seen;
-    std::vector<LazyArray<std::uint32_t>> seen_as; // per field, by node: 1 +
+    std::vector<std::size_t>              last_share; // that a place has of it
+    std::vector<LazyArray<std::uint32_t>> seen_as;    // per field, by node: 1 +
                                                    // its place in these, or 0
     // Of those seen: 1 / m_i; M_i; the velocity that is dealt with; the
-    // momentum that places give in a pass
-    std::vector<double>        inverse_mass, bears;
-    std::vector<Vector>        velocity, momentum;
+    // momentum that places give in a pass. Of places: w_p; what
+    // they give; whether they are asked, or give any
+    std::vector<double>        inverse_mass, bears, velocity, momentum;
+    std::vector<double>        relative, given_by_place;
+    std::vector<char>          takes_part;
     std::vector<Given>         given;   // per field
     std::vector<std::uint32_t> hanging; // 1 + place in the table, or 0
     std::vector<Peer>          peers;
@@ -264,7 +331,7 @@ namespace limber
     bool                       holds_before = false; // in this step
     // With leapfrogs, of the step before
     std::vector<Place> former_places;
-    std::vector<Share> former_shares;
+    PlaceShares        former_shares;
     std::vector<Node>  former_seen;
   };
 } // namespace limber

@@ -71,6 +71,14 @@ namespace limber
   inline constexpr int n_separations = 3;
 
   /**
+   * Of each of n meetings, from the gradients g_a and g_b in its slots: the
+   * directions of g_a, of -g_b and of the sum of these; zero of zero.
+   */
+  template <int dim>
+  void
+  find_directions(std::size_t n, const double *gradients, double *directions);
+
+  /**
    * How far points go along these, with half the edges of their cubes: the
    * second bodies against them. In each slot, lane by lane; see
    * largest_of_lanes().
