@@ -90,7 +90,8 @@ namespace limber
   ContactImpulses<dim>::add_place()
   {
     places.emplace_back();
-    shares.begin.push_back(shares.all.size());
+    first_share = shares.all.size();
+    shares.begin.push_back(first_share);
     return places.back();
   }
 

@@ -443,13 +443,7 @@ namespace limber
         part.shares.assign(functions.n, 0.);
       }
     functions.go_to(of_body, candidate.point);
-    for (int k = 0; k < functions.n; ++k)
-      {
-        double slope = 0;
-        for (int d = 0; d < dim; ++d)
-          slope += arm[d] * functions.slope(k, d);
-        part.shares[k] += weight * (functions.value(k) + slope);
-      }
+    functions.add_at_end_of(arm, weight, part.shares.data());
   }
 
 

@@ -2,6 +2,8 @@
 #ifndef limber_time_cell_functions_h
 #define limber_time_cell_functions_h
 
+#include <deal.II/base/tensor.h>
+
 #include <limber/interpolation/spline_factors.h>
 #include <limber/points/point_view.h>
 
@@ -81,16 +83,35 @@ namespace limber
       return result;
     }
 
-    /** Derivative along d of the function of node k, there, 1/m. */
-    double
-    slope(const int k, const int d) const
+    /**
+     * Add to each node k weight (N_k + arm . grad N_k): what its value has of
+     * that at the end of the arm, to first order.
+     */
+    void
+    add_at_end_of(const dealii::Tensor<1, dim> &arm,
+                  const double                  weight,
+                  double *const                 shares) const
     {
-      double result = cell.inverse_edge[d] * slopes[d][digit(k, d)];
-      for (int e = 0; e < dim; ++e)
-        if (e != d)
-          result *= values[e][digit(k, e)];
-      return result;
+      Factors changes;
+      for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < along; ++i)
+          changes[d][i] = arm[d] * cell.inverse_edge[d] * slopes[d][i];
+      for (int k = 0; k < n; k += along)
+        {
+          double others = weight * values[1][digit(k, 1)],
+                 change = weight * changes[1][digit(k, 1)];
+          if constexpr (dim == 3)
+            {
+              const int j = digit(k, 2);
+              change      = change * values[2][j] + others * changes[2][j];
+              others *= values[2][j];
+            }
+          for (int i = 0; i < along; ++i)
+            shares[k + i] +=
+              values[0][i] * (others + change) + changes[0][i] * others;
+        }
     }
+
 
   private:
     struct NoSpline

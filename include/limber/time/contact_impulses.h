@@ -111,10 +111,9 @@ namespace limber
                const Offsets      &offsets,
                const double *const values)
     {
-      std::size_t k = 0;
-      for (const std::uint32_t offset : offsets)
-        if (const double value = values[k++]; value != 0)
-          add_share(field, offset / Layout::stride, value);
+      for (std::size_t k = 0; k < offsets.size(); ++k)
+        if (values[k] != 0)
+          add_share(field, offsets[k] / Layout::stride, values[k]);
     }
 
     void
@@ -246,10 +245,9 @@ namespace limber
                         const std::uint32_t node,
                         const double        value)
     {
-      const std::uint32_t as    = see(field, node);
-      std::size_t        &last  = last_share[as];
-      const std::size_t   first = shares.begin[places.size() - 1];
-      if (last != no_share && last >= first)
+      const std::uint32_t as   = see(field, node);
+      std::size_t        &last = last_share[as];
+      if (last != no_share && last >= first_share)
         shares.all[last].value += value;
       else
         {
@@ -314,7 +312,8 @@ namespace limber
     PlaceShares                           shares;
     std::vector<Node>                     seen;
     std::vector<std::size_t>              last_share; // that a place has of it
-    std::vector<LazyArray<std::uint32_t>> seen_as;    // per field, by node: 1 +
+    std::size_t                           first_share = 0; // of the last place
+    std::vector<LazyArray<std::uint32_t>> seen_as; // per field, by node: 1 +
                                                    // its place in these, or 0
     // Of those seen: 1 / m_i; M_i; the velocity that is dealt with; the
     // momentum that places give in a pass. Of places: w_p; what
