@@ -22,15 +22,15 @@ namespace
   const std::string meeting_blocks = R"(
     set Bodies = left, right
     subsection Body left
-      set Shape = polygon
-      subsection Polygon
+      set Shape = block
+      subsection Block
         set Corners = 0.2, 0.2; 0.46, 0.2; 0.61, 0.8; 0.2, 0.8
       end
 )" + rubber("1e3", "0.3") + R"(
     end
     subsection Body right
-      set Shape = polygon
-      subsection Polygon
+      set Shape = block
+      subsection Block
         set Corners = 0.46, 0.2; 0.9, 0.2; 0.9, 0.8; 0.61, 0.8
       end
 )" + rubber("1e3", "0.3") + R"(
@@ -249,7 +249,7 @@ TEST(ContactImpulses, OnePlaceObeysCoulomb)
     bool   sticks;
   };
   // of a mass of 2 kg against one that is as good as at rest
-  for (const Case &expected : {Case{0, -1, 0, 0, 0, 2, true},
+  for (const Case &expected : {Case{0, -1, 0, 0, 0, 2, false},
                                Case{0.5, -1, 0, 0, 0, 2, false},
                                Case{0.5, -1, 0, 0.2, -0.4, 2, false},
                                Case{-0.5, -1, 0, 0.2, 0.4, 2, false},
@@ -279,7 +279,7 @@ TEST(ContactImpulses, OnePlaceObeysCoulomb)
       const auto &found = impulses.all()[0];
       EXPECT_NEAR(found.impulse * across, expected.impulse_along, 1e-14);
       EXPECT_NEAR(found.impulse * along, expected.impulse_across, 1e-14);
-      if (found.presses())
+      if (expected.friction > 0) // else nothing could hold it
         EXPECT_EQ(found.sticks, expected.sticks);
     }
 }
