@@ -322,21 +322,95 @@ TEST(Contact, ABlockSlidesOnAPlate)
 // Points of the faces are a quarter of a cell from them on either side.
 TEST(Contact, ABlockRestsOnAPlateWithoutAGap)
 {
-  for (const double shift : {0., 0.25, 0.5, 0.75})
+  for (const std::string kernel : {"linear", "quadratic", "cubic"})
+    for (const double shift : {0., 0.25, 0.5, 0.75})
+      {
+        SCOPED_TRACE(kernel + " " + digits(shift));
+        const double h    = 0.125;
+        const double face = 0.5 + shift * h;
+        SceneRun<2>  run(
+          block_and_plate,
+          {"Body block/Box/Lower corner=1, " + digits(face + 0.3 * h),
+            "Body block/Box/Upper corner=2, " + digits(face + 0.3 * h + 0.5),
+            "Body block/Points per cell edge=2",
+            "Body plate/Box/Upper corner=4, " + digits(face),
+            "Body plate/Points per cell edge=2",
+            "Method/Kernel=" + kernel,
+            "Method/Damping rate=10",
+            "Loads/Gravity=0, -1"});
+        run.advance_to(2);
+        const double gap = (lowest(run, 0, 1) - highest(run, 1, 1)) / h - 0.5;
+        EXPECT_LT(std::abs(gap), 0.02);
+        RecordProperty("gap " + kernel + " " + digits(shift), digits(gap));
+        EXPECT_LT(run.totals().all.kinetic_energy, 1e-4);
+      }
+}
+
+
+
+// The first of three comes, the last one leaves with its velocity.
+TEST(Contact, BarsInARowHandVelocityOn)
+{
+  const std::string third = R"(
+    set Bodies = left, right, last
+    subsection Body last
+      subsection Box
+        set Lower corner = 2.13, 0
+        set Upper corner = 3.13, 0.02
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Contact
+      set Pairs = ends, others
+      subsection Pair others
+        set Bodies = right, last
+      end
+    end
+    subsection Grid
+      set Upper corner = 3.4, 0.02
+      set Cells = 170, 1
+    end)";
+  for (const std::string kernel : {"linear", "quadratic", "cubic"})
     {
-      const double h    = 0.125;
-      const double face = 0.5 + shift * h;
-      SceneRun<2>  run(
-        block_and_plate,
-        {"Body block/Box/Lower corner=1, " + digits(face + 0.3 * h),
-          "Body block/Box/Upper corner=2, " + digits(face + 0.3 * h + 0.5),
-          "Body plate/Box/Upper corner=4, " + digits(face),
-          "Method/Damping rate=10",
-          "Loads/Gravity=0, -1"});
-      run.advance_to(2);
-      const double gap = (lowest(run, 0, 1) - highest(run, 1, 1)) / h - 0.5;
-      EXPECT_LT(std::abs(gap), 0.02) << shift;
-      EXPECT_LT(run.totals().all.kinetic_energy, 1e-4);
+      SCOPED_TRACE(kernel);
+      SceneRun<2>  run(two_bars + third, {"Method/Kernel=" + kernel});
+      const double start = energy(run.totals());
+      run.advance_to(0.6);
+      const auto totals = run.totals();
+      EXPECT_NEAR(totals.bodies[0].momentum[0] / 20, 0, 0.005);
+      EXPECT_NEAR(totals.bodies[1].momentum[0] / 20, 0, 0.005);
+      EXPECT_NEAR(totals.bodies[2].momentum[0] / 20, 0.1, 0.005);
+      EXPECT_LT(energy(totals), 1.002 * start);
+      EXPECT_LT(totals.momentum_error, 1e-12);
+    }
+}
+
+
+
+// The other one is a hundred times as stiff and as heavy: waves take as long in
+// both, and they part as rigid bodies do, (1 - 100) / (1 + 100) and 2 / (1 +
+// 100) of the velocity.
+TEST(Contact, ABarBouncesOffAHeavyOne)
+{
+  for (const std::string kernel : {"linear", "quadratic"})
+    {
+      SCOPED_TRACE(kernel);
+      SceneRun<2>  run(two_bars,
+                      {"Method/Kernel=" + kernel,
+                        "Body right/Linear elastic/Density=1e5",
+                        "Body right/Linear elastic/Young's modulus=1e8"});
+      const double start = energy(run.totals());
+      run.advance_to(0.5);
+      const auto totals = run.totals();
+      EXPECT_NEAR(totals.bodies[0].momentum[0] / 20, -0.1 * 99 / 101, 0.005);
+      EXPECT_NEAR(totals.bodies[1].momentum[0] / 2000, 0.1 * 2 / 101, 1e-4);
+      EXPECT_LT(energy(totals), 1.002 * start);
+      EXPECT_NEAR(totals.energy_drift, 0, 0.01);
+      EXPECT_LT(totals.momentum_error, 1e-12);
     }
 }
 

@@ -280,7 +280,9 @@ TEST(ContactImpulses, OnePlaceObeysCoulomb)
       EXPECT_NEAR(found.impulse * across, expected.impulse_along, 1e-14);
       EXPECT_NEAR(found.impulse * along, expected.impulse_across, 1e-14);
       if (expected.friction > 0) // else nothing could hold it
-        EXPECT_EQ(found.sticks, expected.sticks);
+        {
+          EXPECT_EQ(found.sticks, expected.sticks);
+        }
     }
 }
 
