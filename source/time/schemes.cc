@@ -175,14 +175,26 @@ namespace limber
 
 
 
+  // Where nothing has touched in the step before, what does now is known before
+  // the forces: nearly always nothing.
   template <int dim>
   void
   ExplicitIntegrator<dim>::p2g_before_strain()
   {
-    if (needs_trial_force())
+    if (boundaries.any_one_sided() || touched)
       p2g();
     else
       p2g_momentum();
+    if (!contact && !obstacles)
+      return;
+    const bool touches =
+      dealii::Utilities::MPI::max<unsigned int>((contact && contact->any()) ||
+                                                  (obstacles &&
+                                                   obstacles->any()),
+                                                parts.grid.communicator) > 0;
+    if (touches && !touched && !boundaries.any_one_sided())
+      p2g_force();
+    touched = touches;
   }
 
 

@@ -213,10 +213,11 @@ namespace limber
     const bool          in_initial_frame; // all bodies
     // Points by the velocity that strains them, with MUSL and USAVG; APIC
     // would lose angular momentum.
-    const bool                          moves_as_strained;
-    BoundaryConditions<dim>             boundaries;
-    ExternalLoads<dim>                  loads;
-    BodySweeps<dim>                     sweeps;
+    const bool              moves_as_strained;
+    BoundaryConditions<dim> boundaries;
+    ExternalLoads<dim>      loads;
+    BodySweeps<dim>         sweeps;
+    bool touched = false; // bodies or obstacles, in the step before
     std::optional<Contact<dim>>         contact;   // of bodies that may part
     std::optional<ObstacleContact<dim>> obstacles; // where the scene has any
     Stabilization<dim>                  stabilization;

@@ -64,6 +64,13 @@ namespace limber
     void
     find(double time, double step);
 
+    /** Whether anything presses or may do so; of this rank. */
+    bool
+    any() const
+    {
+      return impulses.any();
+    }
+
     /**
      * Hold the velocity at @p slot as the new one is going to be held, that is
      * (p + dt f) / m + dt g, with the force in the records.
