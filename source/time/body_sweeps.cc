@@ -25,6 +25,17 @@ namespace limber
 
 
 
+    /** See LiquidMeans; null for other bodies. */
+    template <int dim>
+    const double *
+    shares_of(const MaterialBody<dim> &body)
+    {
+      return body.volume_shares.size() > 0 ? body.volume_shares.data() :
+                                             nullptr;
+    }
+
+
+
     /** The records of what has been projected; null for other bodies. */
     template <int dim>
     double *
@@ -84,6 +95,7 @@ namespace limber
         what.inverse_density    = 1 / body->stress->density();
         what.projection         = body->stress->projection();
         what.projected_pressure = projected(*body);
+        what.volume_shares      = shares_of(*body);
         const auto sums         = sums_of(*body);
         n_batches += limber::points_to_grid<dim>(body->points.view(),
                                                  nodes_of(*body),
@@ -292,6 +304,7 @@ namespace limber
                                      pace.speed);
         what.shift =
           body->cell_shift.size() > 0 ? body->cell_shift.data() : nullptr;
+        what.volume_shares = shares_of(*body);
         CellPressures pressures;
         if (body->implicit)
           pressures = body->implicit->view(description.is_liquid,

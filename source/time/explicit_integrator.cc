@@ -26,6 +26,7 @@ namespace limber
     , boundaries(parts.problem.sides)
     , loads(parts.problem, parts.grid, parts.bodies)
     , sweeps(parts)
+    , liquid_means(parts)
     , stabilization(parts)
     , relocation(parts, loads)
   {
@@ -88,6 +89,7 @@ namespace limber
       obstacles->reinit();
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
+    liquid_means.reinit();
     loads.reinit();
     relocation.reinit();
   }
@@ -103,6 +105,8 @@ namespace limber
     stopwatch.start();
 
     clear();
+    liquid_means.find();
+    lap(Verb::stabilize);
     control_chequerboards();
     do_scheme();
     relocation.end_step(extremes);

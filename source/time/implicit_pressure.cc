@@ -58,12 +58,13 @@ namespace limber
   {
     double fastest_squared = 0;
     for (const Medium &medium : cells.media)
-      {
-        const StressUpdate<dim> &law = *medium.body->stress;
-        fastest_squared =
-          std::max(fastest_squared,
-                   law.volumetric_response(1).stiffness / law.density());
-      }
+      for (const auto *const body : medium.bodies)
+        {
+          const StressUpdate<dim> &law = *body->stress;
+          fastest_squared =
+            std::max(fastest_squared,
+                     law.volumetric_response(1).stiffness / law.density());
+        }
     return parts.grid.smallest_edge / std::sqrt(fastest_squared);
   }
 
@@ -111,15 +112,14 @@ namespace limber
   // they differ.
   template <int dim>
   double
-  ImplicitPressure<dim>::elastic_work(const Medium       &medium,
-                                      const std::uint32_t row,
-                                      const double        volume,
-                                      const double        dilation) const
+  ImplicitPressure<dim>::elastic_work(const MaterialBody<dim> &body,
+                                      const Part              &part,
+                                      const double             pressure) const
   {
-    const auto &former = system.former[row];
-    if (!medium.body->description.is_liquid)
-      return 0.5 * (former.pressure + system.pressures[row]) * volume *
-             dilation;
+    const double dilation =
+      part.compliance * (part.pressure - pressure) / part.volume;
+    if (!body.description.is_liquid)
+      return 0.5 * (part.pressure + pressure) * part.volume * dilation;
     static const dealii::QGauss<1> rule(3);
     double                         result = 0;
     for (unsigned int q = 0; q < rule.size(); ++q)
@@ -127,10 +127,9 @@ namespace limber
         const double growth = 1 + rule.point(q)[0] * dilation;
         result +=
           rule.weight(q) / growth *
-          medium.body->stress->volumetric_response(former.volume_ratio * growth)
-            .pressure;
+          body.stress->volumetric_response(part.volume_ratio * growth).pressure;
       }
-    return volume * dilation * result;
+    return part.volume * dilation * result;
   }
 
 
@@ -146,53 +145,71 @@ namespace limber
         system.pressures[medium.first + k];
     cells.share(medium, Result::pressure);
 
-    const double density = medium.body->stress->density();
-    double       lost    = 0;
-    for (std::size_t k = 0; k < medium.cells.size(); ++k)
+    for (auto *const body : medium.bodies)
       {
-        const std::uint32_t cell = medium.cells[k];
-        const std::uint32_t row  = medium.first + k;
-        const double volume      = medium.record(cell)[Record::mass] / density;
-        if (!(volume > 0))
-          continue;
-        // there points have what their volumes keep taken from them
-        if (!system.is_cut.empty() && system.is_cut[row])
+        const auto keep = [&](const std::uint32_t cell) {
+          body->implicit->pressure[cell] =
+            medium.result(cell)[Result::pressure];
+        };
+        cells.for_each_known(medium, keep);
+      }
+    find_dilations(number);
+  }
+
+
+
+  // What bodies in a cell dilate by: all of it for solids, for liquids what
+  // comes to the mean divergence of the cell. Where several have one pressure,
+  // each dilates as its stiffness lets it.
+  template <int dim>
+  void
+  ImplicitPressure<dim>::find_dilations(const std::size_t number)
+  {
+    Medium &medium = cells.media[number];
+    double  lost   = 0;
+    for (auto *const body : medium.bodies)
+      {
+        for (std::size_t k = 0; k < medium.cells.size(); ++k)
           {
-            medium.result(cell)[Result::dilation] = 0;
-            continue;
+            const std::uint32_t cell = medium.cells[k];
+            const std::uint32_t row  = medium.first + k;
+            const double mass = body->cell_sums->view().present_mass(cell);
+            double      &kept = medium.result(cell)[Result::dilation];
+            kept              = 0;
+            // there points have what their volumes keep taken from them
+            if (!(mass > 0) || (!system.is_cut.empty() && system.is_cut[row]))
+              continue;
+            const double volume   = medium.record(cell)[Record::volume];
+            const double pressure = system.pressures[row];
+            const Part   part     = system.part_of(medium, *body, cell, mass);
+            const double dilation =
+              part.compliance * (part.pressure - pressure) / part.volume;
+            const double of_cell = system.former[row].compliance *
+                                   (system.former[row].pressure - pressure) /
+                                   volume;
+            const double beyond =
+              system.flux(number, cell) / volume - system.growth[row];
+            kept = !medium.is_liquid()       ? dilation :
+                   medium.bodies.size() == 1 ? beyond :
+                                               beyond + dilation - of_cell;
+            // its part of what the cell does on nodes
+            lost += elastic_work(*body, part, pressure) -
+                    pressure * part.volume * (of_cell - beyond);
           }
-        const double flux     = system.flux(number, cell);
-        const double pressure = system.pressures[row];
-        const double dilation = system.former[row].compliance *
-                                (system.former[row].pressure - pressure) /
-                                volume;
-        medium.result(cell)[Result::dilation] =
-          medium.body->description.is_liquid ?
-            flux / volume - system.growth[row] :
-            dilation;
-        lost += elastic_work(medium, row, volume, dilation) -
-                pressure * (volume * (dilation + system.growth[row]) - flux);
+        keep_dilation(medium, *body);
       }
     parts.ledger.viscous += lost;
-
-    auto      &kept = *medium.body->implicit;
-    const auto keep = [&](const std::uint32_t cell) {
-      kept.pressure[cell] = medium.result(cell)[Result::pressure];
-    };
-    cells.for_each_known(medium, keep);
-    keep_dilation(medium);
   }
 
 
 
   template <int dim>
   void
-  ImplicitPressure<dim>::keep_dilation(Medium &medium)
+  ImplicitPressure<dim>::keep_dilation(Medium &medium, MaterialBody<dim> &body)
   {
     cells.share(medium, Result::dilation);
     const auto keep = [&](const std::uint32_t cell) {
-      medium.body->implicit->dilation[cell] =
-        medium.result(cell)[Result::dilation];
+      body.implicit->dilation[cell] = medium.result(cell)[Result::dilation];
     };
     cells.for_each_known(medium, keep);
   }
@@ -205,24 +222,28 @@ namespace limber
   {
     for (Medium &medium : cells.media)
       {
-        if (!medium.body->description.is_liquid)
+        if (!medium.is_liquid())
           continue;
-        for (const std::uint32_t cell : medium.cells)
+        for (auto *const body : medium.bodies)
           {
-            const double *const own = medium.record(cell);
-            if (!(own[Record::mass] > 0))
-              continue;
-            double flow = 0;
-            for (unsigned int a = 0; a < n_nodes; ++a)
-              for (int d = 0; d < dim; ++d)
-                flow += own[Record::rows + a * dim + d] *
-                        parts.nodes.record(
-                          cells.node_of(cell, a))[Layout::velocity + d];
-            medium.result(cell)[Result::dilation] +=
-              step * flow * medium.body->stress->density() / own[Record::mass];
+            for (const std::uint32_t cell : medium.cells)
+              {
+                const double *const own = medium.record(cell);
+                double &dilation        = medium.result(cell)[Result::dilation];
+                dilation                = body->implicit->dilation[cell];
+                if (!(own[Record::volume] > 0))
+                  continue;
+                double flow = 0;
+                for (unsigned int a = 0; a < n_nodes; ++a)
+                  for (int d = 0; d < dim; ++d)
+                    flow += own[Record::rows + a * dim + d] *
+                            parts.nodes.record(
+                              cells.node_of(cell, a))[Layout::velocity + d];
+                dilation += step * flow / own[Record::volume];
+              }
+            body->implicit->is_whole = true;
+            keep_dilation(medium, *body);
           }
-        medium.body->implicit->is_whole = true;
-        keep_dilation(medium);
       }
   }
 

@@ -35,14 +35,22 @@ namespace limber
         {
           body->implicit.emplace(parts.grid.n_cells());
           body->implicit->is_whole = !body->description.is_liquid;
+          if (body->description.is_liquid && !media.empty() &&
+              media.front().is_liquid())
+            {
+              media.front().bodies.push_back(body.get());
+              continue;
+            }
           Medium medium;
-          medium.body = body.get();
+          medium.bodies.push_back(body.get());
           medium.records.reinit(std::size_t(parts.grid.n_cells()) *
                                 Record::stride);
           medium.around.reinit(std::size_t(parts.nodes.table.n()) * n_nodes);
           medium.results.reinit(std::size_t(parts.grid.n_cells()) *
                                 Result::stride);
-          media.push_back(std::move(medium));
+          media.insert(body->description.is_liquid ? media.begin() :
+                                                     media.end(),
+                       std::move(medium));
         }
     has_cells = false;
   }
@@ -75,13 +83,9 @@ namespace limber
   {
     int known = 1;
     for (const Medium &medium : media)
-      {
-        const CellSums<dim> sums = medium.body->cell_sums->view();
-        for (const std::uint32_t cell : parts.nodes.owned_occupied_cells())
-          if (sums.present_mass(cell) > 0 &&
-              !(medium.record(cell)[Record::number] > 0))
-            known = 0;
-      }
+      for (const std::uint32_t cell : parts.nodes.owned_occupied_cells())
+        if (medium.is_in(cell) && !(medium.record(cell)[Record::number] > 0))
+          known = 0;
     return dealii::Utilities::MPI::min(known, parts.grid.communicator) > 0;
   }
 
@@ -97,11 +101,10 @@ namespace limber
         for (const std::uint32_t cell : medium.cells)
           medium.record(cell)[Record::number] = 0;
         medium.cells.clear();
-        const CellSums<dim> sums = medium.body->cell_sums->view();
         for (const auto *const occupied : {&parts.nodes.owned_occupied_cells(),
                                            &parts.nodes.ghost_occupied_cells()})
           for (const std::uint32_t cell : *occupied)
-            if (sums.present_mass(cell) > 0)
+            if (medium.is_in(cell))
               for_each_near(cell, margin, [&](unsigned int, const auto near) {
                 if (near < parts.grid.n_owned_cells() &&
                     !(medium.record(near)[Record::number] > 0))
@@ -139,29 +142,43 @@ namespace limber
         if (cell >= parts.grid.n_owned_cells())
           std::fill_n(medium.record(cell), Record::stride, 0.);
 
-    const CellSums<dim> sums            = medium.body->cell_sums->view();
-    const double        inverse_density = 1 / medium.body->stress->density();
     for (const std::uint32_t cell : medium.cells)
       {
         double *const of_cell = medium.record(cell);
-        const double  mass    = sums.present_mass(cell);
-        of_cell[Record::mass] = mass;
-        std::fill(of_cell + Record::moment, of_cell + Record::stride, 0.);
-        if (!(mass > 0))
+        std::fill(of_cell + Record::volume, of_cell + Record::stride, 0.);
+        double             mass = 0, controlled = 0;
+        MaterialBody<dim> *any = nullptr;
+        medium.for_each_in(cell, [&](auto &body, const double of_body) {
+          const double volume = of_body / body.stress->density();
+          any                 = &body;
+          mass += of_body;
+          of_cell[Record::volume] += volume;
+          controlled += body.description.chequerboard_control * volume;
+        });
+        if (any == nullptr)
           continue;
-        const auto gradients =
+        of_cell[Record::pattern] = controlled * of_cell[Record::volume] / mass;
+        // those of all of them, see LiquidMeans
+        const CellSums<dim> sums = any->cell_sums->view();
+        const auto          gradients =
           mean_gradients<dim>(parts.grid.geometry[cell],
                               CellMeans<Linear<dim>>(&sums, cell));
+        const double volume =
+          of_cell[Record::volume] *
+          (any->volume_shares.size() > 0 ? any->volume_shares[cell] : 1);
         for (unsigned int a = 0; a < n_nodes; ++a)
           for (int d = 0; d < dim; ++d)
-            of_cell[Record::rows + a * dim + d] =
-              mass * inverse_density * gradients[a][d];
+            of_cell[Record::rows + a * dim + d] = volume * gradients[a][d];
       }
 
-    const PointView<dim> points = medium.body->points.view();
-    for (std::size_t p = 0; p < points.size; ++p)
-      medium.record(points.cell[p])[Record::moment] +=
-        points.mass[p] * points.pressure[p];
+    for (const MaterialBody<dim> *const body : medium.bodies)
+      {
+        const PointView<dim> points          = body->points.view();
+        const double         inverse_density = 1 / body->stress->density();
+        for (std::size_t p = 0; p < points.size; ++p)
+          medium.record(points.cell[p])[Record::moment] +=
+            inverse_density * points.mass[p] * points.pressure[p];
+      }
   }
 
 
@@ -189,7 +206,7 @@ namespace limber
                   n_nodes,
                   0);
     const auto enter = [&](const std::uint32_t cell) {
-      if (medium.record(cell)[Record::mass] > 0)
+      if (medium.record(cell)[Record::volume] > 0)
         for (unsigned int a = 0; a < n_nodes; ++a)
           medium.around[std::size_t(node_of(cell, a)) * n_nodes + a] = cell + 1;
     };

@@ -113,7 +113,7 @@ namespace limber
           for (std::size_t l = 0; l < media.size(); ++l)
             {
               const double *const mate = media[l].record(corner.cell);
-              if (!(mate[Record::number] > 0 && mate[Record::mass] > 0))
+              if (!(mate[Record::number] > 0 && mate[Record::volume] > 0))
                 continue;
               double &value = equations.values[entry_of(row, l, corner.cell)];
               for (int d = 0; d < dim; ++d)

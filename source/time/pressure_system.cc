@@ -181,18 +181,15 @@ namespace limber
     constexpr double all = dim == 2 ? 4 : 16;
     for (std::size_t l = 0; l < cells.media.size(); ++l)
       {
-        const Medium &medium  = cells.media[l];
-        const double  density = medium.body->stress->density();
-        const double  factor  = medium.body->description.chequerboard_control *
-                              step * step / (n_nodes * density * density * all);
+        const Medium &medium = cells.media[l];
         for (const std::uint32_t node : parts.nodes.active_nodes())
           {
-            double mass = 0;
-            if (factor > 0 && is_inside(medium, node))
+            double sum = 0;
+            if (is_inside(medium, node))
               for (unsigned int k = 0; k < n_nodes; ++k)
-                mass +=
-                  medium.record(medium.cells_around(node)[k] - 1)[Record::mass];
-            pattern_scales[l][node] = factor * mass;
+                sum += medium.record(medium.cells_around(node)[k] -
+                                     1)[Record::pattern];
+            pattern_scales[l][node] = step * step / (n_nodes * all) * sum;
           }
       }
   }
@@ -290,6 +287,7 @@ namespace limber
     equations.right_side.assign(equations.n, 0.);
     former.assign(equations.n, {});
     growth.assign(equations.n, 0.);
+    may_be_cut.assign(equations.n, 0);
     for (std::size_t l = 0; l < media.size(); ++l)
       for (std::size_t k = 0; k < media[l].cells.size(); ++k)
         assemble_row(l, media[l].cells[k], media[l].first + k, step, share);
@@ -318,17 +316,16 @@ namespace limber
                                    l * in_body + place_in_row<dim>(0, 0) :
                                  entry_of(row, l, medium.cells[k])];
             const double *const of_cell = medium.record(medium.cells[k]);
-            if (!(of_cell[Record::mass] > 0))
+            if (!(of_cell[Record::volume] > 0))
               diagonal = 1;
             scales[row] = 1 / std::sqrt(diagonal);
             medium.result(medium.cells[k])[Result::scale] = scales[row];
             equations.right_side[row] *= scales[row];
-            if (!(of_cell[Record::mass] > 0))
+            if (!(of_cell[Record::volume] > 0))
               continue;
             pressures[row] =
-              of_cell[Record::moment] / of_cell[Record::mass] / scales[row];
-            const double volume = of_cell[Record::mass] /
-                                  medium.body->stress->density() * scales[row];
+              of_cell[Record::moment] / of_cell[Record::volume] / scales[row];
+            const double volume = of_cell[Record::volume] * scales[row];
             squares += volume * volume;
           }
         cells.share(medium, Result::scale);
@@ -353,27 +350,27 @@ namespace limber
                                     const double        step,
                                     const double        share)
   {
-    const auto   &media  = cells.media;
-    const Medium &medium = media[number];
-    if (!(medium.record(cell)[Record::mass] > 0))
+    const auto       &media  = cells.media;
+    const Medium     &medium = media[number];
+    const double      volume = medium.record(cell)[Record::volume];
+    const std::size_t begin  = std::size_t(row) * equations.width;
+    if (!(volume > 0))
       return;
-    const StressUpdate<dim> &law     = *medium.body->stress;
-    const double             density = law.density();
-    const double *const      own     = medium.record(cell);
-    const double             volume  = own[Record::mass] / density;
-    const std::size_t        begin   = std::size_t(row) * equations.width;
-    const double             control = medium.body->description.density_control;
 
-    const CellSums<dim> sums = medium.body->cell_sums->view();
-    const double        J =
-      sums.now[std::size_t(cell) * sums.stride + sums.volumetric()] /
-      own[Record::mass];
-    auto response = law.volumetric_response(J);
-    if (!medium.body->description.is_liquid)
-      response.pressure = own[Record::moment] / own[Record::mass];
-    former[row] = {response.pressure, volume / response.stiffness, J};
-    equations.right_side[row] =
-      volume * (response.pressure / response.stiffness);
+    // Those of one pressure, of which each takes what its stiffness lets it
+    double density  = 0; // of the last one, now: asked for where there is one
+    double control  = 0;
+    may_be_cut[row] = 1;
+    medium.for_each_in(cell, [&](const auto &body, const double mass) {
+      const Part part = part_of(medium, body, cell, mass);
+      density         = body.stress->density() / part.volume_ratio;
+      control += body.description.density_control * part.volume / volume;
+      equations.right_side[row] += part.compliance * part.pressure;
+      former[row].compliance += part.compliance;
+      if (!body.description.cuts_tension)
+        may_be_cut[row] = 0;
+    });
+    former[row].pressure = equations.right_side[row] / former[row].compliance;
 
     const auto entry_at = [&](const std::uint32_t node,
                               const unsigned int  a,
@@ -386,10 +383,9 @@ namespace limber
       {
         const std::uint32_t node = cells.node_of(cell, a);
         if (control > 0)
-          growth[row] +=
-            share * control / n_nodes *
-            (corners.empty() ? excess(cell, node, density / J) :
-                               excess_over_levels(node, density / J));
+          growth[row] += share * control / n_nodes *
+                         (corners.empty() ? excess(cell, node, density) :
+                                            excess_over_levels(node, density));
         if (const double scale = pattern_scales[number][node]; scale > 0)
           for_each_pattern<dim>(parts.grid.geometry[cell],
                                 [&](const unsigned int pattern,
@@ -408,6 +404,27 @@ namespace limber
     equations.values[corners.empty() ?
                        begin + number * in_body + place_in_row<dim>(0, 0) :
                        entry_of(row, number, cell)] += former[row].compliance;
+  }
+
+
+
+  template <int dim>
+  typename PressureSystem<dim>::Part
+  PressureSystem<dim>::part_of(const Medium            &medium,
+                               const MaterialBody<dim> &body,
+                               const std::uint32_t      cell,
+                               const double             mass) const
+  {
+    const double *const sums     = body.cell_sums->record(cell);
+    const double        J        = sums[(1 << dim) - 1] / mass;
+    const double        V        = mass / body.stress->density();
+    auto                response = body.stress->volumetric_response(J);
+    if (!medium.is_liquid())
+      {
+        const double *const own = medium.record(cell);
+        response.pressure       = own[Record::moment] / own[Record::volume];
+      }
+    return {V, response.pressure, V / response.stiffness, J};
   }
 
 

@@ -16,10 +16,10 @@ namespace limber
   bool
   PressureSystem<dim>::cuts_tension() const
   {
-    return std::any_of(cells.media.begin(),
-                       cells.media.end(),
-                       [](const Medium &medium) {
-                         return medium.body->description.cuts_tension;
+    return std::any_of(parts.bodies.begin(),
+                       parts.bodies.end(),
+                       [](const auto &body) {
+                         return body->description.cuts_tension;
                        });
   }
 
@@ -47,20 +47,17 @@ namespace limber
       }
 
     int any = 0;
-    for (const Medium &medium : cells.media)
-      if (medium.body->description.cuts_tension)
-        for (std::uint32_t row = medium.first;
-             row < medium.first + medium.cells.size();
-             ++row)
-          {
-            const bool changes =
-              is_cut[row] ? may_return && opening(row) < 0 : pressures[row] < 0;
-            if (!changes)
-              continue;
-            is_cut[row]    = !is_cut[row];
-            pressures[row] = 0;
-            any            = 1;
-          }
+    for (std::uint32_t row = 0; row < equations.n; ++row)
+      {
+        const bool changes =
+          may_be_cut[row] &&
+          (is_cut[row] ? may_return && opening(row) < 0 : pressures[row] < 0);
+        if (!changes)
+          continue;
+        is_cut[row]    = !is_cut[row];
+        pressures[row] = 0;
+        any            = 1;
+      }
     if (dealii::Utilities::MPI::max(any, parts.grid.communicator) == 0)
       return false;
     exclude_cut();

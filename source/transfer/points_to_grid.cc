@@ -61,8 +61,12 @@ namespace limber
              p += width)
           add(std::false_type(), p);
         if constexpr (kind == Projection::cell)
-          if (!what.pressure)
-            stress.drop_pressure();
+          {
+            if (!what.pressure)
+              stress.scale_pressure(0);
+            else if (rarely(what.volume_shares != nullptr))
+              stress.scale_pressure(what.volume_shares[batch.cell]);
+          }
         return stress.forces();
       }
     };

@@ -313,6 +313,13 @@ namespace limber
       return now.data() + std::size_t(cell) * stride;
     }
 
+    /** The same, for bodies that take what they have in common. */
+    double *
+    record(const std::uint32_t cell)
+    {
+      return now.data() + std::size_t(cell) * stride;
+    }
+
     /**
      * Complete the sums gathered since the last time with those of other
      * ranks and make them the present ones; what was gathered before is

@@ -352,12 +352,12 @@ namespace limber
         }
     }
 
-    /** Leave out what the pressure of the points has given so far. */
+    /** Let only a share count of what the pressure of the points has given. */
     void
-    drop_pressure()
+    scale_pressure(const double share)
     {
       static_assert(mean_pressure);
-      pressure = Number{};
+      pressure *= share;
     }
 
     /** The forces on the nodes, one lane each, for each direction. */

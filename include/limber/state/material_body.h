@@ -58,6 +58,9 @@ namespace limber
     // Per cell, what the volumetric variable gets in this step against
     // chequerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};
+    // Per cell, the dilation of this liquid over the mean divergence of the
+    // cell (LiquidMeans); empty for all other bodies
+    LazyArray<double> volume_shares = {};
     // Of an implicit pressure, by cell; only where the body has one
     std::optional<ImplicitFields> implicit = {};
 

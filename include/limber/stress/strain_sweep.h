@@ -108,6 +108,9 @@ namespace limber
         motion.step   = what.step;
         motion.square = what.square;
         batch.strain.template evaluate<Number, uses_spin>(xi, motion);
+        if constexpr (kind == Projection::cell)
+          if (rarely(what.volume_shares != nullptr))
+            motion.volumetric *= what.volume_shares[batch.cell_number];
         if (rarely(batch.implicit != nullptr))
           {
             motion.mean_volume    = true;

@@ -70,6 +70,9 @@ namespace limber
     // Per cell, what that variable gets besides; null: nothing.
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
+    // By cell, with Projection::cell: the dilation of a liquid over the mean
+    // divergence of the cell (LiquidMeans); null: one
+    const double *volume_shares = nullptr;
     // Of an implicit pressure, with Projection::cell; null: there is none
     const CellPressures *implicit = nullptr;
     // The divergence, likewise projected (GiveToGrid::projected_pressure)

@@ -7,6 +7,7 @@
 #include <limber/time/body_sweeps.h>
 #include <limber/time/contact.h>
 #include <limber/time/full_mass_filter.h>
+#include <limber/time/liquid_means.h>
 #include <limber/time/obstacle_contact.h>
 #include <limber/time/relocation.h>
 #include <limber/time/stabilization.h>
@@ -217,6 +218,7 @@ namespace limber
     BoundaryConditions<dim> boundaries;
     ExternalLoads<dim>      loads;
     BodySweeps<dim>         sweeps;
+    LiquidMeans<dim>        liquid_means;
     bool touched = false; // bodies or obstacles, in the step before
     std::optional<Contact<dim>>         contact;   // of bodies that may part
     std::optional<ObstacleContact<dim>> obstacles; // where the scene has any

@@ -9,16 +9,18 @@ namespace limber
   /**
    * The pressure of bodies that are averaged over cells, at the end of a step
    * and together with the velocity that it leaves: sound then does not limit
-   * the step. With B the mean divergence of a body in a cell times the volume
+   * the step. With B the mean divergence of a medium in a cell times the volume
    * V of its points there, P its mean of J p and v* the velocity of the nodes
    * without these pressures,
    *
    *   v1 = v* + dt M^-1 B^T P1,
    *   C (P1 - P0) = - dt B v1 - gamma T P1 + V e,   C = V / kappa,
    *
-   * where P0 and kappa = -J d(J p)/dJ are those of the mean J of the cell. This
-   * is one symmetric positive definite system, with one unknown for each cell
-   * of each body,
+   * where P0 and kappa = -J d(J p)/dJ are those of the mean J of the cell. The
+   * liquids in a cell are one medium, of one pressure: C and C P0 are the sums
+   * over them, B has the points of all (LiquidMeans), and each dilates by
+   * (P0_k - P1)/kappa_k. This is one symmetric positive definite system, with
+   * one unknown for each cell of each medium,
    *
    *   (C + dt^2 B M^-1 B^T + gamma T) P1 = C P0 - dt B v* + V e.
    *
@@ -108,17 +110,19 @@ namespace limber
     using Medium                          = typename PressureCells<dim>::Medium;
     using Record                          = typename PressureCells<dim>::Record;
     using Result                          = typename PressureCells<dim>::Result;
+    using Part                            = typename PressureSystem<dim>::Part;
     static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
     void
     keep_result(std::size_t medium);
     void
-    keep_dilation(Medium &medium);
+    find_dilations(std::size_t medium);
+    void
+    keep_dilation(Medium &medium, MaterialBody<dim> &body);
     double
-    elastic_work(const Medium &medium,
-                 std::uint32_t row,
-                 double        volume,
-                 double        dilation) const;
+    elastic_work(const MaterialBody<dim> &body,
+                 const Part              &part,
+                 double                   pressure) const;
     void
     push_nodes(double step);
 

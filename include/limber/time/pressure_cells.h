@@ -12,10 +12,11 @@
 namespace limber
 {
   /**
-   * The cells of bodies whose pressure is implicit, numbered: one unknown for
-   * each cell of each body, those of a rank together and in the order of ranks.
-   * Empty cells near the material have numbers too, so that the same serve for
-   * some steps.
+   * The cells of media whose pressure is implicit, numbered: one unknown for
+   * each cell of each medium, those of a rank together and in the order of
+   * ranks. All liquids are one medium: those in a cell have one pressure. Each
+   * solid is one. Empty cells near the material have numbers too, so that the
+   * same serve for some steps.
    */
   template <int dim>
   class PressureCells
@@ -23,14 +24,16 @@ namespace limber
   public:
     static constexpr unsigned int n_nodes = 1 << dim; // of a cell
 
-    /** What ranks tell each other of a cell of a body. */
+    /** What ranks tell each other of a cell of a medium. */
     struct Record
     {
       static constexpr unsigned int number = 0; // of the unknown, from 1 on
-      static constexpr unsigned int mass   = 1; // kg
-      static constexpr unsigned int moment = 2; // sum of m J p, kg Pa
-      static constexpr unsigned int rows   = 3; // B by nodes, m^2 or m
-      static constexpr unsigned int stride = rows + n_nodes * dim;
+      static constexpr unsigned int volume = 1; // V, without pressure, m^3
+      static constexpr unsigned int moment = 2; // sum of V J p, J
+      // gamma V^2/m, m^6/kg, gamma being the mean chequerboard control
+      static constexpr unsigned int pattern = 3;
+      static constexpr unsigned int rows    = 4; // B by nodes, m^2 or m
+      static constexpr unsigned int stride  = rows + n_nodes * dim;
     };
 
     /** Pressure and dilation, for ranks that have points in a cell. */
@@ -41,18 +44,43 @@ namespace limber
       static constexpr unsigned int stride = 2;
     };
 
-    /** A body whose pressure is implicit. */
+    /** Bodies whose pressure is implicit: the liquids, or a solid. */
     struct Medium
     {
-      MaterialBody<dim> *body;
-      LazyArray<double>  records; // by cell
-      // By node, the cell of the body at each place around it, from 1 on: the
+      std::vector<MaterialBody<dim> *> bodies;
+      LazyArray<double>                records; // by cell
+      // By node, the cell of the medium at each place around it, from 1 on: the
       // node is corner k of the cell at place k.
       LazyArray<std::uint32_t> around;
       LazyArray<double>        results; // by cell
       // Owned, in the order of their rows; the first of these, here
       std::vector<std::uint32_t> cells;
       std::uint32_t              first = 0;
+
+      bool
+      is_liquid() const
+      {
+        return bodies.front()->description.is_liquid;
+      }
+
+      /** Call work(body, mass) for the bodies in a cell of this rank. */
+      template <class Work>
+      void
+      for_each_in(const std::uint32_t cell, const Work &work) const
+      {
+        for (MaterialBody<dim> *const body : bodies)
+          if (const double mass = body->cell_sums->view().present_mass(cell);
+              mass > 0)
+            work(*body, mass);
+      }
+
+      bool
+      is_in(const std::uint32_t cell) const
+      {
+        return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
+          return body->cell_sums->view().present_mass(cell) > 0;
+        });
+      }
 
       double *
       record(const std::uint32_t cell)
@@ -79,7 +107,7 @@ namespace limber
       {
         return around.data() + std::size_t(node) * n_nodes;
       }
-      /** Whether the body is in all cells around a node. */
+      /** Whether the medium is in all cells around a node. */
       bool
       is_inside(const std::uint32_t node) const
       {

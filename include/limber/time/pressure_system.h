@@ -80,15 +80,30 @@ namespace limber
     // By row
     struct Former
     {
-      double pressure;     // P0, Pa
-      double compliance;   // C, m^3/Pa
-      double volume_ratio; // mean J of its points, or what a law has for it
+      double pressure;   // P0, Pa
+      double compliance; // C, m^3/Pa
     };
     std::vector<Former> former;
     std::vector<double> growth;        // e
     std::vector<double> pressures;     // P1, Pa; over the scales while solved
     std::vector<double> scales;        // of rows and columns
     std::vector<unsigned char> is_cut; // its tension; empty: none is
+
+    /** What a body is in a cell. */
+    struct Part
+    {
+      double volume;       // V, m^3
+      double pressure;     // P0 of this body, Pa
+      double compliance;   // V/kappa, m^3/Pa
+      double volume_ratio; // mean J of its points, or what a law has for it
+    };
+
+    /** Of @p mass kg in a cell of this rank. */
+    Part
+    part_of(const Medium            &medium,
+            const MaterialBody<dim> &body,
+            std::uint32_t            cell,
+            double                   mass) const;
 
   private:
     using Layout                          = NodeLayout<dim>;
@@ -141,11 +156,11 @@ namespace limber
     BoundaryConditions<dim> &boundaries;
     PressureCells<dim>      &cells;
     CornersOfNodes<dim>      corners;     // where cells have several sizes
-    unsigned int             in_body = 0; // places of a body in a row
+    unsigned int             in_body = 0; // places of a medium in a row
     // By node and component: 1/m, or 0 where a side holds it; and the velocity
     // without the pressures, or that of the side
     LazyArray<double> mobility, velocity;
-    // By body and node, for T: gamma dt^2 <M> / (rho_0^2 4^(dim - 1)) where all
+    // By medium and node, for T: gamma dt^2 <V^2/m> / 4^(dim - 1) where all
     // cells around are occupied, else 0
     std::vector<LazyArray<double>> pattern_scales;
     // By place in a row: the cell that it stands for
@@ -155,6 +170,8 @@ namespace limber
     const bool        needs_volumes;
     LazyArray<double> volumes;
     RecordExchange    volume_exchange{1};
+    // By row, whether none of the bodies in the cell bears tension
+    std::vector<unsigned char> may_be_cut;
     // Matrix and right side of all cells, where some are cut off
     std::vector<double> whole, whole_right_side;
   };

@@ -19,6 +19,9 @@ namespace limber
     // The pressure projected on nodes, or of domains averaged over cells
     // (nodal_means.h, domain_means.h), where that is asked
     const double *projected_pressure = nullptr;
+    // By cell, with Projection::cell: the factor of the pressures of a liquid
+    // (LiquidMeans); null: one
+    const double *volume_shares = nullptr;
   };
 
 

@@ -173,11 +173,16 @@ namespace limber
 
           if constexpr (Force::any)
             if constexpr (Force::has_means)
-              add_means<Basis>(cell,
-                               nodes,
-                               CellMeans<Basis>(sums, batch.cell),
-                               on_means,
-                               of_batch);
+              {
+                if (rarely(what.volume_shares != nullptr))
+                  for (int d = 0; d < dim; ++d)
+                    on_means[d][d] *= what.volume_shares[batch.cell];
+                add_means<Basis>(cell,
+                                 nodes,
+                                 CellMeans<Basis>(sums, batch.cell),
+                                 on_means,
+                                 of_batch);
+              }
           of_batch.add_to_nodes(nodes, grid.nodes);
         });
     }

@@ -96,7 +96,7 @@ namespace
     bool
     is_full(const std::uint32_t cell) const
     {
-      return water().record(cell)[PressureCells<dim>::Record::mass] > 0;
+      return water().record(cell)[PressureCells<dim>::Record::volume] > 0;
     }
 
     /** The matrix by rows and columns. */

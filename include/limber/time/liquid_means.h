@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_liquid_means_h
+#define limber_time_liquid_means_h
+
+#include <limber/time/integrator.h>
+
+namespace limber
+{
+  /**
+   * The mean divergence of liquids in a cell: of which places it is the mean,
+   * and what part of it a liquid takes. Both are written where the sweeps look
+   * them up, in the sums of the cell and in MaterialBody::volume_shares, so
+   * that strain and force have the same, one as the transpose of the other.
+   *
+   * Inside, where all nodes of a cell have material in all cells around them,
+   * the mean is that over the cell and not over the points in it, and what they
+   * fill of it counts as all of it. Means over points do not see that points
+   * part from each other where the divergence is above the mean: they would
+   * make way without work against the pressure p, as if by a stiffness of - p
+   * against the deviations of the divergence, and water at rest would be
+   * unstable.
+   *
+   * Where several liquids share a cell, all have the mean over the points of
+   * all of them, weighted by volume; one for each would be more conditions than
+   * the nodes of a cell can meet. As pressures are to stay equal, the liquid k
+   * of the volume share phi_k and the stiffness kappa_k = -J d(J p)/dJ takes
+   *
+   *   s_k = (1/kappa_k) / sum_j phi_j/kappa_j,   sum_k phi_k s_k = 1,
+   *
+   * of the divergence. Those whose pressure is implicit have one in common and
+   * need no s_k. Liquids with fields of nodes of their own (contact) share
+   * nothing. Theory: doc/theory/locking.md.
+   */
+  template <int dim>
+  class LiquidMeans
+  {
+  public:
+    explicit LiquidMeans(const RunParts<dim> &parts);
+
+    /** Adopt a mesh that has changed. */
+    void
+    reinit();
+
+    /** At the beginning of a step, when the sums of the cells are complete.
+     * Collective. */
+    void
+    find();
+
+  private:
+    using MaterialBody                    = limber::MaterialBody<dim>;
+    static constexpr unsigned int n_nodes = 1 << dim;
+
+    /** Liquids that give to the same nodes, and the solids that do. */
+    struct Group
+    {
+      std::vector<MaterialBody *> liquids, solids;
+      bool                        is_linear; // the functions of the nodes
+    };
+
+    /** One of the liquids in a cell. */
+    struct Part
+    {
+      MaterialBody *body;
+      double       *sums;   // CellSums
+      double        mass;   // kg
+      double        volume; // without pressure, m^3
+      double        share;  // s_k
+    };
+
+    void
+    look_around(const Group &group);
+    void
+    find(const Group &group, std::uint32_t cell);
+    void
+    mix();
+    void
+    fill(std::uint32_t cell);
+    void
+    centre(unsigned int direction);
+    bool
+    is_inside(std::uint32_t cell) const;
+    bool
+    is_between(std::uint32_t cell, unsigned int direction) const;
+    bool
+    holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
+
+    std::uint32_t
+    node_of(const std::uint32_t cell, const unsigned int corner) const
+    {
+      return parts.grid.geometry[cell].node[corner] / NodeLayout<dim>::stride;
+    }
+
+    const RunParts<dim> parts;
+    std::vector<Group>  groups;
+    std::vector<Part>   in_cell;
+    // By node, which of the cells around it hold something: the sum of 2^k, the
+    // node being their corner k
+    LazyArray<double> around;
+    RecordExchange    exchange{1};
+  };
+} // namespace limber
+
+#endif
