@@ -2,6 +2,7 @@
 #include <limber/time/liquid_means.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace limber
@@ -11,6 +12,11 @@ namespace limber
     // Limits of what counts as all of a cell over what is in it: more would
     // make sound faster than the step allows for.
     constexpr double least_share = 0.8, largest_share = 1.25;
+
+    // Where a cell holds too much or too little by @p clumped of it or more,
+    // means over points keep this share: as found with water at rest that has
+    // been stirred.
+    constexpr double share_of_points = 0.3, clumped = 0.1;
   } // namespace
 
 
@@ -21,19 +27,22 @@ namespace limber
   {
     std::map<unsigned int, Group> by_field;
     for (auto &body : parts.bodies)
-      {
-        Group &group = by_field[body->description.nodal_field];
-        if (body->description.is_liquid && body->cell_sums &&
-            body->stress->projection().kind == Projection::cell)
-          group.liquids.push_back(body.get());
-        else if (body->cell_sums)
-          group.solids.push_back(body.get());
-      }
+      if (body->cell_sums)
+        {
+          Group &group = by_field[body->description.nodal_field];
+          if (body->description.is_liquid &&
+              body->stress->projection().kind == Projection::cell)
+            group.liquids.push_back(body.get());
+          else
+            group.solids.push_back(body.get());
+        }
     for (auto &[field, group] : by_field)
       if (!group.liquids.empty())
         {
-          group.is_linear = group.liquids.front()->cell_sums->stride == n_nodes;
-          if (group.is_linear || group.liquids.size() > 1)
+          const MaterialBody &first = *group.liquids.front();
+          group.fills_cells =
+            !first.implicit && first.cell_sums->stride == n_nodes;
+          if (group.fills_cells || group.liquids.size() > 1)
             groups.push_back(std::move(group));
         }
     reinit();
@@ -45,15 +54,17 @@ namespace limber
   void
   LiquidMeans<dim>::reinit()
   {
-    if (groups.empty())
-      return;
-    around.reinit(parts.nodes.vertices().table.n());
     for (const Group &group : groups)
-      for (MaterialBody *const body : group.liquids)
-        {
-          body->volume_shares.reinit(parts.grid.n_cells());
-          std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
-        }
+      {
+        if (group.fills_cells)
+          around.reinit(parts.nodes.vertices().table.n());
+        for (MaterialBody *const body : group.liquids)
+          if (!body->implicit)
+            {
+              body->volume_shares.reinit(parts.grid.n_cells());
+              std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
+            }
+      }
   }
 
 
@@ -65,7 +76,7 @@ namespace limber
     const NodalFields<dim> &vertices = parts.nodes.vertices();
     for (const Group &group : groups)
       {
-        if (group.is_linear)
+        if (group.fills_cells)
           look_around(group);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
@@ -114,7 +125,7 @@ namespace limber
     for (unsigned int a = 0; a < n_nodes; ++a)
       {
         const std::uint32_t node = node_of(cell, a);
-        const auto          n =
+        const int           n =
           __builtin_popcount(static_cast<unsigned int>(around[node]));
         if (n << __builtin_popcount(sides[node]) < int(n_nodes))
           return false;
@@ -124,24 +135,20 @@ namespace limber
 
 
 
-  // Whether there is something, or a side of the grid, before and behind it.
+  // Whether there is something, or a side of the grid, before or behind it.
   template <int dim>
   bool
-  LiquidMeans<dim>::is_between(const std::uint32_t cell,
-                               const unsigned int  direction) const
+  LiquidMeans<dim>::has_neighbour(const std::uint32_t cell,
+                                  const unsigned int  direction,
+                                  const unsigned int  end) const
   {
-    const auto &sides = parts.nodes.vertices().table.sides;
-    for (const unsigned int end : {0u, 1u})
-      {
-        // a corner, which is the opposite one of the neighbour
-        const unsigned int  a    = end << direction;
-        const std::uint32_t node = node_of(cell, a);
-        const unsigned int  mate = a ^ 1u << direction;
-        if (!(static_cast<unsigned int>(around[node]) >> mate & 1) &&
-            !(sides[node] >> (2 * direction + end) & 1))
-          return false;
-      }
-    return true;
+    // a corner of the cell, and which one of the neighbour that is
+    const unsigned int  a    = end << direction;
+    const unsigned int  mate = a ^ 1u << direction;
+    const std::uint32_t node = node_of(cell, a);
+    return (static_cast<unsigned int>(around[node]) >> mate & 1) ||
+           (parts.nodes.vertices().table.sides[node] >> (2 * direction + end) &
+            1);
   }
 
 
@@ -164,13 +171,9 @@ namespace limber
     if (in_cell.size() > 1)
       mix();
     for (const Part &part : in_cell)
-      part.body->volume_shares[cell] = part.body->implicit ? 1 : part.share;
-    if (!group.is_linear || in_cell.empty() || holds(group.solids, cell))
-      return;
-    for (unsigned int d = 0; d < dim; ++d)
-      if (is_between(cell, d))
-        centre(d);
-    if (is_inside(cell))
+      if (!part.body->implicit)
+        part.body->volume_shares[cell] = part.share;
+    if (group.fills_cells && !in_cell.empty() && !holds(group.solids, cell))
       fill(cell);
   }
 
@@ -204,34 +207,69 @@ namespace limber
 
 
 
-  // Along a direction, the means over the cell: of all monomials that have it.
   template <int dim>
   void
-  LiquidMeans<dim>::centre(const unsigned int direction)
+  LiquidMeans<dim>::fill(const std::uint32_t cell)
+  {
+    const double filled = filling(cell);
+    const bool   inside = is_inside(cell);
+    const double share =
+      inside ?
+        1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
+        1;
+    unsigned int n_open = 0, open = 0; // directions that end at a surface
+    bool         before = true, behind = true;
+    for (unsigned int d = 0; d < dim; ++d)
+      if (inside || (has_neighbour(cell, d, 0) && has_neighbour(cell, d, 1)))
+        approach(d, 0.5, share);
+      else
+        {
+          ++n_open;
+          open   = d;
+          before = has_neighbour(cell, d, 0);
+          behind = has_neighbour(cell, d, 1);
+        }
+    if (n_open == 1 && (before || behind))
+      {
+        const double half = 0.5 * std::min(1., filled);
+        approach(open, before ? half : 1 - half, share);
+      }
+    if (inside)
+      for (const Part &part : in_cell)
+        part.body->volume_shares[cell] *=
+          std::min(std::max(1 / filled, least_share), largest_share);
+  }
+
+
+
+  // Bring the mean of the coordinate along a direction, and those of all
+  // monomials that have it, a share of the way to this mean.
+  template <int dim>
+  void
+  LiquidMeans<dim>::approach(const unsigned int direction,
+                             const double       mean,
+                             const double       share)
   {
     const unsigned int bit = 1u << direction;
     for (const Part &part : in_cell)
       for (unsigned int k = bit; k < n_nodes - 1; ++k)
         if (k & bit)
-          part.sums[k] = 0.5 * part.sums[k ^ bit];
+          part.sums[k] += share * (mean * part.sums[k ^ bit] - part.sums[k]);
   }
 
 
 
-  // What is in the cell counts as all of it.
+  // What liquids take of the cell.
   template <int dim>
-  void
-  LiquidMeans<dim>::fill(const std::uint32_t cell)
+  double
+  LiquidMeans<dim>::filling(const std::uint32_t cell) const
   {
-    double room = 1, filled = 0;
+    double result = 0;
+    for (const Part &part : in_cell)
+      result += part.sums[n_nodes - 1] * (part.volume / part.mass); // J V
     for (int d = 0; d < dim; ++d)
-      room /= parts.grid.geometry[cell].inverse_edge[d];
-    for (const Part &part : in_cell)
-      filled += part.sums[n_nodes - 1] * (part.volume / part.mass); // J V
-    const double share =
-      std::min(std::max(room / filled, least_share), largest_share);
-    for (const Part &part : in_cell)
-      part.body->volume_shares[cell] *= share;
+      result *= parts.grid.geometry[cell].inverse_edge[d];
+    return result;
   }
 
 

@@ -163,12 +163,10 @@ namespace limber
         const auto          gradients =
           mean_gradients<dim>(parts.grid.geometry[cell],
                               CellMeans<Linear<dim>>(&sums, cell));
-        const double volume =
-          of_cell[Record::volume] *
-          (any->volume_shares.size() > 0 ? any->volume_shares[cell] : 1);
         for (unsigned int a = 0; a < n_nodes; ++a)
           for (int d = 0; d < dim; ++d)
-            of_cell[Record::rows + a * dim + d] = volume * gradients[a][d];
+            of_cell[Record::rows + a * dim + d] =
+              of_cell[Record::volume] * gradients[a][d];
       }
 
     for (const MaterialBody<dim> *const body : medium.bodies)

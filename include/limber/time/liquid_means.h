@@ -12,14 +12,6 @@ namespace limber
    * them up, in the sums of the cell and in MaterialBody::volume_shares, so
    * that strain and force have the same, one as the transpose of the other.
    *
-   * Inside, where all nodes of a cell have material in all cells around them,
-   * the mean is that over the cell and not over the points in it, and what they
-   * fill of it counts as all of it. Means over points do not see that points
-   * part from each other where the divergence is above the mean: they would
-   * make way without work against the pressure p, as if by a stiffness of - p
-   * against the deviations of the divergence, and water at rest would be
-   * unstable.
-   *
    * Where several liquids share a cell, all have the mean over the points of
    * all of them, weighted by volume; one for each would be more conditions than
    * the nodes of a cell can meet. As pressures are to stay equal, the liquid k
@@ -29,7 +21,17 @@ namespace limber
    *
    * of the divergence. Those whose pressure is implicit have one in common and
    * need no s_k. Liquids with fields of nodes of their own (contact) share
-   * nothing. Theory: doc/theory/locking.md.
+   * nothing.
+   *
+   * Where the pressure is explicit and nodes are corners of cells, the mean
+   * inside is that over the cell and not over the points in it, and what they
+   * fill of it counts as all of it. Means over points do not see that points
+   * part from each other where the divergence is above the mean: they would make
+   * way without work against the pressure p, as if by a stiffness of - p against
+   * deviations of the divergence, and water at rest would be unstable. In a
+   * layer at a surface the cell counts as filled from within. Where points have
+   * clumped, means over them push clumps apart and keep a share. Theory:
+   * doc/theory/treatments.md.
    */
   template <int dim>
   class LiquidMeans
@@ -54,7 +56,7 @@ namespace limber
     struct Group
     {
       std::vector<MaterialBody *> liquids, solids;
-      bool                        is_linear; // the functions of the nodes
+      bool fills_cells = false; // whether means over the cell are wanted
     };
 
     /** One of the liquids in a cell. */
@@ -76,11 +78,15 @@ namespace limber
     void
     fill(std::uint32_t cell);
     void
-    centre(unsigned int direction);
+    approach(unsigned int direction, double mean, double share);
+    double
+    filling(std::uint32_t cell) const;
     bool
     is_inside(std::uint32_t cell) const;
     bool
-    is_between(std::uint32_t cell, unsigned int direction) const;
+    has_neighbour(std::uint32_t cell,
+                  unsigned int  direction,
+                  unsigned int  end) const;
     bool
     holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
 
