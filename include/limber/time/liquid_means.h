@@ -26,11 +26,11 @@ namespace limber
    * Where the pressure is explicit and nodes are corners of cells, the mean
    * inside is that over the cell and not over the points in it, and what they
    * fill of it counts as all of it. Means over points do not see that points
-   * part from each other where the divergence is above the mean: they would make
-   * way without work against the pressure p, as if by a stiffness of - p against
-   * deviations of the divergence, and water at rest would be unstable. In a
-   * layer at a surface the cell counts as filled from within. Where points have
-   * clumped, means over them push clumps apart and keep a share. Theory:
+   * part from each other where the divergence is above the mean: they would
+   * make way without work against the pressure p, as if by a stiffness of - p
+   * against deviations of the divergence, and water at rest would be unstable.
+   * In a layer at a surface the cell counts as filled from within. Where points
+   * have clumped, means over them push clumps apart and keep a share. Theory:
    * doc/theory/treatments.md.
    */
   template <int dim>

@@ -43,8 +43,9 @@ namespace
                 "\n set Bulk modulus = " + digits(liquid.bulk_modulus) +
                 "\n end\nend\n";
       }
-    return "set Dimension = " + std::to_string(dim) + "\nset Bodies = " +
-           names + "\n" + text + "subsection Grid\n set Upper corner = 1, 1" +
+    return "set Dimension = " + std::to_string(dim) +
+           "\nset Bodies = " + names + "\n" + text +
+           "subsection Grid\n set Upper corner = 1, 1" +
            (dim == 3 ? ", 0.25\n set Cells = 8, 8, 2" : "\n set Cells = 8, 8") +
            "\nend\nsubsection Loads\n set Gravity = 0, -9.81" +
            (dim == 3 ? ", 0" : "") + "\nend\n";
@@ -94,12 +95,11 @@ namespace
     const std::vector<std::string> steps = {"Method/Time integration=" +
                                             integration};
     SceneRun<dim> whole(basin(dim, {{"water", "0, 0", "0.75, 0.5"}}), steps);
-    SceneRun<dim> halves(basin(dim,
-                               {{"left", "0, 0", "0.45833333333333331, 0.5"},
-                                {"right",
-                                 "0.45833333333333331, 0",
-                                 "0.75, 0.5"}}),
-                         steps);
+    SceneRun<dim> halves(
+      basin(dim,
+            {{"left", "0, 0", "0.45833333333333331, 0.5"},
+             {"right", "0.45833333333333331, 0", "0.75, 0.5"}}),
+      steps);
     const double end      = 0.1;
     const auto   expected = places_after(whole, end);
     const auto   found    = places_after(halves, end);
