@@ -109,8 +109,11 @@ namespace limber
         motion.square = what.square;
         batch.strain.template evaluate<Number, uses_spin>(xi, motion);
         if constexpr (kind == Projection::cell)
-          if (rarely(what.volume_shares != nullptr))
-            motion.volumetric *= what.volume_shares[batch.cell_number];
+          if (rarely(what.volume_shares != nullptr && !batch.implicit))
+            // with what is of second order in the step, or what turns would
+            // grow
+            motion.volumetric += (what.volume_shares[batch.cell_number] - 1) *
+                                 (motion.volume_ratio() - 1.);
         if (rarely(batch.implicit != nullptr))
           {
             motion.mean_volume    = true;
