@@ -333,8 +333,10 @@ TEST(Contact, ABlockRestsOnAPlateWithoutAGap)
           {"Body block/Box/Lower corner=1, " + digits(face + 0.3 * h),
             "Body block/Box/Upper corner=2, " + digits(face + 0.3 * h + 0.5),
             "Body block/Points per cell edge=2",
+            "Body block/Placement=fitted", // half an edge from the faces
             "Body plate/Box/Upper corner=4, " + digits(face),
             "Body plate/Points per cell edge=2",
+            "Body plate/Placement=fitted",
             "Method/Kernel=" + kernel,
             "Method/Damping rate=10",
             "Loads/Gravity=0, -1"});
