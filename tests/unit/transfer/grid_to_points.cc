@@ -137,7 +137,7 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
               }
         }
       EXPECT_NEAR(summary.speed_squared, largest, 1e-13);
-      EXPECT_NEAR(summary.removed, removed, 1e-12 * points.size);
+      EXPECT_NEAR(summary.removed, removed, 1e-13 * points.size);
       EXPECT_EQ(summary.displacement, 0.);
 
       // everything else, and what lies behind the points, is as it was
