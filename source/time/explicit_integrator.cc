@@ -106,6 +106,7 @@ namespace limber
 
     clear();
     liquid_means.find();
+    loads.look_at_cells(parts.nodes.vertices());
     lap(Verb::stabilize);
     control_chequerboards();
     do_scheme();

@@ -24,6 +24,7 @@ namespace limber
   template <int dim>
   LiquidMeans<dim>::LiquidMeans(const RunParts<dim> &parts)
     : parts(parts)
+    , surroundings(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
     for (auto &body : parts.bodies)
@@ -55,16 +56,16 @@ namespace limber
   LiquidMeans<dim>::reinit()
   {
     for (const Group &group : groups)
-      {
-        if (group.fills_cells)
-          around.reinit(parts.nodes.vertices().table.n());
-        for (MaterialBody *const body : group.liquids)
-          if (!body->implicit)
-            {
-              body->volume_shares.reinit(parts.grid.n_cells());
-              std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
-            }
-      }
+      for (MaterialBody *const body : group.liquids)
+        if (!body->implicit)
+          {
+            body->volume_shares.reinit(parts.grid.n_cells());
+            std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
+          }
+    if (std::any_of(groups.begin(), groups.end(), [](const Group &group) {
+          return group.fills_cells;
+        }))
+      surroundings.reinit();
   }
 
 
@@ -77,7 +78,9 @@ namespace limber
     for (const Group &group : groups)
       {
         if (group.fills_cells)
-          look_around(group);
+          surroundings.find(vertices, [&](const std::uint32_t cell) {
+            return holds(group.liquids, cell) || holds(group.solids, cell);
+          });
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
           for (const std::uint32_t cell : *cells)
@@ -95,60 +98,6 @@ namespace limber
     return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
       return body->cell_sums->view().present_mass(cell) > 0;
     });
-  }
-
-
-
-  template <int dim>
-  void
-  LiquidMeans<dim>::look_around(const Group &group)
-  {
-    const NodalFields<dim> &vertices = parts.nodes.vertices();
-    for (const std::uint32_t node : vertices.active_nodes())
-      around[node] = 0;
-    for (const std::uint32_t cell : vertices.owned_occupied_cells())
-      if (holds(group.liquids, cell) || holds(group.solids, cell))
-        for (unsigned int a = 0; a < n_nodes; ++a)
-          around[node_of(cell, a)] += 1u << a;
-    exchange.start(vertices.node_plan(), around.data(), 0, 1);
-    exchange.finish(around.data());
-  }
-
-
-
-  // A node in the middle of an edge has fewer cells than there are around it.
-  template <int dim>
-  bool
-  LiquidMeans<dim>::is_inside(const std::uint32_t cell) const
-  {
-    const auto &sides = parts.nodes.vertices().table.sides;
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      {
-        const std::uint32_t node = node_of(cell, a);
-        const int           n =
-          __builtin_popcount(static_cast<unsigned int>(around[node]));
-        if (n << __builtin_popcount(sides[node]) < int(n_nodes))
-          return false;
-      }
-    return true;
-  }
-
-
-
-  // Whether there is something, or a side of the grid, before or behind it.
-  template <int dim>
-  bool
-  LiquidMeans<dim>::has_neighbour(const std::uint32_t cell,
-                                  const unsigned int  direction,
-                                  const unsigned int  end) const
-  {
-    // a corner of the cell, and which one of the neighbour that is
-    const unsigned int  a    = end << direction;
-    const unsigned int  mate = a ^ 1u << direction;
-    const std::uint32_t node = node_of(cell, a);
-    return (static_cast<unsigned int>(around[node]) >> mate & 1) ||
-           (parts.nodes.vertices().table.sides[node] >> (2 * direction + end) &
-            1);
   }
 
 
@@ -212,7 +161,7 @@ namespace limber
   LiquidMeans<dim>::fill(const std::uint32_t cell)
   {
     const double filled = filling(cell);
-    const bool   inside = is_inside(cell);
+    const bool   inside = surroundings.is_inside(cell);
     const double share =
       inside ?
         1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
@@ -220,14 +169,15 @@ namespace limber
     unsigned int n_open = 0, open = 0; // directions that end at a surface
     bool         before = true, behind = true;
     for (unsigned int d = 0; d < dim; ++d)
-      if (inside || (has_neighbour(cell, d, 0) && has_neighbour(cell, d, 1)))
+      if (inside || (surroundings.is_bounded(cell, d, 0) &&
+                     surroundings.is_bounded(cell, d, 1)))
         approach(d, 0.5, share);
       else
         {
           ++n_open;
           open   = d;
-          before = has_neighbour(cell, d, 0);
-          behind = has_neighbour(cell, d, 1);
+          before = surroundings.is_bounded(cell, d, 0);
+          behind = surroundings.is_bounded(cell, d, 1);
         }
     if (n_open == 1 && (before || behind))
       {

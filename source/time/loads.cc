@@ -48,6 +48,7 @@ namespace limber
     : problem(problem)
     , grid(grid)
     , bodies(bodies)
+    , hydrostatic(problem, grid, bodies)
     , forces(n_nodal_fields(problem))
   {
     for (const FaceLoad<dim> &load : problem.loads.faces)
@@ -63,7 +64,7 @@ namespace limber
   bool
   ExternalLoads<dim>::any() const
   {
-    return problem.loads.body_force || !faces.empty();
+    return problem.loads.body_force || !faces.empty() || hydrostatic.any();
   }
 
 
@@ -75,6 +76,8 @@ namespace limber
     if (any())
       for (LazyArray<double> &of_field : forces)
         of_field.reinit(grid.nodes().n() * dim);
+    if (hydrostatic.any())
+      hydrostatic.reinit();
     exchange_pieces();
   }
 
@@ -215,6 +218,16 @@ namespace limber
 
   template <int dim>
   void
+  ExternalLoads<dim>::look_at_cells(const NodalFields<dim> &nodes)
+  {
+    if (hydrostatic.any())
+      hydrostatic.find(nodes);
+  }
+
+
+
+  template <int dim>
+  void
   ExternalLoads<dim>::add(NodalFields<dim> &nodes, const double time)
   {
     for (LazyArray<double> &of_nodes : forces)
@@ -230,6 +243,8 @@ namespace limber
     for (unsigned int field = 0; field < forces.size(); ++field)
       {
         complete(nodes, forces[field]);
+        if (hydrostatic.any())
+          hydrostatic.add(field, forces[field]);
         for (const std::uint32_t node : nodes.active_nodes())
           for (int d = 0; d < dim; ++d)
             nodes.record(field, node)[NodeLayout<dim>::force + d] +=

@@ -3,6 +3,7 @@
 #define limber_time_liquid_means_h
 
 #include <limber/time/integrator.h>
+#include <limber/time/surroundings.h>
 
 namespace limber
 {
@@ -70,8 +71,6 @@ namespace limber
     };
 
     void
-    look_around(const Group &group);
-    void
     find(const Group &group, std::uint32_t cell);
     void
     mix();
@@ -82,27 +81,12 @@ namespace limber
     double
     filling(std::uint32_t cell) const;
     bool
-    is_inside(std::uint32_t cell) const;
-    bool
-    has_neighbour(std::uint32_t cell,
-                  unsigned int  direction,
-                  unsigned int  end) const;
-    bool
     holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
-
-    std::uint32_t
-    node_of(const std::uint32_t cell, const unsigned int corner) const
-    {
-      return parts.grid.geometry[cell].node[corner] / NodeLayout<dim>::stride;
-    }
 
     const RunParts<dim> parts;
     std::vector<Group>  groups;
     std::vector<Part>   in_cell;
-    // By node, which of the cells around it hold something: the sum of 2^k, the
-    // node being their corner k
-    LazyArray<double> around;
-    RecordExchange    exchange{1};
+    Surroundings<dim>   surroundings;
   };
 } // namespace limber
 

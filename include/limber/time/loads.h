@@ -3,12 +3,14 @@
 #define limber_time_loads_h
 
 #include <limber/stress/stress_update.h>
+#include <limber/time/hydrostatic_load.h>
 #include <limber/time/loaded_face.h>
 
 namespace limber
 {
   /**
-   * Body force formulas and loads on faces and surfaces of bodies. Their
+   * Body force formulas, loads on faces and surfaces of bodies, and what
+   * gravity does where cells differ in size (HydrostaticLoad). Their
    * forces are kept apart from the internal ones so that their work is known;
    * a scene without such loads has none of this.
    *
@@ -32,6 +34,11 @@ namespace limber
     /** Adopt a changed mesh. */
     void
     reinit();
+
+    /** At the beginning of a step, when the sums of the cells are complete;
+     * collective. */
+    void
+    look_at_cells(const NodalFields<dim> &nodes);
 
     /** Add the forces at @p time to those of active nodes; collective. */
     void
@@ -74,6 +81,7 @@ namespace limber
     const BackgroundGrid<dim>                       &grid;
     std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies;
     std::vector<LoadedFace<dim>>                     faces;
+    HydrostaticLoad<dim>                             hydrostatic;
     std::vector<LazyArray<double>> forces; // of fields: dim per node, N
     RecordExchange                 exchange{dim};
   };

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_surroundings_h
+#define limber_time_surroundings_h
+
+#include <limber/grid/nodal_fields.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * Which of the cells around the vertices of a mesh hold something. A vertex
+   * that hangs is no corner of the larger cells around it; its masters are.
+   */
+  template <int dim>
+  class Surroundings
+  {
+  public:
+    explicit Surroundings(const BackgroundGrid<dim> &grid)
+      : grid(grid)
+    {}
+
+    /** Adopt a mesh; collective. */
+    void
+    reinit();
+
+    /** Look which cells hold something, asked for each of those of this rank
+     * that may; collective. */
+    template <class Holds>
+    void
+    find(const NodalFields<dim> &vertices, const Holds &holds)
+    {
+      for (const std::uint32_t node : vertices.active_nodes())
+        holding[node] = 0;
+      for (const std::uint32_t cell : vertices.owned_occupied_cells())
+        if (holds(cell))
+          add(holding, cell);
+      exchange.start(vertices.node_plan(), holding.data(), 0, 1);
+      exchange.finish(holding.data());
+    }
+
+    /** Whether all cells around a vertex do. */
+    bool
+    is_surrounded(std::uint32_t node) const;
+
+    /** Whether all cells around the vertices of a cell do. */
+    bool
+    is_inside(std::uint32_t cell) const;
+
+    /** Whether a neighbour of a cell does, at the lower end (0) of a direction
+     * or the upper (1). */
+    bool
+    has_neighbour(std::uint32_t cell,
+                  unsigned int  direction,
+                  unsigned int  end) const;
+
+    /** The same, or whether a side of the grid is there. */
+    bool
+    is_bounded(const std::uint32_t cell,
+               const unsigned int  direction,
+               const unsigned int  end) const
+    {
+      return has_neighbour(cell, direction, end) ||
+             (grid.vertices.sides[node_of(cell, end << direction)] >>
+                (2 * direction + end) &
+              1);
+    }
+
+    std::uint32_t
+    node_of(const std::uint32_t cell, const unsigned int corner) const
+    {
+      return grid.geometry[cell].node[corner] / NodeLayout<dim>::stride;
+    }
+
+  private:
+    static constexpr unsigned int n_corners = 1 << dim;
+
+    /** To the corners of a cell. */
+    void
+    add(LazyArray<double> &to, const std::uint32_t cell) const
+    {
+      for (unsigned int a = 0; a < n_corners; ++a)
+        to[node_of(cell, a)] += 1u << a;
+    }
+
+    bool
+    hangs(const std::uint32_t node) const
+    {
+      return !masters_of.empty() && masters_of[node] != nullptr;
+    }
+
+    const BackgroundGrid<dim> &grid;
+    // By vertex, which cells have it as a corner, and which of these hold
+    // something: the sum of 2^k, the vertex being their corner k
+    LazyArray<double> cells_at, holding;
+    RecordExchange    exchange{1};
+    // By vertex, what it hangs on; null: it does not. Empty where none hangs
+    std::vector<const HangingNode *> masters_of;
+  };
+} // namespace limber
+
+#endif

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/surroundings.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  template <int dim>
+  void
+  Surroundings<dim>::reinit()
+  {
+    const NodeTable<dim> &table = grid.vertices;
+    holding.reinit(table.n());
+    cells_at.reinit(table.n());
+    std::fill_n(cells_at.data(), table.n(), 0.);
+    for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
+      add(cells_at, cell);
+    const ExchangePlan all(table.shared);
+    exchange.start(all, cells_at.data(), 0, 1);
+    exchange.finish(cells_at.data());
+
+    masters_of.assign(table.hanging.empty() ? 0 : table.n(), nullptr);
+    for (const HangingNode &hanging : table.hanging)
+      masters_of[hanging.node] = &hanging;
+  }
+
+
+
+  template <int dim>
+  bool
+  Surroundings<dim>::is_surrounded(const std::uint32_t node) const
+  {
+    const auto is_full = [&](const std::uint32_t node) {
+      return holding[node] == cells_at[node];
+    };
+    if (!hangs(node))
+      return is_full(node);
+    const auto &masters = masters_of[node]->masters;
+    return is_full(node) &&
+           std::all_of(masters.begin(), masters.end(), [&](const auto &master) {
+             return is_full(master.first);
+           });
+  }
+
+
+
+  template <int dim>
+  bool
+  Surroundings<dim>::is_inside(const std::uint32_t cell) const
+  {
+    for (unsigned int a = 0; a < n_corners; ++a)
+      if (!is_surrounded(node_of(cell, a)))
+        return false;
+    return true;
+  }
+
+
+
+  // A corner in the face there knows, if it does not hang; one does not.
+  template <int dim>
+  bool
+  Surroundings<dim>::has_neighbour(const std::uint32_t cell,
+                                   const unsigned int  direction,
+                                   const unsigned int  end) const
+  {
+    unsigned int a = end << direction;
+    for (unsigned int c = 0; c < n_corners && hangs(node_of(cell, a)); ++c)
+      if ((c >> direction & 1) == end)
+        a = c;
+    const std::uint32_t node = node_of(cell, a);
+    const unsigned int  mate = a ^ 1u << direction;
+    return static_cast<unsigned int>(holding[node]) >> mate & 1;
+  }
+
+
+
+  template class Surroundings<2>;
+  template class Surroundings<3>;
+} // namespace limber
