@@ -100,11 +100,24 @@ namespace limber
     touches.clear();
     for (auto &distances : cell_distance)
       distances.reinit(std::size_t(parts.grid.n_cells()) * (1 + dim));
+    const bool any_liquid =
+      std::any_of(parts.bodies.begin(), parts.bodies.end(), [](auto &body) {
+        return body->description.is_liquid;
+      });
     for (const auto &body : parts.bodies)
       if (body->description.is_liquid)
         for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
           sums[o * parts.nodes.n_fields() + body->description.nodal_field]
             .records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
+    if (any_liquid && !parts.grid.has_own_nodes())
+      {
+        vertices.resize(parts.nodes.table.n());
+        for (const CellGeometry<dim> &cell : parts.grid.geometry)
+          for (unsigned int a = 0; a < 1u << dim; ++a)
+            for (unsigned int d = 0; d < dim; ++d)
+              vertices[cell.node[a] / Layout::stride][d] =
+                cell.origin[d] + (a >> d & 1) / cell.inverse_edge[d];
+      }
   }
 
 
@@ -370,10 +383,24 @@ namespace limber
             {
               record[Sums::normal + d] += weight * near.distance.normal[d];
               record[Sums::place + d] += weight * near.x[d];
+              record[Sums::momentum + d] +=
+                weight * points.velocity[d][near.point];
             }
           record[Sums::weight] += weight;
           record[Sums::own] += weight;
         });
+  }
+
+
+
+  // Or in its surface, to a thousandth of a cell.
+  template <int dim>
+  bool
+  ObstacleContact<dim>::is_in(const std::uint32_t       node,
+                              const ObstaclePlace<dim> &obstacle) const
+  {
+    return !vertices.empty() && obstacle.distance(vertices[node]).value <=
+                                  1e-3 * parts.grid.smallest_edge;
   }
 
 
@@ -403,8 +430,11 @@ namespace limber
             const double weight = record[Sums::weight];
             const double mass   = parts.nodes.record(field, node)[Layout::mass];
             const Vector normal = vector_in<dim>(record + Sums::normal);
-            if (!(record[Sums::own] > 0) || weight < least_share * mass ||
+            if (!(record[Sums::own] > 0) ||
                 !(normal.norm() > 1e-6 * weight)) // met from all sides alike
+              continue;
+            const bool is_held = weight >= least_share * mass;
+            if (!is_held && !is_in(node, ways[obstacle].before))
               continue;
             const dealii::Point<dim> x(vector_in<dim>(record + Sums::place) /
                                        weight);
@@ -415,6 +445,15 @@ namespace limber
             place.mass = mass * record[Sums::own] / weight;
             if (parts.problem.obstacles[obstacle].moves())
               place.velocity = ways[obstacle].velocity(x, step);
+            if (!is_held)
+              place.least =
+                std::min(0.,
+                         (vector_in<dim>(parts.nodes.record(field, node) +
+                                         Layout::momentum) -
+                          vector_in<dim>(record + Sums::momentum)) /
+                             mass * place.normal -
+                           (1 - weight / mass) *
+                             (place.velocity * place.normal));
             impulses.add_share(field, node, 1);
             touches.push_back({obstacle, x - ways[obstacle].before.centre()});
           }

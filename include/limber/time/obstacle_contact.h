@@ -36,7 +36,11 @@ namespace limber
    *
    * A liquid has no surface that its points could tell: it is held at nodes of
    * whose mass enough is that of points within half their edge of the obstacle,
-   * with the mean of their normals.
+   * with the mean of their normals. At the corner of an obstacle that is not
+   * enough of it, though all the pressure around acts on a node there. A node
+   * in the surface is therefore held against forces in any case, and against
+   * the momentum of the points that touch, while what others bring goes on past
+   * the corner.
    *
    * What presses in the new velocity does so in every other one of the step.
    * The velocity of the obstacle is that of its way over the step, so that its
@@ -131,11 +135,13 @@ namespace limber
     /** Sums at nodes over the points of liquids that touch an obstacle. */
     struct Sums
     {
-      // sum m_p N_i times the normals at the points, their places, 1
+      // sum m_p N_i times the normals at the points, their places, their
+      // velocities, 1
       static constexpr unsigned int normal   = 0;
       static constexpr unsigned int place    = dim;
-      static constexpr unsigned int weight   = 2 * dim;
-      static constexpr unsigned int n_summed = 2 * dim + 1;
+      static constexpr unsigned int momentum = 2 * dim;
+      static constexpr unsigned int weight   = 3 * dim;
+      static constexpr unsigned int n_summed = 3 * dim + 1;
       // The weight of the points of this rank
       static constexpr unsigned int own    = n_summed;
       static constexpr unsigned int stride = n_summed + 1;
@@ -152,6 +158,8 @@ namespace limber
     middle_of(const PointView<dim> &points,
               const CellBatch      &batch,
               double               &reach) const;
+    bool
+    is_in(std::uint32_t node, const ObstaclePlace<dim> &obstacle) const;
     bool
     is_beyond(double                    reach,
               unsigned int              obstacle,
@@ -181,6 +189,8 @@ namespace limber
     // From the middles of what is in cells when they asked, m, 0 where nobody
     // has; and where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;
+    // Where the nodes are, in scenes with liquids, if they are vertices
+    std::vector<dealii::Point<dim>> vertices;
   };
 } // namespace limber
 
