@@ -54,6 +54,7 @@ namespace limber
   void
   NodalFields<dim>::reinit()
   {
+    forget_fields();
     for (unsigned int field = 0; field < n_fields(); ++field)
       of_field(field).reinit(std::size_t(table.n()) * Layout::stride);
     has_own_points.reinit(grid.n_cells());
@@ -70,6 +71,11 @@ namespace limber
     active.clear();
     active_boundary.clear();
     set_occupied({});
+    for (FieldPlaces &places : of_fields)
+      {
+        places.has_cell.reinit(grid.n_cells());
+        places.has_node.reinit(table.n());
+      }
     if (of_vertices)
       of_vertices->reinit();
   }
@@ -112,6 +118,83 @@ namespace limber
     parked.resize(n);
     for (unsigned int field = 1; field < n; ++field)
       parked[field].reinit(std::size_t(table.n()) * Layout::stride);
+    forget_fields();
+    of_fields.clear();
+    of_fields.resize(n > 1 ? n : 0);
+    for (FieldPlaces &places : of_fields)
+      {
+        places.has_cell.reinit(grid.n_cells());
+        places.has_node.reinit(table.n());
+      }
+  }
+
+
+
+  template <int dim>
+  bool
+  NodalFields<dim>::begin_noting()
+  {
+    const bool anew = !is_noted;
+    if (!notes_fields())
+      return anew;
+    // What other ranks add to them, this one does not know.
+    if (anew || noted_version != version)
+      for (const auto &neighbour : nodes_to_share.neighbours)
+        for (const auto *const shared : {&neighbour.send, &neighbour.receive})
+          for (const std::uint32_t node : *shared)
+            for (unsigned int field = 0; field < n_fields(); ++field)
+              add_node(field, node);
+    noted_version = version;
+    is_noted      = true;
+    return anew;
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::add_cell(const unsigned int field, const std::uint32_t cell)
+  {
+    of_fields[field].has_cell[cell] = 1;
+    of_fields[field].cells.push_back(cell);
+    for_each_node(cell,
+                  [&](const std::uint32_t node) { add_node(field, node); });
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::add_node(const unsigned int field, const std::uint32_t node)
+  {
+    if (of_fields[field].has_node[node])
+      return;
+    unsigned int n_others = 0;
+    for (const FieldPlaces &places : of_fields)
+      n_others += places.has_node[node];
+    if (n_others == 1)
+      of_two_fields.push_back(node);
+    of_fields[field].has_node[node] = 1;
+    of_fields[field].nodes.push_back(node);
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::forget_fields()
+  {
+    for (FieldPlaces &places : of_fields)
+      {
+        for (const std::uint32_t cell : places.cells)
+          places.has_cell[cell] = 0;
+        for (const std::uint32_t node : places.nodes)
+          places.has_node[node] = 0;
+        places.cells.clear();
+        places.nodes.clear();
+      }
+    of_two_fields.clear();
+    is_noted = false;
   }
 
 
@@ -174,6 +257,7 @@ namespace limber
         is_occupied[cell] = 0;
     for (const std::uint32_t node : active)
       is_active[node] = 0;
+    forget_fields();
     occupied_owned.clear();
     occupied_ghost.clear();
     entered.clear();
@@ -372,7 +456,7 @@ namespace limber
   {
     left = in_ghosts = false;
     for_each_field([&]() {
-      for (const std::uint32_t node : active)
+      for (const std::uint32_t node : active_nodes_of_field())
         std::fill_n(record(node), Layout::stride, 0.);
     });
   }

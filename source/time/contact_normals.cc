@@ -20,8 +20,9 @@ namespace limber
     points.clear();
     for (const auto &body : parts.bodies)
       points.push_back(body->points.view());
-    find_nodes();
-    find_batches();
+    find_cells();
+    if (find_nodes() || cells_are_others)
+      find_batches();
     find_gradients();
     find_normals();
     find_places(step);
@@ -35,7 +36,10 @@ namespace limber
   {
     find_reaches();
     impulses.reinit();
+    cells_of.assign(parts.bodies.size(), {});
     touches.clear();
+    batches.clear();
+    groups.clear();
     first_of.reinit(parts.nodes.table.n());
     rim_of.reinit(std::size_t(parts.grid.n_cells()) * n_fields);
     looked_at.clear();
@@ -54,14 +58,41 @@ namespace limber
 
 
 
-  // Nearly always they are those of the step before, and what belongs to them
-  // stays.
+  // In most steps no point enters another cell, or few do: comparing costs less
+  // than what would be done anew.
   template <int dim>
   void
+  Contact<dim>::find_cells()
+  {
+    cells_are_others = parts.nodes.begin_noting();
+    const bool all   = cells_are_others;
+    for (unsigned int b = 0; b < parts.bodies.size(); ++b)
+      {
+        std::vector<std::uint32_t> &former = cells_of[b];
+        const std::uint32_t *const  begin  = points[b].cell;
+        const std::uint32_t *const  end    = begin + points[b].size;
+        if (!all && former.size() == points[b].size &&
+            std::equal(begin, end, former.begin()))
+          continue;
+        cells_are_others = true;
+        former.assign(begin, end);
+        const unsigned int field = field_of(b);
+        for_each_batch(points[b], [&](const CellBatch &batch) {
+          parts.nodes.note_cell(field, batch.cell);
+        });
+      }
+  }
+
+
+
+  // Nearly always they are those of the step before, and what belongs to them
+  // stays. Whether they are others.
+  template <int dim>
+  bool
   Contact<dim>::find_nodes()
   {
     found.clear();
-    for (const std::uint32_t node : parts.nodes.active_nodes())
+    for (const std::uint32_t node : parts.nodes.nodes_of_two_fields())
       for (unsigned int a = 0; a + 1 < n_fields; ++a)
         {
           if (!(parts.nodes.record(a, node)[Layout::mass] > 0))
@@ -71,13 +102,14 @@ namespace limber
               found.push_back({node, a, b});
         }
     if (found == touches)
-      return;
+      return false;
     for (const Touch &touch : touches)
       first_of[touch.node] = 0;
     touches.swap(found);
     for (std::size_t t = touches.size(); t-- > 0;)
       first_of[touches[t].node] = static_cast<std::uint32_t>(t + 1);
     forget_rims();
+    return true;
   }
 
 

@@ -455,10 +455,9 @@ namespace limber
   {
     if (part.cell == Part::no_cell)
       return;
-    const auto &nodes =
-      CellFunctions<dim, degree>::nodes_of(parts.nodes.view(), part.cell);
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-      impulses.add_share(part.field, nodes[k] / Layout::stride, part.shares[k]);
+    impulses.add_shares(part.field,
+                        CellFunctions<dim, degree>::nodes_of(grid, part.cell),
+                        part.shares.data());
     part.cell = Part::no_cell;
   }
 

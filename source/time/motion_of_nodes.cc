@@ -110,7 +110,7 @@ namespace limber
     const double checked_mass = 0.1 * extremes.largest_mass;
     extremes.largest_mass     = 0;
     parts.nodes.for_each_field([&]() {
-      for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (const std::uint32_t node : parts.nodes.active_nodes_of_field())
         {
           double *const record = parts.nodes.record(node);
           const double  mass   = record[Layout::mass];
@@ -220,7 +220,7 @@ namespace limber
     if (!loaded && lost_share == 0)
       return;
     parts.nodes.for_each_field([&]() {
-      for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (const std::uint32_t node : parts.nodes.active_nodes_of_field())
         {
           const double *const record = parts.nodes.record(node);
           if (!parts.nodes.owns(node) || !(record[Layout::mass] > 0))
@@ -290,7 +290,7 @@ namespace limber
   ExplicitIntegrator<dim>::form_velocity(const unsigned int momentum)
   {
     parts.nodes.for_each_field([&]() {
-      for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (const std::uint32_t node : parts.nodes.active_nodes_of_field())
         {
           double *const record = parts.nodes.record(node);
           const double  mass   = record[Layout::mass];
@@ -467,7 +467,7 @@ namespace limber
   ExplicitIntegrator<dim>::centre_velocity()
   {
     parts.nodes.for_each_field([&]() {
-      for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (const std::uint32_t node : parts.nodes.active_nodes_of_field())
         {
           double *const record = parts.nodes.record(node);
           for (int d = 0; d < dim; ++d)
@@ -493,7 +493,7 @@ namespace limber
     });
     lap(Verb::apply_boundaries);
     parts.nodes.for_each_field([&]() {
-      for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (const std::uint32_t node : parts.nodes.active_nodes_of_field())
         {
           double *const record = parts.nodes.record(node);
           std::copy_n(record + Layout::middle_velocity,
@@ -514,7 +514,7 @@ namespace limber
     if (!moves_as_strained)
       return;
     parts.nodes.for_each_field([&]() {
-      for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (const std::uint32_t node : parts.nodes.active_nodes_of_field())
         {
           double *const record = parts.nodes.record(node);
           std::copy_n(record + Layout::strain_velocity,

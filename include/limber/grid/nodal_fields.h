@@ -180,6 +180,39 @@ namespace limber
       return active_boundary;
     }
 
+    /**
+     * Where there are several fields: tell which cells hold points of which.
+     * Call begin_noting() after points have given to the nodes, then
+     * note_cell() for each cell with points of a field; what is known already
+     * need not be told again unless begin_noting() returns true. Hanging nodes
+     * get what others have: with cells of several sizes nothing is noted.
+     */
+    bool
+    begin_noting();
+    void
+    note_cell(const unsigned int field, const std::uint32_t cell)
+    {
+      if (notes_fields() && !of_fields[field].has_cell[cell])
+        add_cell(field, cell);
+    }
+
+    /**
+     * Those active nodes that may have anything in the selected field. Of other
+     * nodes the records of the field are zero.
+     */
+    const std::vector<std::uint32_t> &
+    active_nodes_of_field() const
+    {
+      return is_noted ? of_fields[selected].nodes : active;
+    }
+
+    /** Those that may have mass in two fields. */
+    const std::vector<std::uint32_t> &
+    nodes_of_two_fields() const
+    {
+      return is_noted ? of_two_fields : active;
+    }
+
     /** Another number whenever these lists have changed. */
     std::uint64_t
     version_of_active() const
@@ -234,6 +267,26 @@ namespace limber
     const NodeTable<dim>      &table;
 
   private:
+    /** Where points of the bodies of a field are, or have been. */
+    struct FieldPlaces
+    {
+      std::vector<std::uint32_t> cells, nodes;
+      LazyArray<std::uint8_t>    has_cell, has_node;
+    };
+
+    bool
+    notes_fields() const
+    {
+      return !of_fields.empty() && table.hanging.empty();
+    }
+
+    void
+    add_cell(unsigned int field, std::uint32_t cell);
+    void
+    add_node(unsigned int field, std::uint32_t node);
+    void
+    forget_fields();
+
     LazyArray<double> &
     of_field(const unsigned int field)
     {
@@ -279,6 +332,10 @@ namespace limber
     std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
     std::vector<std::uint32_t> entered, active, active_boundary;
     std::uint64_t              version = 0; // of the active nodes
+    std::vector<FieldPlaces>   of_fields;   // where there are several
+    std::vector<std::uint32_t> of_two_fields;
+    std::uint64_t              noted_version = 0; // when shared nodes were
+    bool                       is_noted      = false;
     LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
     bool                       left = false, in_ghosts = false;
 

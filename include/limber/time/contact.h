@@ -229,6 +229,8 @@ namespace limber
     void
     find_reaches();
     void
+    find_cells();
+    bool
     find_nodes();
     void
     forget_rims();
@@ -318,6 +320,9 @@ namespace limber
     std::vector<std::array<unsigned int, 2>> parting;
     GridView<dim>                            grid;   // as of this step
     std::vector<PointView<dim>>              points; // of the bodies, likewise
+    // Of the bodies: the cells of their points when last looked at
+    std::vector<std::vector<std::uint32_t>> cells_of;
+    bool                     cells_are_others = true; // in this step
     std::vector<Touch>       touches;  // those of a node side by side
     std::vector<Touch>       found;    // those of this step
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0

@@ -111,9 +111,16 @@ namespace limber
                const Offsets      &offsets,
                const double *const values)
     {
+      const bool may_hang = !hanging.empty();
       for (std::size_t k = 0; k < offsets.size(); ++k)
         if (values[k] != 0)
-          add_share(field, offsets[k] / Layout::stride, values[k]);
+          {
+            const std::uint32_t node = offsets[k] / Layout::stride;
+            if (may_hang)
+              add_share(field, node, values[k]);
+            else
+              add_share_of_master(field, node, values[k]);
+          }
     }
 
     void
@@ -253,7 +260,7 @@ namespace limber
         {
           last = shares.all.size();
           shares.all.push_back({as, value});
-          shares.begin.back() = shares.all.size();
+          ++shares.begin.back();
         }
     }
 
