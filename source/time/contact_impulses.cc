@@ -78,7 +78,7 @@ namespace limber
     shares.all.clear();
     shares.begin.resize(1);
     seen.clear();
-    last_share.clear();
+    after_share.clear();
     peers.clear();
     any_place = holds_before = false;
   }

@@ -463,6 +463,27 @@ namespace limber
 
 
 
+  // Whether its material ends where that of a thinner point in front of it
+  // begins: not at the surface.
+  template <int dim>
+  bool
+  Contact<dim>::is_covered(const Facing                 &q,
+                           const std::vector<Candidate> &other) const
+  {
+    const double width = other[q.candidate].width;
+    for (const Facing &front : facing)
+      {
+        const Candidate &in_front = other[front.candidate];
+        const double     aside    = std::max(width, in_front.width);
+        if (q.gap - front.gap > in_front.reach &&
+            (q.along - front.along).norm_square() < aside * aside)
+          return true;
+      }
+    return false;
+  }
+
+
+
   template <int dim>
   template <int degree>
   void
@@ -501,6 +522,8 @@ namespace limber
           {
             q.weight *=
               std::max(0., 1 - (q.gap - least_gap) / other[q.candidate].reach);
+            if (q.weight > 0 && is_covered(q, other))
+              q.weight = 0;
             sum += q.weight;
             gap += q.weight * q.gap;
             aside += q.weight * q.along;

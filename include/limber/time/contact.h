@@ -301,6 +301,9 @@ namespace limber
       Vector        along;
     };
 
+    bool
+    is_covered(const Facing &q, const std::vector<Candidate> &other) const;
+
     /** What points of one cell have of a place, before its nodes get it. */
     struct Part
     {

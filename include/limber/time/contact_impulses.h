@@ -111,16 +111,36 @@ namespace limber
                const Offsets      &offsets,
                const double *const values)
     {
-      const bool may_hang = !hanging.empty();
+      if (!hanging.empty())
+        {
+          for (std::size_t k = 0; k < offsets.size(); ++k)
+            if (values[k] != 0)
+              add_share(field, offsets[k] / Layout::stride, values[k]);
+          return;
+        }
+      // The same as add_share_of_master(), without growing one by one.
+      std::size_t end = shares.all.size();
+      shares.all.resize(end + offsets.size());
+      PlaceShare *const    all     = shares.all.data();
+      std::uint32_t *const numbers = seen_as[field].data();
       for (std::size_t k = 0; k < offsets.size(); ++k)
-        if (values[k] != 0)
-          {
-            const std::uint32_t node = offsets[k] / Layout::stride;
-            if (may_hang)
-              add_share(field, node, values[k]);
-            else
-              add_share_of_master(field, node, values[k]);
-          }
+        {
+          if (values[k] == 0)
+            continue;
+          const std::uint32_t node = offsets[k] / Layout::stride;
+          const std::uint32_t as =
+            numbers[node] != 0 ? numbers[node] - 1 : see(field, node);
+          std::uint32_t &after = after_share[as];
+          if (after > first_share)
+            all[after - 1].value += values[k];
+          else
+            {
+              all[end] = {as, values[k]};
+              after    = static_cast<std::uint32_t>(++end);
+            }
+        }
+      shares.all.resize(end);
+      shares.begin.back() = end;
     }
 
     void
@@ -212,8 +232,7 @@ namespace limber
   private:
     using Layout = NodeLayout<dim>;
 
-    static constexpr int         lanes    = vector_lanes<dim>;
-    static constexpr std::size_t no_share = std::size_t(-1);
+    static constexpr int lanes = vector_lanes<dim>;
 
     /** A node of a field that any place sees, on any rank. */
     struct Node
@@ -241,7 +260,7 @@ namespace limber
       if (as == 0)
         {
           seen.push_back({nodes.record(field, number), field, number});
-          last_share.push_back(no_share);
+          after_share.push_back(0);
           as = static_cast<std::uint32_t>(seen.size());
         }
       return as - 1;
@@ -252,14 +271,14 @@ namespace limber
                         const std::uint32_t node,
                         const double        value)
     {
-      const std::uint32_t as   = see(field, node);
-      std::size_t        &last = last_share[as];
-      if (last != no_share && last >= first_share)
-        shares.all[last].value += value;
+      const std::uint32_t as    = see(field, node);
+      std::uint32_t      &after = after_share[as];
+      if (after > first_share)
+        shares.all[after - 1].value += value;
       else
         {
-          last = shares.all.size();
           shares.all.push_back({as, value});
+          after = static_cast<std::uint32_t>(shares.all.size());
           ++shares.begin.back();
         }
     }
@@ -313,13 +332,13 @@ namespace limber
             const Vector &held,
             double        share) const;
 
-    NodalFields<dim>                     &nodes;
-    const bool                            leapfrogs;
-    std::vector<Place>                    places;
-    PlaceShares                           shares;
-    std::vector<Node>                     seen;
-    std::vector<std::size_t>              last_share; // that a place has of it
-    std::size_t                           first_share = 0; // of the last place
+    NodalFields<dim>          &nodes;
+    const bool                 leapfrogs;
+    std::vector<Place>         places;
+    PlaceShares                shares;
+    std::vector<Node>          seen;
+    std::vector<std::uint32_t> after_share;        // 1 + the last of each, or 0
+    std::size_t                first_share = 0;    // of the last place
     std::vector<LazyArray<std::uint32_t>> seen_as; // per field, by node: 1 +
                                                    // its place in these, or 0
     // Of those seen: 1 / m_i; M_i; the velocity that is dealt with; the
