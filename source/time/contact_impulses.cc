@@ -75,7 +75,6 @@ namespace limber
         seen.swap(former_seen);
       }
     places.clear();
-    shares.all.clear();
     shares.begin.resize(1);
     seen.clear();
     after_share.clear();
@@ -90,7 +89,7 @@ namespace limber
   ContactImpulses<dim>::add_place()
   {
     places.emplace_back();
-    first_share = shares.all.size();
+    first_share = shares.begin.back();
     shares.begin.push_back(first_share);
     return places.back();
   }

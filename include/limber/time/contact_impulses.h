@@ -119,8 +119,9 @@ namespace limber
           return;
         }
       // The same as add_share_of_master(), without growing one by one.
-      std::size_t end = shares.all.size();
-      shares.all.resize(end + offsets.size());
+      std::size_t end = shares.begin.back();
+      if (shares.all.size() < end + offsets.size())
+        shares.all.resize(2 * (end + offsets.size()));
       PlaceShare *const    all     = shares.all.data();
       std::uint32_t *const numbers = seen_as[field].data();
       for (std::size_t k = 0; k < offsets.size(); ++k)
@@ -139,7 +140,6 @@ namespace limber
               after    = static_cast<std::uint32_t>(++end);
             }
         }
-      shares.all.resize(end);
       shares.begin.back() = end;
     }
 
@@ -277,9 +277,12 @@ namespace limber
         shares.all[after - 1].value += value;
       else
         {
-          shares.all.push_back({as, value});
-          after = static_cast<std::uint32_t>(shares.all.size());
-          ++shares.begin.back();
+          const std::size_t end = shares.begin.back();
+          if (shares.all.size() == end)
+            shares.all.resize(2 * end + 16);
+          shares.all[end]     = {as, value};
+          shares.begin.back() = end + 1;
+          after               = static_cast<std::uint32_t>(end + 1);
         }
     }
 

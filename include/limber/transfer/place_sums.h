@@ -26,7 +26,7 @@ namespace limber
 
 
 
-  /** The shares of place p are [begin[p], begin[p + 1]). */
+  /** The shares of place p are [begin[p], begin[p + 1]); there may be room. */
   struct PlaceShares
   {
     std::vector<std::size_t> begin{0};
