@@ -39,7 +39,7 @@ namespace
 
 
 
-  constexpr double g = 9.81;
+  constexpr double gravity_of_tank = 9.81;
 
 
 
@@ -60,7 +60,7 @@ namespace
       speed = std::max(speed, run.velocity(p).norm());
     // As dense as the depth makes them, cells do not cancel to the last bit:
     // rho g h / K is 2.5e-5.
-    EXPECT_LT(speed, 1e-5 * g * run.time);
+    EXPECT_LT(speed, 1e-5 * gravity_of_tank * run.time);
   }
 } // namespace
 
