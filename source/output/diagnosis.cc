@@ -181,7 +181,8 @@ namespace limber
       return found;
     constexpr double much = 0.3; // of the kinetic energy
     if (symptoms.unseen_energy > much &&
-        problem.method.transfer == Transfer::flip)
+        (problem.method.transfer == Transfer::flip ||
+         problem.method.transfer == Transfer::aflip))
       return {"null space",
               percent_of(symptoms.unseen_energy) +
                 " of the kinetic energy is unseen by the nodes. Set '" +

@@ -103,13 +103,20 @@ namespace limber
         return place;
       };
 
-      unsigned int             n_inside = 0;
+      // Whether corners and centre may all be on one side of a surface that
+      // is there: of a thin sheet, or of the tip of a corner.
       const dealii::Point<dim> centre =
         box.first + 0.5 * (box.second - box.first);
+      const auto distance = shape.signed_distance(centre);
+      const bool is_near  = distance && std::abs(distance->value) <=
+                                         0.5 * box.first.distance(box.second);
+
+      unsigned int n_inside = 0;
       for (unsigned int i = 0; i < Geometry::vertices_per_cell; ++i)
         n_inside += shape.contains(place_at(Geometry::unit_cell_vertex(i)));
-      if (n_inside ==
-          (shape.contains(centre) ? Geometry::vertices_per_cell : 0))
+      if (!is_near &&
+          n_inside ==
+            (shape.contains(centre) ? Geometry::vertices_per_cell : 0))
         return {centre, n_inside > 0 ? 1. : 0.};
 
       static const dealii::QIterated<dim> samples(dealii::QMidpoint<1>(),

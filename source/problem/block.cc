@@ -7,6 +7,8 @@
 #include <limber/problem/signed_distance.h>
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace limber
 {
@@ -14,6 +16,56 @@ namespace limber
   using dealii::Point;
   using dealii::QGauss;
   using dealii::Tensor;
+
+
+
+  namespace
+  {
+    /** Keep of a closed line what has sign * x_d <= sign * bound. */
+    void
+    cut_beyond(std::vector<Point<2>> &outline,
+               const unsigned int     d,
+               const double           sign,
+               const double           bound)
+    {
+      std::vector<Point<2>> kept;
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        {
+          const Point<2> &a     = outline[i],
+                         &b     = outline[(i + 1) % outline.size()];
+          const double beyond_a = sign * (a[d] - bound),
+                       beyond_b = sign * (b[d] - bound);
+          if (beyond_a <= 0)
+            kept.push_back(a);
+          if ((beyond_a < 0 && beyond_b > 0) || (beyond_a > 0 && beyond_b < 0))
+            kept.push_back(a + beyond_a / (beyond_a - beyond_b) * (b - a));
+        }
+      outline = std::move(kept);
+    }
+
+
+
+    /** Area and centroid within a closed line, counterclockwise. */
+    PartInside<2>
+    enclosed_by(const std::vector<Point<2>> &outline)
+    {
+      PartInside<2> result;
+      if (outline.size() < 3)
+        return result;
+      const Point<2> &first = outline.front();
+      Tensor<1, 2>    moment;
+      for (std::size_t i = 1; i + 1 < outline.size(); ++i)
+        {
+          const Tensor<1, 2> a = outline[i] - first, b = outline[i + 1] - first;
+          const double       area = 0.5 * (a[0] * b[1] - a[1] * b[0]);
+          result.volume += area;
+          moment += area / 3 * (a + b);
+        }
+      if (result.volume > 0)
+        result.centroid = first + moment / result.volume;
+      return result;
+    }
+  } // namespace
 
 
 
@@ -100,6 +152,31 @@ namespace limber
         xi += invert(slopes) * miss;
       }
     return false;
+  }
+
+
+
+  // Its outline, from which the sides of the box cut what is beyond, one after
+  // the other (Sutherland and Hodgman 1974).
+  template <int dim>
+  std::optional<PartInside<dim>>
+  BlockShape<dim>::inside_of(const Corners<dim> &box) const
+  {
+    if constexpr (dim == 2)
+      {
+        std::vector<Point<2>> outline = {vertices[0],
+                                         vertices[1],
+                                         vertices[3],
+                                         vertices[2]};
+        for (unsigned int d = 0; d < 2; ++d)
+          {
+            cut_beyond(outline, d, -1, box.first[d]);
+            cut_beyond(outline, d, 1, box.second[d]);
+          }
+        return enclosed_by(outline);
+      }
+    else
+      return std::nullopt;
   }
 
 

@@ -408,8 +408,9 @@ namespace limber
             ", or 'Kernel = linear'.");
       }
     if (has_domains(problem.grid.kernel) &&
-        read_word(method, "Transfer", transfer_words()) == Transfer::apic)
-      throw InputError("The transfer 'apic' in " + method.where("Transfer") +
+        is_affine(read_word(method, "Transfer", transfer_words())))
+      throw InputError("The transfer " + in_quotes(method.text("Transfer")) +
+                       " in " + method.where("Transfer") +
                        " does not go with 'Kernel = " + method.text("Kernel") +
                        "', which has no moments "
                        "for it. Set 'Transfer = flip' or 'fmpm', or 'Kernel = "

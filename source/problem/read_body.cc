@@ -408,7 +408,7 @@ namespace limber
 
 
     /**
-     * With APIC and linear functions points take the gradient of the new
+     * With APIC, AFLIP and linear functions points take the gradient of the new
      * velocity, as with USL. It has no bound where a point comes so close to
      * the edge of its cell that nodes beyond have next to no mass, and what
      * points give back has it in it. Points that the lattice of the grid places
@@ -418,14 +418,14 @@ namespace limber
     void
     warn_of_unbounded_gradients(Problem<dim> &problem)
     {
-      if (problem.method.transfer != Transfer::apic ||
+      if (!is_affine(problem.method.transfer) ||
           problem.grid.kernel != KernelKind::linear)
         return;
       for (const Body<dim> &body : problem.bodies)
         if (body.placement == Placement::fitted ||
             body.placement == Placement::cut)
           problem.notes.push_back(
-            "Warning: the transfer 'apic' with linear functions is unstable "
+            "Warning: an affine 'Transfer' with linear functions is unstable "
             "where points lie near the edges of cells, as those of body " +
             in_quotes(body.name) +
             " may. Set 'Method/Kernel = quadratic' or 'Transfer = flip'.");

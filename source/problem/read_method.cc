@@ -114,10 +114,11 @@ namespace limber
     method.lost_points_limit   = section.number("Lost points limit");
     method.energy_growth_limit = section.number("Energy growth limit");
 
-    if (method.damping_time > 0 && method.transfer != Transfer::flip)
+    if (method.damping_time > 0 && method.transfer != Transfer::flip &&
+        method.transfer != Transfer::aflip)
       throw InputError("The damping time " + section.text("Damping time") +
                        " in " + section.where("Damping time") +
-                       " belongs to FLIP, but 'Transfer' is " +
+                       " belongs to FLIP and AFLIP, but 'Transfer' is " +
                        in_quotes(section.text("Transfer")) +
                        ". Usually one of them was changed alone. Set "
                        "'Transfer = flip' or 'Damping time = 0'.");

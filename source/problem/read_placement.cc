@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/ball.h>
+#include <limber/problem/cylinder.h>
+#include <limber/problem/formula_shape.h>
 #include <limber/problem/point_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
@@ -164,6 +167,18 @@ namespace limber
 
 
 
+    /** Of the shapes whose parts are cheap to tell inside from outside. */
+    template <int dim>
+    bool
+    has_curved_surface(const Shape<dim> &shape)
+    {
+      return dynamic_cast<const BallShape<dim> *>(&shape) ||
+             dynamic_cast<const CylinderShape<dim> *>(&shape) ||
+             dynamic_cast<const FormulaShape<dim> *>(&shape);
+    }
+
+
+
     /** Mass, weight and stiffness that 'regular' may err by, of a block. */
     constexpr double least_misfill = 0.02;
 
@@ -174,7 +189,8 @@ namespace limber
     // fills the cells unevenly: what is under stress is not at rest, and
     // softer. Cut, none but those at the surface are; but linear functions take
     // the edges of points for where bodies touch, and thin parts then touch
-    // from afar.
+    // from afar. Curved surfaces are cut where the body stays in its initial
+    // frame and meets nothing.
     template <int dim>
     void
     choose_placement(const Section &section,
@@ -187,8 +203,6 @@ namespace limber
       body.placement = Placement::regular;
       const auto *block =
         dynamic_cast<const BlockShape<dim> *>(body.shape.get());
-      if (block == nullptr)
-        return;
       const auto choose = [&](const Placement    placement,
                               const std::string &word,
                               const std::string &reason) {
@@ -197,6 +211,13 @@ namespace limber
                                 ": placement 'auto' is " + in_quotes(word) +
                                 ", as " + reason + ".");
       };
+      if (block == nullptr)
+        {
+          if (body.frame == Frame::initial && !touches &&
+              has_curved_surface(*body.shape))
+            choose(Placement::cut, "cut", "its surface runs across the cells");
+          return;
+        }
       if (!section.is_empty("Points along edges"))
         return choose(Placement::fitted,
                       "fitted",

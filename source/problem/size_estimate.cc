@@ -23,7 +23,7 @@ namespace limber
     constexpr double of_cubic_cell[]         = {96, 304};
     constexpr double of_coarse_cell[]        = {450, 900}; // on every rank
     constexpr double of_point[]              = {90, 125};
-    constexpr double of_point_apic[]         = {32, 72};
+    constexpr double of_point_affine[]       = {32, 72};
     constexpr double of_point_quadratic[]    = {20, 40}; // sums of its cell
     constexpr double of_point_cubic[]        = {36, 96};
     constexpr double of_point_filtered[]     = {35, 60}; // FMPM, XPIC
@@ -187,8 +187,8 @@ namespace limber
         count_coarse(problem.grid.cells) * of_coarse_cell[k] * ranks;
 
       double per_point = of_point[k];
-      if (problem.method.transfer == Transfer::apic)
-        per_point += of_point_apic[k];
+      if (is_affine(problem.method.transfer))
+        per_point += of_point_affine[k];
       if (quadratic)
         per_point += of_point_quadratic[k];
       if (cubic)

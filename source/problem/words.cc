@@ -149,6 +149,9 @@ namespace limber
       {"pic", Transfer::pic, "points take the velocity; strong damping"},
       {"flip", Transfer::flip, "points take the change of velocity"},
       {"apic", Transfer::apic, "points carry an affine velocity field"},
+      {"aflip",
+       Transfer::aflip,
+       "the same, but points take the change of velocity"},
       {"fmpm",
        Transfer::fmpm,
        "points take the velocity, with the full mass matrix to some order"},
@@ -168,7 +171,8 @@ namespace limber
        Placement::automatic,
        "'regular', but for boxes and blocks of solids on cells of one size "
        "'cut' if their faces run across the cells, or 'regular' would miss "
-       "the volume by more than 2 % (with several bodies, the faces); "
+       "the volume by more than 2 % (with several bodies, the faces), and "
+       "for balls, cylinders and formulas in their initial frame; "
        "'fitted' with domains, or linear functions and contact"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},

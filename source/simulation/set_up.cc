@@ -152,7 +152,7 @@ namespace limber
       layout.deviator      = stress->has_deviator();
       layout.n_history     = stress->n_history();
       layout.volumetric    = stress->volumetric();
-      layout.affine        = problem.method.transfer == Transfer::apic;
+      layout.affine        = is_affine(problem.method.transfer);
       layout.crossings     = !body.is_liquid && body.frame == Frame::current;
       layout.reach         = presses_at_points(problem) && !body.is_liquid;
       layout.domains       = domain_form(kernel);

@@ -50,8 +50,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::give(GiveToGrid what)
   {
-    what.affine =
-      what.momentum && parts.problem.method.transfer == Transfer::apic;
+    what.affine = what.momentum && is_affine(parts.problem.method.transfer);
     relocation.note_batches(sweeps.points_to_grid(what));
     lap(Verb::points_to_grid);
   }
@@ -136,7 +135,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::take(TakeFromGrid what)
   {
-    what.affine     = parts.problem.method.transfer == Transfer::apic;
+    what.affine     = is_affine(parts.problem.method.transfer);
     what.flip_share = flip_share();
     sweeps.grid_to_points(what, extremes);
     lap(Verb::grid_to_points);
@@ -194,7 +193,7 @@ namespace limber
   ExplicitIntegrator<dim>::g2p_update_stress_and_move()
   {
     TakeFromGrid taken;
-    taken.affine     = parts.problem.method.transfer == Transfer::apic;
+    taken.affine     = is_affine(parts.problem.method.transfer);
     taken.flip_share = flip_share();
     sweeps.grid_to_points_ahead(taken, extremes);
     lap(Verb::grid_to_points);

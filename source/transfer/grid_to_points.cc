@@ -62,72 +62,75 @@ namespace limber
 
 
 
-    /**
-     * The affine velocity field C of the points of a pack for APIC: with
-     * linear functions the gradient of the velocity of the grid ...
-     *
-     * Returns twice the work, per mass (J/kg), that the increments of the nodes
-     * do on the former C: sum_i N_i dv_i . C (x_i - x). It is in the momentum
-     * of the nodes but not in the velocity of the points.
-     */
-    template <int dim, class Lanes, class Nodal>
-    __attribute__((always_inline)) inline PointPack<dim>
-    set_affine(const Linear<dim>,
-               const PointView<dim>                  &points,
-               const GridView<dim>                   &grid,
-               const std::uint32_t                    cell,
-               const Lanes                           &lanes,
-               const std::array<PointPack<dim>, dim> &xi,
-               const Nodal                           &nodal)
+    /** What the nodes tell the points of a pack of gradients, 1/s. */
+    template <int dim>
+    struct NodalGradients
     {
       using Number = PointPack<dim>;
-      // sum_i N_i (x_i - x)^2 of each direction, in edges
-      std::array<Number, dim> D;
+
+      std::array<Number, dim>       D;        // sum_i N_i (x_i - x)^2, m^2
+      std::array<Number, dim * dim> velocity; // row-major
+      std::array<Number, dim * dim> change;   // of the increments
+    };
+
+
+
+    /** With linear functions the gradient of the velocity of the grid ... */
+    template <int dim, class Nodal>
+    __attribute__((always_inline)) inline NodalGradients<dim>
+    nodal_gradients(const Linear<dim>,
+                    const GridView<dim>                   &grid,
+                    const std::uint32_t                    cell,
+                    const std::array<PointPack<dim>, dim> &xi,
+                    const Nodal                           &nodal)
+    {
+      using Number                      = PointPack<dim>;
+      const CellGeometry<dim> &geometry = grid.cells[cell];
+      NodalGradients<dim>      result;
       for (int e = 0; e < dim; ++e)
-        D[e] = xi[e] * (1. - xi[e]);
-      Number work{};
+        {
+          const double inverse = geometry.inverse_edge[e];
+          result.D[e]          = xi[e] * (1. - xi[e]) / (inverse * inverse);
+        }
       for (int d = 0; d < dim; ++d)
         {
-          const auto gradient =
+          const auto velocity =
             Linear<dim>::template gradient<Number>(nodal.component(dim + d),
                                                    xi);
           const auto change =
             Linear<dim>::template gradient<Number>(nodal.component(d), xi);
           for (int e = 0; e < dim; ++e)
             {
-              const double  inverse_edge = grid.cells[cell].inverse_edge[e];
-              double *const C            = points.affine[d * dim + e];
-              work += lanes.load(C) * D[e] * change[e] / inverse_edge;
-              lanes.store(gradient[e] * inverse_edge, C);
+              const double inverse         = geometry.inverse_edge[e];
+              result.velocity[d * dim + e] = velocity[e] * inverse;
+              result.change[d * dim + e]   = change[e] * inverse;
             }
         }
-      return 2. * work;
+      return result;
     }
 
 
 
     /**
      * ... and with splines, where that would not keep angular momentum,
-     * C = B D^-1 with the moments B = sum N_i v_i (x_i - x) of the velocity
-     * and D = sum N_i (x_i - x) (x_i - x), which is diagonal (Jiang et al.
-     * 2015, sec. 5.3).
+     * B D^-1 with the moments B = sum N_i v_i (x_i - x) of the velocity and
+     * D = sum N_i (x_i - x) (x_i - x), which is diagonal (Jiang et al. 2015,
+     * sec. 5.3).
      */
-    template <int dim, int degree, class Lanes, class Nodal>
-    inline PointPack<dim>
-    set_affine(const Spline<dim, degree>,
-               const PointView<dim>                  &points,
-               const GridView<dim>                   &grid,
-               const std::uint32_t                    cell,
-               const Lanes                           &lanes,
-               const std::array<PointPack<dim>, dim> &xi,
-               const Nodal &)
+    template <int dim, int degree, class Nodal>
+    inline NodalGradients<dim>
+    nodal_gradients(const Spline<dim, degree>,
+                    const GridView<dim>                   &grid,
+                    const std::uint32_t                    cell,
+                    const std::array<PointPack<dim>, dim> &xi,
+                    const Nodal &)
     {
       using Number                               = PointPack<dim>;
       using Basis                                = Spline<dim, degree>;
       const CellGeometry<dim>          &geometry = grid.cells[cell];
       const auto                       &nodes    = Basis::nodes_of(grid, cell);
       const SplineWeights<Basis, false> weights(geometry, nodes, xi);
-      Number                            work{};
+      NodalGradients<dim>               result;
       for (int e = 0; e < dim; ++e)
         {
           const auto              places = Basis::places(nodes, e);
@@ -146,16 +149,68 @@ namespace limber
                 }
             }
           // No arm is left to a point that lies in a side of the grid.
+          const double edge_inverse = geometry.inverse_edge[e];
           const Number inverse =
-            geometry.inverse_edge[e] / larger(D, broadcast<Number>(1e-30));
+            edge_inverse / larger(D, broadcast<Number>(1e-30));
+          result.D[e] = D / (edge_inverse * edge_inverse);
           for (int d = 0; d < dim; ++d)
             {
-              double *const C = points.affine[d * dim + e];
-              work += lanes.load(C) * change[d] / geometry.inverse_edge[e];
-              lanes.store(B[d] * inverse, C);
+              result.velocity[d * dim + e] = B[d] * inverse;
+              result.change[d * dim + e]   = change[d] * inverse;
             }
         }
-      return 2. * work;
+      return result;
+    }
+
+
+
+    /**
+     * The gradient C that the points of a pack carry: that of the nodes (APIC)
+     * and, with the share alpha of increments, a spin W that makes up for what
+     * the points would else forget of the angular momentum that they gave and
+     * that the increments of the nodes bring,
+     *
+     *   (D_d + D_e) W_de = alpha (S_de - S_ed),  S = (C + dC - C_nodes) D.
+     *
+     * So FLIP, which forgets no velocity, forgets no spin either.
+     *
+     * Returns twice the work, per mass (J/kg), that the increments of the nodes
+     * do on the affine velocity, former and new: sum_i N_i dv_i . (x_i - x)
+     * C / 2 of both. It is in the motion that strains, but not in the velocity
+     * of the points.
+     */
+    template <int dim, class Lanes>
+    __attribute__((always_inline)) inline PointPack<dim>
+    set_affine(const PointView<dim>      &points,
+               const Lanes               &lanes,
+               const double               flip_share,
+               const NodalGradients<dim> &nodes)
+    {
+      using Number = PointPack<dim>;
+      Number                        energy{};
+      std::array<Number, dim * dim> forgotten; // S, m^2/s
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            const int    k = d * dim + e;
+            const Number C = lanes.load(points.affine[k]);
+            forgotten[k] =
+              nodes.D[e] * (C + nodes.change[k] - nodes.velocity[k]);
+          }
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            const int    k   = d * dim + e;
+            const Number old = lanes.load(points.affine[k]);
+            Number       C   = nodes.velocity[k];
+            if (flip_share != 0. && d != e)
+              C += flip_share *
+                   (forgotten[d * dim + e] - forgotten[e * dim + d]) /
+                   larger(nodes.D[d] + nodes.D[e], broadcast<Number>(1e-300));
+            energy += nodes.D[e] * nodes.change[k] * (old + C);
+            lanes.store(C, points.affine[k]);
+          }
+      return energy;
     }
 
 
@@ -208,11 +263,13 @@ namespace limber
                                                                          d),
                                                          xi);
                   };
-                  if constexpr (affine)
-                    velocity = of_grid();
-                  else if constexpr (take_velocity)
-                    if (what.flip_share != 1.)
-                      velocity += (1. - what.flip_share) * (of_grid() - flip);
+                  if constexpr (take_velocity)
+                    {
+                      if (affine && what.flip_share == 0.)
+                        velocity = of_grid();
+                      else if (what.flip_share != 1.)
+                        velocity += (1. - what.flip_share) * (of_grid() - flip);
+                    }
                   lanes.store(velocity, points.velocity[d]);
                   kept_squared += flip * flip;
                   squared += velocity * velocity;
@@ -221,7 +278,10 @@ namespace limber
                 }
               if constexpr (affine)
                 kept_squared += set_affine<dim>(
-                  Basis(), points, grid, batch.cell, lanes, xi, nodal);
+                  points,
+                  lanes,
+                  what.flip_share,
+                  nodal_gradients<dim>(Basis(), grid, batch.cell, xi, nodal));
               speed_squared = larger(speed_squared, lanes.only_active(squared));
               if (affine || what.flip_share != 1.)
                 removed += lanes.only_active(lanes.load(points.mass)) *

@@ -52,6 +52,10 @@ namespace limber
     bool
     contains(const dealii::Point<dim> &point) const override;
 
+    /** In the plane; nothing in space. */
+    std::optional<PartInside<dim>>
+    inside_of(const Corners<dim> &box) const override;
+
     std::optional<SignedDistance<dim>>
     signed_distance(const dealii::Point<dim> &point) const override;
 

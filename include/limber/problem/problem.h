@@ -80,9 +80,17 @@ namespace limber
     pic,
     flip,
     apic,
-    fmpm, // full mass, of some order (FMPM(k))
-    xpic  // the same of the velocity before the step (XPIC(k))
+    aflip, // affine as APIC, increments as FLIP
+    fmpm,  // full mass, of some order (FMPM(k))
+    xpic   // the same of the velocity before the step (XPIC(k))
   };
+
+  /** Whether points carry a gradient of their velocity to the nodes. */
+  constexpr bool
+  is_affine(const Transfer transfer)
+  {
+    return transfer == Transfer::apic || transfer == Transfer::aflip;
+  }
 
   /** Whether the velocity of the nodes is filtered before points take it. */
   constexpr bool

@@ -12,9 +12,11 @@ namespace limber
     // Share alpha of the velocity increment (FLIP); the rest is the velocity
     // itself (PIC): v = alpha (v + sum N dv) + (1 - alpha) sum N v.
     double flip_share = 1;
-    bool   affine     = false; // keep grad v of the grid for APIC
-    bool   remap      = false; // give the new momentum back to the nodes
-    double move       = 0;     // step by which the points move with the grid, s
+    // Points carry a gradient of their velocity: APIC with the share 0, else
+    // AFLIP.
+    bool   affine = false;
+    bool   remap  = false; // give the new momentum back to the nodes
+    double move   = 0;     // step by which the points move with the grid, s
   };
 
 

@@ -298,7 +298,7 @@ TEST(Jumps, ConstantStressGivesNoForce)
 // Through both jumps and over many cells, in a fluid and a solid.
 TEST(Jumps, RigidMotionStaysRigid)
 {
-  for (const std::string transfer : {"flip", "pic", "apic"})
+  for (const std::string transfer : {"flip", "pic", "apic", "aflip"})
     for (const std::string &scheme : stress_update_orders)
       {
         SCOPED_TRACE(transfer + ", " + scheme);

@@ -145,6 +145,7 @@ TEST(CrossingSolution, LinearFunctionsStall)
 TEST(CrossingSolution, SplinesAreOfSecondOrder)
 {
   expect_order("quadratic", "flip", {8, 16}, 1.8);
+  expect_order("quadratic", "aflip", {8, 16}, 1.8);
   EXPECT_LT(crossing_error("quadratic", "flip", 32), 0.02);
   const double coarse = crossing_error("quadratic", "fmpm", 4);
   for (const unsigned int n : {8u, 16u, 32u})

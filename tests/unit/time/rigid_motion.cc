@@ -124,7 +124,7 @@ namespace
 TEST(RigidMotion, TranslationIsExact)
 {
   const dealii::Tensor<1, 2> v({10., 3.});
-  for (const Variant &variant : all_variants({"pic", "flip", "apic"}))
+  for (const Variant &variant : all_variants({"pic", "flip", "apic", "aflip"}))
     {
       SCOPED_TRACE(name_of(variant));
       auto set = overrides(variant);
@@ -161,7 +161,7 @@ TEST(RigidMotion, TranslationIsExact)
 // with the velocity of the middle of the step x is exact.
 TEST(RigidMotion, FreeFall)
 {
-  for (const Variant &variant : all_variants({"pic", "flip", "apic"}))
+  for (const Variant &variant : all_variants({"pic", "flip", "apic", "aflip"}))
     {
       SCOPED_TRACE(name_of(variant));
       auto set = overrides(variant);
@@ -195,7 +195,7 @@ TEST(RigidMotion, FreeFall)
 TEST(RigidMotion, HomogeneousDeformationIsExactAndUntouchedByTheTreatment)
 {
   const dealii::Tensor<2, 2> L({{0.3, 0.5}, {-0.2, -0.1}});
-  for (const Variant &variant : all_variants({"apic"}))
+  for (const Variant &variant : all_variants({"apic", "aflip"}))
     {
       SCOPED_TRACE(name_of(variant));
       const unsigned int parts = variant.order == "usavg" ? 2 : 1;
@@ -264,7 +264,7 @@ TEST(RigidMotion, RotationLeavesSizeAndStress)
 {
   const double         angle = 1.5;
   dealii::Tensor<2, 2> one({{1, 0}, {0, 1}});
-  for (const Variant &variant : all_variants({"apic"}))
+  for (const Variant &variant : all_variants({"apic", "aflip"}))
     {
       if (variant.law == "linear elastic" || variant.order == "usavg")
         continue; // for small rotation only

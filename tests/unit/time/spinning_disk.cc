@@ -12,6 +12,8 @@
  *  - APIC hands all of it over, there and back, in every step.
  *  - FLIP applies forces at the mean places of what the nodes hold, which at
  *    the surface are not those of the nodes: an error of second order in h.
+ *  - AFLIP hands over what forces bring, and all of a rigid motion. It loses
+ * the torque of points that move with the grid but have another velocity.
  *  - FMPM(k) loses <x, (1 - M_full D^-1)^k p> in each step, where the functions
  *    end at the surface: of second order in h too, but for each step, so that
  *    shorter steps lose more, as they do of waves.
@@ -191,6 +193,32 @@ TEST(SpinningDisk, ApicStartsWithTheSlopesOfTheInitialVelocity)
   const double before = kinetic_energy();
   run.advance(1e-6);
   EXPECT_NEAR(kinetic_energy(), before, 1e-9 * before);
+}
+
+
+
+TEST(SpinningDisk, AflipKeepsItInARigidStep)
+{
+  for (const std::string kernel : {"quadratic", "cubic"})
+    for (const std::string order : {"usl", "musl"})
+      {
+        SCOPED_TRACE(kernel + ", " + order);
+        SceneRun<2>  run(spinning_disk(5),
+                        {"Method/Kernel=" + kernel,
+                          "Method/Transfer=aflip",
+                          "Method/Stress update=" + order});
+        const double start = angular_momentum(run);
+        run.advance(0.1);
+        EXPECT_NEAR(angular_momentum(run), start, 1e-13 * start);
+      }
+}
+
+
+
+TEST(SpinningDisk, AflipLosesATenthOfWhatFlipDoes)
+{
+  EXPECT_LT(std::abs(Turn(10, "aflip", "musl").lost),
+            0.1 * std::abs(Turn(10, "flip", "musl").lost));
 }
 
 

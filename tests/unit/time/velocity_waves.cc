@@ -194,13 +194,16 @@ TEST(VelocityWaves, NullModeIsKeptByFlipAndRemovedByPic)
         return run.totals().all.kinetic_energy / before;
       };
       EXPECT_NEAR(share_of_energy("flip", 0, 1000), 1, 1e-12);
+      EXPECT_NEAR(share_of_energy("aflip", 0, 1000), 1, 1e-12);
       EXPECT_LT(share_of_energy("pic", 0, 1), 1e-24);
       // APIC takes velocity from the grid and keeps the gradient there: none.
       EXPECT_LT(share_of_energy("apic", 0, 1), 1e-24);
       const double alpha = 1 - step / 0.05;
       for (const unsigned int n : {1u, 10u, 100u})
-        EXPECT_NEAR(share_of_energy("flip", 0.05, n) / std::pow(alpha, 2 * n),
-                    1,
-                    1e-10);
+        for (const std::string transfer : {"flip", "aflip"})
+          EXPECT_NEAR(share_of_energy(transfer, 0.05, n) /
+                        std::pow(alpha, 2 * n),
+                      1,
+                      1e-10);
     }
 }

@@ -78,13 +78,13 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
   this->set_field(Layout::increment, a, A);
   this->set_field(Layout::velocity, b, B);
 
-  for (int variant = 0; variant < 8; ++variant)
+  for (int variant = 0; variant < 12; ++variant)
     {
       TakeFromGrid what;
-      what.flip_share = std::array{1., 0.9, 0., 1.}[variant % 4];
-      what.affine     = variant % 4 == 3;
+      what.flip_share = std::array{1., 0.9, 0.}[variant % 3];
+      what.affine     = variant % 6 >= 3;
       auto points =
-        random_points<dim>(this->grid, this->random, true, 0, -1, variant >= 4);
+        random_points<dim>(this->grid, this->random, true, 0, -1, variant >= 6);
       const auto before = points;
       const auto summary =
         grid_to_points<dim>(points.view(), this->grid.view(), what, nullptr);
@@ -98,7 +98,7 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
           for (int d = 0; d < dim; ++d)
             {
               const double flip  = before.fields[dim + d][p] + increment[d];
-              const double alpha = what.affine ? 0 : what.flip_share;
+              const double alpha = what.flip_share;
               EXPECT_NEAR(points.fields[dim + d][p],
                           alpha * flip + (1 - alpha) * velocity[d],
                           1e-14);
@@ -107,33 +107,44 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
                          (flip * flip - std::pow(points.fields[dim + d][p], 2));
               for (int e = 0; e < dim; ++e)
                 {
-                  const double kept = points.view().affine[d * dim + e][p];
-                  EXPECT_NEAR(kept,
-                              what.affine ?
-                                B[d][e] :
-                                before.fields[2 * dim + 2 + n_deviator<dim> +
-                                              d * dim + e][p],
-                              1e-13);
+                  const auto kept = [&](const int row, const int column) {
+                    return points.view().affine[row * dim + column][p];
+                  };
+                  if (!what.affine)
+                    EXPECT_EQ(kept(d, e),
+                              before.fields[2 * dim + 2 + n_deviator<dim> +
+                                            d * dim + e][p]);
+                  else if (what.flip_share == 0)
+                    EXPECT_NEAR(kept(d, e), B[d][e], 1e-13);
+                  else
+                    EXPECT_NEAR(kept(d, e) + kept(e, d),
+                                B[d][e] + B[e][d],
+                                1e-11);
                 }
             }
           largest = std::max(largest, squared);
-          // the work of the increments on the former affine velocity
+          // the work of the increments on the affine velocity
           if (what.affine)
             for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
               {
-                const auto cell = points.cell[p];
-                const auto x    = points.position(p);
-                const auto node = this->grid.node_number(cell, i);
-                const auto x_i  = this->grid.place(node);
+                const auto   cell = points.cell[p];
+                const auto   x    = points.position(p);
+                const auto   node = this->grid.node_number(cell, i);
+                const auto   x_i  = this->grid.place(node);
+                const double N    = this->grid.shape(cell, i, x);
                 for (int d = 0; d < dim; ++d)
                   for (int e = 0; e < dim; ++e)
-                    removed +=
-                      points.view().mass[p] * this->grid.shape(cell, i, x) *
-                      this->grid
-                        .nodes[node * Layout::stride + Layout::increment + d] *
-                      before.fields[2 * dim + 2 + n_deviator<dim> + d * dim + e]
-                                   [p] *
-                      (x_i[e] - x[e]);
+                    {
+                      const double dv =
+                        this->grid
+                          .nodes[node * Layout::stride + Layout::increment + d];
+                      const double former =
+                        before.fields[2 * dim + 2 + n_deviator<dim> + d * dim +
+                                      e][p];
+                      const double kept = points.view().affine[d * dim + e][p];
+                      removed += points.view().mass[p] * N * dv * 0.5 *
+                                 (former + kept) * (x_i[e] - x[e]);
+                    }
               }
         }
       EXPECT_NEAR(summary.speed_squared, largest, 1e-13);
@@ -154,6 +165,58 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
             EXPECT_EQ(points.fields[k][p], before.fields[k][p]);
         }
     }
+}
+
+
+
+// AFLIP: whatever points and nodes have, the points together gain the angular
+// momentum of the increments, before they move.
+TYPED_TEST(GridToPoints, IncrementsBringTheirAngularMomentum)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  for (double &value : this->grid.nodes)
+    value = this->random();
+  auto       points = random_points<dim>(this->grid, this->random);
+  const auto before = points;
+
+  TakeFromGrid what;
+  what.affine = true;
+  grid_to_points<dim>(points.view(), this->grid.view(), what, nullptr);
+
+  for (int d = 0; d < dim; ++d)
+    for (int e = 0; e < d; ++e)
+      {
+        double gained = 0, brought = 0, size = 0;
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const auto     x = points.position(p);
+            const double   m = points.view().mass[p];
+            Vector<dim>    D{};
+            constexpr auto C = 2 * dim + 2 + n_deviator<dim>;
+            for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
+              {
+                const auto   node = this->grid.node_number(points.cell[p], i);
+                const auto   x_i  = this->grid.place(node);
+                const double N    = this->grid.shape(points.cell[p], i, x);
+                for (int k = 0; k < dim; ++k)
+                  D[k] += N * std::pow(x_i[k] - x[k], 2);
+                const double *const dv =
+                  &this->grid.nodes[node * Layout::stride + Layout::increment];
+                brought += m * N * (x_i[d] * dv[e] - x_i[e] * dv[d]);
+                size +=
+                  m * N * (std::abs(x_i[d] * dv[e]) + std::abs(x_i[e] * dv[d]));
+              }
+            const auto change = [&](const int k) {
+              return points.fields[k][p] - before.fields[k][p];
+            };
+            gained += m * (x[d] * change(dim + e) - x[e] * change(dim + d) +
+                           D[d] * change(C + e * dim + d) -
+                           D[e] * change(C + d * dim + e));
+          }
+        EXPECT_NEAR(gained, brought, 1e-13 * size);
+        EXPECT_GT(std::abs(brought), 1e-3 * size);
+      }
 }
 
 
