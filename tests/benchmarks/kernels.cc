@@ -181,6 +181,7 @@ namespace
     const std::string name = apic ? "grid to points, apic" : "grid to points";
     TakeFromGrid      take;
     take.affine        = apic;
+    take.flip_share    = apic ? 0 : 1;
     const auto prepare = [&]() { bench.set_motion(); };
     const auto sweep   = [&]() {
       grid_to_points<dim>(bench.body.points.view(),
