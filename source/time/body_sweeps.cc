@@ -305,6 +305,8 @@ namespace limber
         what.shift =
           body->cell_shift.size() > 0 ? body->cell_shift.data() : nullptr;
         what.volume_shares = shares_of(*body);
+        what.uniform_divergence =
+          description.is_liquid && body->implicit.has_value();
         CellPressures pressures;
         if (body->implicit)
           pressures = body->implicit->view(description.is_liquid,

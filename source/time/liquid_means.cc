@@ -9,8 +9,8 @@ namespace limber
 {
   namespace
   {
-    // Limits of what counts as all of a cell over what is in it: more would
-    // make sound faster than the step allows for.
+    // Limits of what counts as all of a cell over what is in it, in explicit
+    // steps: more would make sound faster than the step allows for.
     constexpr double least_share = 0.8, largest_share = 1.25;
 
     // Where a cell holds too much or too little by @p clumped of it or more,
@@ -41,8 +41,8 @@ namespace limber
       if (!group.liquids.empty())
         {
           const MaterialBody &first = *group.liquids.front();
-          group.fills_cells =
-            !first.implicit && first.cell_sums->stride == n_nodes;
+          group.fills_cells         = first.cell_sums->stride == n_nodes;
+          group.is_implicit         = first.implicit.has_value();
           if (group.fills_cells || group.liquids.size() > 1)
             groups.push_back(std::move(group));
         }
@@ -57,11 +57,10 @@ namespace limber
   {
     for (const Group &group : groups)
       for (MaterialBody *const body : group.liquids)
-        if (!body->implicit)
-          {
-            body->volume_shares.reinit(parts.grid.n_cells());
-            std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
-          }
+        {
+          body->volume_shares.reinit(parts.grid.n_cells());
+          std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
+        }
     if (std::any_of(groups.begin(), groups.end(), [](const Group &group) {
           return group.fills_cells;
         }))
@@ -120,10 +119,9 @@ namespace limber
     if (in_cell.size() > 1)
       mix();
     for (const Part &part : in_cell)
-      if (!part.body->implicit)
-        part.body->volume_shares[cell] = part.share;
+      part.body->volume_shares[cell] = group.is_implicit ? 1 : part.share;
     if (group.fills_cells && !in_cell.empty() && !holds(group.solids, cell))
-      fill(cell);
+      fill(group, cell);
   }
 
 
@@ -158,12 +156,12 @@ namespace limber
 
   template <int dim>
   void
-  LiquidMeans<dim>::fill(const std::uint32_t cell)
+  LiquidMeans<dim>::fill(const Group &group, const std::uint32_t cell)
   {
     const double filled = filling(cell);
     const bool   inside = surroundings.is_inside(cell);
     const double share =
-      inside ?
+      inside && !group.is_implicit ?
         1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
         1;
     unsigned int n_open = 0, open = 0; // directions that end at a surface
@@ -187,7 +185,9 @@ namespace limber
     if (inside)
       for (const Part &part : in_cell)
         part.body->volume_shares[cell] *=
-          std::min(std::max(1 / filled, least_share), largest_share);
+          group.is_implicit ?
+            1 / filled :
+            std::min(std::max(1 / filled, least_share), largest_share);
   }
 
 

@@ -157,8 +157,11 @@ namespace limber
         });
         if (any == nullptr)
           continue;
-        of_cell[Record::pattern] = controlled * of_cell[Record::volume] / mass;
         // those of all of them, see LiquidMeans
+        const double filling =
+          any->volume_shares.size() > 0 ? any->volume_shares[cell] : 1;
+        of_cell[Record::pattern] =
+          filling * filling * controlled * of_cell[Record::volume] / mass;
         const CellSums<dim> sums = any->cell_sums->view();
         const auto          gradients =
           mean_gradients<dim>(parts.grid.geometry[cell],
@@ -166,7 +169,7 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           for (int d = 0; d < dim; ++d)
             of_cell[Record::rows + a * dim + d] =
-              of_cell[Record::volume] * gradients[a][d];
+              filling * of_cell[Record::volume] * gradients[a][d];
       }
 
     for (const MaterialBody<dim> *const body : medium.bodies)

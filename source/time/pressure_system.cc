@@ -8,7 +8,8 @@ namespace limber
 {
   namespace
   {
-    // Nodes may hold so much more than there is room for.
+    // Nodes may hold so much more, or less, than there is room for: places of
+    // points show no volume more exactly.
     constexpr double excess_allowed = 0.02;
 
 
@@ -76,12 +77,13 @@ namespace limber
     : parts(parts)
     , boundaries(boundaries)
     , cells(cells)
-    , needs_volumes(parts.bodies.size() > 1 &&
-                    std::any_of(parts.bodies.begin(),
-                                parts.bodies.end(),
-                                [](const auto &body) {
-                                  return body->description.density_control > 0;
-                                }))
+    , controls_density(std::any_of(parts.bodies.begin(),
+                                   parts.bodies.end(),
+                                   [](const auto &body) {
+                                     return body->description.density_control >
+                                            0;
+                                   }))
+    , needs_volumes(controls_density && parts.bodies.size() > 1)
   {
     reinit();
   }
@@ -97,6 +99,8 @@ namespace limber
     corners.reinit(parts);
     if (needs_volumes)
       volumes.reinit(parts.nodes.table.n());
+    if (controls_density)
+      at_surface.reinit(parts.nodes.table.n());
     pattern_scales.resize(cells.media.size());
     for (auto &of_medium : pattern_scales)
       of_medium.reinit(parts.nodes.table.n());
@@ -196,7 +200,8 @@ namespace limber
 
 
 
-  // By how much of its room a node holds more than it may, at @p density now.
+  // By how much of its room a node holds more than it may, at @p density now,
+  // or, as a negative number, less.
   template <int dim>
   double
   PressureSystem<dim>::excess(const std::uint32_t cell,
@@ -221,10 +226,78 @@ namespace limber
                                  const std::uint32_t node,
                                  const double        density) const
   {
-    const double held = needs_volumes ?
-                          volumes[node] :
-                          parts.nodes.record(node)[Layout::mass] / density;
-    return std::max(0., held / room - 1 - excess_allowed);
+    const double held   = needs_volumes ?
+                            volumes[node] :
+                            parts.nodes.record(node)[Layout::mass] / density;
+    const double excess = held / room - 1;
+    if (excess < 0 && at_surface[node] > 0)
+      return 0; // there is room left
+    return std::copysign(std::max(0., std::abs(excess) - excess_allowed),
+                         excess);
+  }
+
+
+
+  // Whether there is liquid in all cells around a node.
+  template <int dim>
+  bool
+  PressureSystem<dim>::is_surrounded(const std::uint32_t node) const
+  {
+    const Medium &liquids = cells.media.front();
+    if (corners.empty())
+      {
+        const std::uint32_t *const around = liquids.cells_around(node);
+        const int empty = std::count(around, around + n_nodes, 0u);
+        return int(n_nodes) - empty ==
+               int(n_nodes) >>
+                 __builtin_popcount(parts.nodes.table.sides[node]);
+      }
+    bool result = true;
+    corners.for_each(node, [&](const auto &corner) {
+      if (!(liquids.record(corner.cell)[Record::volume] > 0))
+        result = false;
+    });
+    return result;
+  }
+
+
+
+  // A cell of which some corner has an empty cell beside it is at a surface.
+  template <int dim>
+  void
+  PressureSystem<dim>::find_surface()
+  {
+    const auto for_each_node_of = [&](const std::uint32_t cell,
+                                      const auto         &work) {
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        {
+          const std::uint32_t node = cells.node_of(cell, a);
+          if (corners.empty())
+            work(node);
+          else
+            corners.for_each_master(node, [&](const auto &master) {
+              work(master.node);
+            });
+        }
+    };
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      at_surface[node] = 0;
+    const Medium &liquids = cells.media.front();
+    for (const std::uint32_t cell : liquids.cells)
+      {
+        if (!(liquids.record(cell)[Record::volume] > 0))
+          continue;
+        bool inside = true;
+        for_each_node_of(cell, [&](const std::uint32_t node) {
+          inside = inside && is_surrounded(node);
+        });
+        if (!inside)
+          for_each_node_of(cell, [&](const std::uint32_t node) {
+            at_surface[node] += 1;
+          });
+      }
+    node_exchange.start(parts.nodes.node_plan(), at_surface.data(), 0, 1);
+    node_exchange.finish(at_surface.data());
   }
 
 
@@ -266,8 +339,8 @@ namespace limber
           }
       }
     parts.nodes.table.give_to_masters(volumes.data(), 1, 0, 1);
-    volume_exchange.start(parts.nodes.node_plan(), volumes.data(), 0, 1);
-    volume_exchange.finish(volumes.data());
+    node_exchange.start(parts.nodes.node_plan(), volumes.data(), 0, 1);
+    node_exchange.finish(volumes.data());
   }
 
 
@@ -282,6 +355,8 @@ namespace limber
     find_pattern_scales(step);
     if (needs_volumes)
       sum_volumes();
+    if (controls_density)
+      find_surface();
     const auto &media = cells.media;
     equations.values.assign(equations.columns.size(), 0.);
     equations.right_side.assign(equations.n, 0.);

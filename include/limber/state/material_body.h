@@ -59,7 +59,8 @@ namespace limber
     // chequerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};
     // Per cell, the dilation of this liquid over the mean divergence of the
-    // cell (LiquidMeans); empty for all other bodies
+    // cell (LiquidMeans), where the pressure is implicit without what the
+    // system has found; empty for all other bodies
     LazyArray<double> volume_shares = {};
     // Of an implicit pressure, by cell; only where the body has one
     std::optional<ImplicitFields> implicit = {};

@@ -3,6 +3,7 @@
 #define limber_stress_strain_sweep_h
 
 #include <limber/interpolation/strain_operator.h>
+#include <limber/interpolation/uniform_divergence.h>
 #include <limber/stress/law_on_points.h>
 
 namespace limber
@@ -121,7 +122,11 @@ namespace limber
             if (batch.implicit->is_whole)
               motion.volumetric = broadcast<Number>(dilation);
             else
-              motion.volumetric += dilation;
+              motion.volumetric =
+                what.volume_shares ?
+                  what.volume_shares[batch.cell_number] * motion.volumetric +
+                    dilation :
+                  motion.volumetric + dilation;
           }
 
         // towards the mean of the cell, or by what the cell gets
@@ -153,6 +158,18 @@ namespace limber
                 Basis::template value<Number>(batch.nodal.component(d), xi);
             if (rarely(what.curved))
               shift = curve<dim>(shift, motion.gradient);
+            if constexpr (kind == Projection::cell &&
+                          std::is_same_v<Basis, Linear<dim>>)
+              if (rarely(what.uniform_divergence))
+                {
+                  const auto beyond = beyond_uniform_divergence<dim, Number>(
+                    [&](const int d) { return batch.nodal.component(d); },
+                    batch.cell,
+                    batch.means,
+                    xi);
+                  for (int d = 0; d < dim; ++d)
+                    shift[d] -= what.move * beyond[d];
+                }
             const auto moved =
               move_points<dim>(points, grid, batch.cell_number, lanes, shift);
             displacement = larger(displacement, moved.displacement);

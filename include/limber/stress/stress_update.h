@@ -58,6 +58,10 @@ namespace limber
     // Whether they follow the velocity field as it is now on their way: by
     // step (1 + a/2) v, of second order, so that what turns does not grow.
     bool curved = false;
+    // With Projection::cell and functions of the corners: whether all places of
+    // a cell move apart as its mean divergence says, by the velocity without
+    // beyond_uniform_divergence().
+    bool uniform_divergence = false;
     // With this share of FLIP points take their velocities in the same sweep,
     // where takes_velocity(); empty: they keep them.
     std::optional<double> flip_share;

@@ -24,14 +24,15 @@ namespace limber
    * need no s_k. Liquids with fields of nodes of their own (contact) share
    * nothing.
    *
-   * Where the pressure is explicit and nodes are corners of cells, the mean
-   * inside is that over the cell and not over the points in it, and what they
-   * fill of it counts as all of it. Means over points do not see that points
-   * part from each other where the divergence is above the mean: they would
-   * make way without work against the pressure p, as if by a stiffness of - p
-   * against deviations of the divergence, and water at rest would be unstable.
-   * In a layer at a surface the cell counts as filled from within. Where points
-   * have clumped, means over them push clumps apart and keep a share. Theory:
+   * Where nodes are corners of cells, the mean inside is that over the cell and
+   * not over the points in it, and what they fill of it counts as all of it.
+   * Means over points do not see that points part from each other where the
+   * divergence is above the mean: they would make way without work against the
+   * pressure p, as if by a stiffness of - p against deviations of the
+   * divergence, and water at rest would be unstable. In a layer at a surface
+   * the cell counts as filled from within. Where points have clumped in
+   * explicit steps, means over them push clumps apart and keep a share; an
+   * implicit pressure has the density control for that. Theory:
    * doc/theory/treatments.md.
    */
   template <int dim>
@@ -58,6 +59,7 @@ namespace limber
     {
       std::vector<MaterialBody *> liquids, solids;
       bool fills_cells = false; // whether means over the cell are wanted
+      bool is_implicit = false; // the pressure of the liquids
     };
 
     /** One of the liquids in a cell. */
@@ -75,7 +77,7 @@ namespace limber
     void
     mix();
     void
-    fill(std::uint32_t cell);
+    fill(const Group &group, std::uint32_t cell);
     void
     approach(unsigned int direction, double mean, double share);
     double

@@ -149,6 +149,10 @@ namespace limber
     excess_in(double room, std::uint32_t node, double density) const;
     void
     sum_volumes();
+    void
+    find_surface();
+    bool
+    is_surrounded(std::uint32_t node) const;
     double
     excess_over_levels(std::uint32_t node, double density) const;
 
@@ -165,11 +169,15 @@ namespace limber
     std::vector<LazyArray<double>> pattern_scales;
     // By place in a row: the cell that it stands for
     std::vector<std::uint32_t> mates;
+    const bool                 controls_density; // of any body
     // By node, m^3: what liquids take of the room around it; only
     // where a density control of several bodies asks for it
     const bool        needs_volumes;
     LazyArray<double> volumes;
-    RecordExchange    volume_exchange{1};
+    // By node, only with a density control: how many of the cells around it are
+    // at a surface
+    LazyArray<double> at_surface;
+    RecordExchange    node_exchange{1};
     // By row, whether none of the bodies in the cell bears tension
     std::vector<unsigned char> may_be_cut;
     // Matrix and right side of all cells, where some are cut off

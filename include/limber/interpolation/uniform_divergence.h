@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_interpolation_uniform_divergence_h
+#define limber_interpolation_uniform_divergence_h
+
+#include <limber/interpolation/batch_lanes.h>
+#include <limber/interpolation/linear.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  /**
+   * What a velocity v of corner functions has, at natural places xi in a cell,
+   * beyond a velocity that has the same components across the faces of the
+   * cell and the same divergence everywhere in it: that of v at the mean place.
+   * In two dimensions, with the coefficient c^e of xi eta in v_e, m the mean
+   * place and h the edges, it is
+   *
+   *   w_d = c^e h_d/h_e (xi_d - a_d)(xi_d - b_d)/2,  [a, b] in [0, 1],
+   *
+   * where a_d + b_d = 2 m_d: all of the cell where the mean is its middle,
+   * else what lies around the mean from one of the faces on. So div w is the
+   * deviation of div v from its mean, and w is zero across the faces. In three
+   * dimensions each c is taken at the place along the third direction, for the
+   * term of all coordinates half way to the mean.
+   *
+   * @p component(d) gives the coefficients of component d by monomials, @p
+   * means the mean of each monomial (CellMeans).
+   */
+  template <int dim, class Number, class Components, class Means>
+  __attribute__((always_inline)) inline std::array<Number, dim>
+  beyond_uniform_divergence(const Components              &component,
+                            const CellGeometry<dim>       &cell,
+                            const Means                   &means,
+                            const std::array<Number, dim> &xi)
+  {
+    std::array<double, dim> mean;
+    std::array<Number, dim> bubble, result{};
+    for (int d = 0; d < dim; ++d)
+      {
+        mean[d]            = means[Linear<dim>::stride(d)];
+        const double lower = std::max(0., 2 * mean[d] - 1),
+                     upper = std::min(1., 2 * mean[d]);
+        bubble[d]          = 0.5 * ((xi[d] - lower) * (xi[d] - upper));
+      }
+    for (int e = 0; e < dim; ++e)
+      for (int d = 0; d < dim; ++d)
+        {
+          if (d == e)
+            continue;
+          const auto   c     = component(e);
+          const double ratio = cell.inverse_edge[e] / cell.inverse_edge[d];
+          const int    pair  = Linear<dim>::stride(d) | Linear<dim>::stride(e);
+          Number       scale = broadcast<Number>(c(pair));
+          if constexpr (dim == 3)
+            {
+              const int third = 3 - d - e;
+              scale +=
+                (0.5 * c(Linear<dim>::n_nodes - 1)) * (xi[third] + mean[third]);
+            }
+          result[d] += ratio * (scale * bubble[d]);
+        }
+    return result;
+  }
+} // namespace limber
+
+#endif
