@@ -16,11 +16,12 @@ namespace limber
    * In two dimensions, with the coefficient c^e of xi eta in v_e, m the mean
    * place and h the edges, it is
    *
-   *   w_d = c^e h_d/h_e (xi_d - a_d)(xi_d - b_d)/2,  [a, b] in [0, 1],
+   *   w_d = c^e h_d/h_e (xi_d - a_d)(xi_d - b_d)/2,  a_d <= xi_d <= b_d,
    *
    * where a_d + b_d = 2 m_d: all of the cell where the mean is its middle,
-   * else what lies around the mean from one of the faces on. So div w is the
-   * deviation of div v from its mean, and w is zero across the faces. In three
+   * else what lies around the mean from one of the faces on; beyond it is zero.
+   * So div w is the deviation of div v from its mean where material is, and w
+   * is zero across the faces: nothing goes through a side. In three
    * dimensions each c is taken at the place along the third direction, for the
    * term of all coordinates half way to the mean.
    *
@@ -41,7 +42,9 @@ namespace limber
         mean[d]            = means[Linear<dim>::stride(d)];
         const double lower = std::max(0., 2 * mean[d] - 1),
                      upper = std::min(1., 2 * mean[d]);
-        bubble[d]          = 0.5 * ((xi[d] - lower) * (xi[d] - upper));
+        // which is positive beyond
+        bubble[d] =
+          smaller((0.5 * (xi[d] - lower)) * (xi[d] - upper), Number{});
       }
     for (int e = 0; e < dim; ++e)
       for (int d = 0; d < dim; ++d)

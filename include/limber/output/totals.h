@@ -125,7 +125,9 @@ namespace limber
     double
     energy_of_round_off(unsigned long steps) const;
     void
-    balance_energy(const Ledger<dim> &ledger, Totals<dim> &totals);
+    balance_energy(const Ledger<dim> &ledger,
+                   unsigned long      steps,
+                   Totals<dim>       &totals);
     void
     balance_momentum(const Ledger<dim> &ledger,
                      const double       absolute_momentum,

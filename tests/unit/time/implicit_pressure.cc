@@ -310,6 +310,38 @@ TEST(ImplicitPressure, MakesRoomForSeveralLiquids)
 
 
 
+// Where nodes inside hold too little, what is around them draws together, and
+// no further than to 0.98 of their room.
+TEST(ImplicitPressure, DrawsTogetherWhatIsInside)
+{
+  SceneRun<2> run(vessel,
+                  {gravity,
+                   "Body water/Box/Upper corner=4, 4",
+                   "Body water/Points per cell edge=3"});
+  // A tenth away from the middle of the vessel on both sides
+  PointView<2> points = run.bodies[0]->points.view();
+  for (std::size_t p = 0; p < points.size; ++p)
+    if (std::abs(points.position[1][p] - 2) < 1)
+      points.mass[p] *= 0.9;
+  const auto held = [&]() {
+    double sum = 0;
+    for (std::size_t p = 0; p < points.size; ++p)
+      sum += points.mass[p] / run.bodies[0]->stress->density() *
+             std::max(0., 1 - std::abs(points.position[0][p] - 2)) *
+             std::max(0., 1 - std::abs(points.position[1][p] - 2));
+    return sum;
+  };
+  const double before = held();
+  run.advance(0.06, 60);
+  points             = run.bodies[0]->points.view();
+  const double after = held();
+  EXPECT_LT(before, 0.91);
+  EXPECT_GT(after, 0.97);
+  EXPECT_LT(after, 1.02);
+}
+
+
+
 // A turning drop keeps its size: points follow curves, not tangents.
 TEST(ImplicitPressure, LetsAVortexTurn)
 {
