@@ -281,8 +281,9 @@ namespace limber
     const double round_off =
       (64. + steps) * std::numeric_limits<double>::epsilon() *
       (std::abs(all.gravitational_energy) + std::abs(all.strain_energy));
-    const double beyond =
-      std::copysign(std::max(0., std::abs(gain) - round_off), gain);
+    const double beyond = gain > round_off  ? gain - round_off :
+                          gain < -round_off ? gain + round_off :
+                                              0;
     totals.energy_drift =
       start.energy_scale > 0 ? beyond / start.energy_scale : 0;
   }
