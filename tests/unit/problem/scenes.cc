@@ -299,7 +299,9 @@ TEST(Scenes, PlacementFollowsTheFaces)
                        "Method/Kernel=cpdi",
                        "Body block/Frame=current"}),
             Placement::fitted);
-  EXPECT_EQ(placement({"Body block/Shape=ball"}), Placement::regular);
+  EXPECT_EQ(placement({"Body block/Shape=ball"}), Placement::cut);
+  EXPECT_EQ(placement({"Body block/Shape=ball", "Body block/Frame=current"}),
+            Placement::regular);
 }
 
 
