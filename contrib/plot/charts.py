@@ -99,7 +99,8 @@ KERNELS = {
 CHANGES = {
     "USF": ("#33a02c", "v"), "USL": ("#b2443a", "^"), "MUSL": ("#7f9ccb", "<"),
     "USAVG": ("#b8860b", ">"),
-    "APIC": ("#e31a1c", "^"), "FMPM": ("#17807e", "H"),
+    "APIC": ("#e31a1c", "^"), "AFLIP": ("#e7298a", "v"),
+    "FMPM": ("#17807e", "H"),
     "3 points": ("#17807e", "P"), "3 x 3": ("#17807e", "P"),
     "soft water": ("#a6761d", "X"), "chi 0.3": ("#6a51a3", "d"),
     "Damping time": ("#a6761d", "X"), "control": ("#d01c8b", "d"),
