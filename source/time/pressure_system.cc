@@ -84,6 +84,7 @@ namespace limber
                                             0;
                                    }))
     , needs_volumes(controls_density && parts.bodies.size() > 1)
+    , surroundings(parts.grid)
   {
     reinit();
   }
@@ -100,7 +101,10 @@ namespace limber
     if (needs_volumes)
       volumes.reinit(parts.nodes.table.n());
     if (controls_density)
-      at_surface.reinit(parts.nodes.table.n());
+      {
+        surroundings.reinit();
+        at_surface.reinit(parts.nodes.table.n());
+      }
     pattern_scales.resize(cells.media.size());
     for (auto &of_medium : pattern_scales)
       of_medium.reinit(parts.nodes.table.n());
@@ -238,64 +242,30 @@ namespace limber
 
 
 
-  // Whether there is liquid in all cells around a node.
-  template <int dim>
-  bool
-  PressureSystem<dim>::is_surrounded(const std::uint32_t node) const
-  {
-    const Medium &liquids = cells.media.front();
-    if (corners.empty())
-      {
-        const std::uint32_t *const around = liquids.cells_around(node);
-        const int empty = std::count(around, around + n_nodes, 0u);
-        return int(n_nodes) - empty ==
-               int(n_nodes) >>
-                 __builtin_popcount(parts.nodes.table.sides[node]);
-      }
-    bool result = true;
-    corners.for_each(node, [&](const auto &corner) {
-      if (!(liquids.record(corner.cell)[Record::volume] > 0))
-        result = false;
-    });
-    return result;
-  }
-
-
-
   // A cell of which some corner has an empty cell beside it is at a surface.
   template <int dim>
   void
   PressureSystem<dim>::find_surface()
   {
-    const auto for_each_node_of = [&](const std::uint32_t cell,
-                                      const auto         &work) {
-      for (unsigned int a = 0; a < n_nodes; ++a)
-        {
-          const std::uint32_t node = cells.node_of(cell, a);
-          if (corners.empty())
-            work(node);
-          else
-            corners.for_each_master(node, [&](const auto &master) {
-              work(master.node);
-            });
-        }
+    const Medium &liquids = cells.media.front();
+    const auto    holds   = [&](const std::uint32_t cell) {
+      return liquids.record(cell)[Record::volume] > 0;
     };
+    surroundings.find(parts.nodes, holds);
     for (const std::uint32_t node : parts.nodes.active_nodes())
       at_surface[node] = 0;
-    const Medium &liquids = cells.media.front();
     for (const std::uint32_t cell : liquids.cells)
-      {
-        if (!(liquids.record(cell)[Record::volume] > 0))
-          continue;
-        bool inside = true;
-        for_each_node_of(cell, [&](const std::uint32_t node) {
-          inside = inside && is_surrounded(node);
-        });
-        if (!inside)
-          for_each_node_of(cell, [&](const std::uint32_t node) {
-            at_surface[node] += 1;
-          });
-      }
+      if (holds(cell) && !surroundings.is_inside(cell))
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          {
+            const std::uint32_t node = cells.node_of(cell, a);
+            if (corners.empty())
+              at_surface[node] += 1;
+            else
+              corners.for_each_master(node, [&](const auto &master) {
+                at_surface[master.node] += 1;
+              });
+          }
     node_exchange.start(parts.nodes.node_plan(), at_surface.data(), 0, 1);
     node_exchange.finish(at_surface.data());
   }

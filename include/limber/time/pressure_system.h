@@ -6,6 +6,7 @@
 #include <limber/time/corners_of_nodes.h>
 #include <limber/time/pressure_cells.h>
 #include <limber/time/pressure_solver.h>
+#include <limber/time/surroundings.h>
 
 #include <vector>
 
@@ -151,8 +152,6 @@ namespace limber
     sum_volumes();
     void
     find_surface();
-    bool
-    is_surrounded(std::uint32_t node) const;
     double
     excess_over_levels(std::uint32_t node, double density) const;
 
@@ -174,8 +173,9 @@ namespace limber
     // where a density control of several bodies asks for it
     const bool        needs_volumes;
     LazyArray<double> volumes;
-    // By node, only with a density control: how many of the cells around it are
+    // Only with a density control; by node, how many of the cells around it are
     // at a surface
+    Surroundings<dim> surroundings;
     LazyArray<double> at_surface;
     RecordExchange    node_exchange{1};
     // By row, whether none of the bodies in the cell bears tension
