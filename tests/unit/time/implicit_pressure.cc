@@ -124,7 +124,8 @@ TEST(ImplicitPressure, IsHydrostaticAfterOneStep)
 
 
 // The same on cells of two sizes, one above the other or beside each other:
-// hanging nodes follow their masters, to which pressures give just their weight.
+// hanging nodes follow their masters, to which pressures give just their
+// weight.
 TEST(ImplicitPressure, IsHydrostaticOverLevels)
 {
   for (const std::string part : {"4, 1", "4, 2", "2, 6", "2, 3"})
@@ -141,9 +142,7 @@ TEST(ImplicitPressure, IsHydrostaticOverLevels)
         {
           const auto  &cell   = run.grid.geometry[run.points().cell[p]];
           const double height = cell.origin[1] + 0.5 / cell.inverse_edge[1];
-          ASSERT_NEAR(run.points().pressure[p],
-                      1e4 * (4 - height),
-                      4e-4);
+          ASSERT_NEAR(run.points().pressure[p], 1e4 * (4 - height), 4e-4);
           ASSERT_NEAR(run.velocity(p).norm(), 0, 2e-8);
         }
     }
