@@ -10,7 +10,6 @@
 
 #include <atomic>
 #include <cstdio>
-#include <iostream>
 #include <new>
 #include <sstream>
 #include <stdexcept>
@@ -42,6 +41,29 @@ namespace limber
 
 
 
+    // In one call, as what mpirun says of the end would come in between.
+    void
+    write_error(const char *const text)
+    {
+      std::fprintf(stderr, "Error: %s\n", text);
+    }
+
+
+
+    // Without memory of its own.
+    template <std::size_t n>
+    void
+    tell_memory(char (&text)[n])
+    {
+      std::snprintf(text,
+                    n,
+                    without_memory,
+                    resident_memory() / 1e9,
+                    machine_memory(1) / 1e9);
+    }
+
+
+
     // Shared by the ranks of a machine, as a handler without memory can have
     // no messages from them. Null with one rank.
     std::atomic<int> *has_spoken = nullptr;
@@ -65,12 +87,9 @@ namespace limber
       std::set_new_handler(nullptr);
       if (has_spoken->exchange(1) == 0)
         {
-          std::fputs("Error: ", stderr);
-          std::fprintf(stderr,
-                       without_memory,
-                       resident_memory() / 1e9,
-                       machine_memory(1) / 1e9);
-          std::fputs("\n", stderr);
+          char text[400];
+          tell_memory(text);
+          write_error(text);
         }
       else
         wait_for_the_end();
@@ -89,11 +108,7 @@ namespace limber
         dynamic_cast<const std::length_error *>(&unforeseen) != nullptr)
       {
         char text[400];
-        std::snprintf(text,
-                      sizeof(text),
-                      without_memory,
-                      resident_memory() / 1e9,
-                      machine_memory(1) / 1e9);
+        tell_memory(text);
         return ComputationError(text);
       }
     return ComputationError(
@@ -147,7 +162,7 @@ namespace limber
   LastWord::say(const Failure &failure) const
   {
     if (has_spoken == nullptr || has_spoken->exchange(1) == 0)
-      std::cerr << "Error: " << failure.what() << std::endl;
+      write_error(failure.what());
     else
       wait_for_the_end();
     if (has_spoken != nullptr)

@@ -151,7 +151,7 @@ namespace limber
     {
       for (const Body<dim> &body : problem.bodies)
         if (body.is_liquid && body.treatment != Projection::none &&
-            body.hourglass_control == 0)
+            body.hourglass_control == 0 && !is_spline(problem.grid.kernel))
           return "Body " + body.name + "/Hourglass control = 0.2'.";
       constexpr double share = 0.05; // twenty swings in the time of the run
       return "Method/Damping time = " + brief(share * problem.end_time) +
