@@ -70,56 +70,56 @@ namespace limber
       BackgroundGrid<2> grid;
       NodalFields<2>    nodes;
     };
+
+
+
+    TEST_F(NodesOfFieldsTest, AreAllWhereNothingIsNoted)
+    {
+      EXPECT_EQ(nodes.active_nodes_of_field(), nodes.active_nodes());
+      EXPECT_EQ(nodes.nodes_of_two_fields(), nodes.active_nodes());
+    }
+
+
+
+    TEST_F(NodesOfFieldsTest, AreThoseOfTheCellsNoted)
+    {
+      EXPECT_TRUE(nodes.begin_noting());
+      nodes.note_cell(0, cell_at(0));
+      nodes.note_cell(1, cell_at(3));
+      EXPECT_TRUE(nodes.nodes_of_two_fields().empty());
+      EXPECT_EQ(as_set(nodes.active_nodes_of_field()), nodes_of(cell_at(0)));
+      nodes.select(1);
+      EXPECT_EQ(as_set(nodes.active_nodes_of_field()), nodes_of(cell_at(3)));
+      nodes.select(0);
+
+      EXPECT_FALSE(nodes.begin_noting()); // they are known still
+      nodes.note_cell(0, cell_at(2));
+      nodes.note_cell(0, cell_at(2));
+      std::set<std::uint32_t> both;
+      for (const std::uint32_t node : nodes_of(cell_at(2)))
+        if (nodes_of(cell_at(3)).count(node) > 0)
+          both.insert(node);
+      EXPECT_EQ(both.size(), 2u);
+      EXPECT_EQ(as_set(nodes.nodes_of_two_fields()), both);
+    }
+
+
+
+    TEST_F(NodesOfFieldsTest, AreClearedAndForgotten)
+    {
+      nodes.begin_noting();
+      nodes.note_cell(1, cell_at(4));
+      const auto written = nodes_of(cell_at(4));
+      for (const std::uint32_t node : written)
+        nodes.record(1, node)[NodeLayout<2>::mass] = 7;
+      nodes.clear();
+      for (const std::uint32_t node : written)
+        EXPECT_EQ(nodes.record(1, node)[NodeLayout<2>::mass], 0);
+
+      occupy();
+      EXPECT_EQ(nodes.active_nodes_of_field(), nodes.active_nodes());
+      EXPECT_TRUE(nodes.begin_noting());
+      EXPECT_TRUE(nodes.active_nodes_of_field().empty());
+    }
   } // namespace
-
-
-
-  TEST_F(NodesOfFieldsTest, AreAllWhereNothingIsNoted)
-  {
-    EXPECT_EQ(nodes.active_nodes_of_field(), nodes.active_nodes());
-    EXPECT_EQ(nodes.nodes_of_two_fields(), nodes.active_nodes());
-  }
-
-
-
-  TEST_F(NodesOfFieldsTest, AreThoseOfTheCellsNoted)
-  {
-    EXPECT_TRUE(nodes.begin_noting());
-    nodes.note_cell(0, cell_at(0));
-    nodes.note_cell(1, cell_at(3));
-    EXPECT_TRUE(nodes.nodes_of_two_fields().empty());
-    EXPECT_EQ(as_set(nodes.active_nodes_of_field()), nodes_of(cell_at(0)));
-    nodes.select(1);
-    EXPECT_EQ(as_set(nodes.active_nodes_of_field()), nodes_of(cell_at(3)));
-    nodes.select(0);
-
-    EXPECT_FALSE(nodes.begin_noting()); // they are known still
-    nodes.note_cell(0, cell_at(2));
-    nodes.note_cell(0, cell_at(2));
-    std::set<std::uint32_t> both;
-    for (const std::uint32_t node : nodes_of(cell_at(2)))
-      if (nodes_of(cell_at(3)).count(node) > 0)
-        both.insert(node);
-    EXPECT_EQ(both.size(), 2u);
-    EXPECT_EQ(as_set(nodes.nodes_of_two_fields()), both);
-  }
-
-
-
-  TEST_F(NodesOfFieldsTest, AreClearedAndForgotten)
-  {
-    nodes.begin_noting();
-    nodes.note_cell(1, cell_at(4));
-    const auto written = nodes_of(cell_at(4));
-    for (const std::uint32_t node : written)
-      nodes.record(1, node)[NodeLayout<2>::mass] = 7;
-    nodes.clear();
-    for (const std::uint32_t node : written)
-      EXPECT_EQ(nodes.record(1, node)[NodeLayout<2>::mass], 0);
-
-    occupy();
-    EXPECT_EQ(nodes.active_nodes_of_field(), nodes.active_nodes());
-    EXPECT_TRUE(nodes.begin_noting());
-    EXPECT_TRUE(nodes.active_nodes_of_field().empty());
-  }
 } // namespace limber

@@ -92,9 +92,13 @@ namespace limber
             EXPECT_TRUE(nodes.table.sides[c.node] >> c.side & 1);
             EXPECT_EQ(c.one_sided, c.side == top);
             if (c.side == left)
-              EXPECT_EQ(c.component, 0);
+              {
+                EXPECT_EQ(c.component, 0);
+              }
             if (c.side == top)
-              EXPECT_EQ(c.component, 1);
+              {
+                EXPECT_EQ(c.component, 1);
+              }
           }
       EXPECT_EQ(sum_over_ranks(n_of_side[left]), 4u);
       EXPECT_EQ(sum_over_ranks(n_of_side[right]), 2u * 4);
@@ -146,7 +150,9 @@ namespace limber
       EXPECT_EQ(constraints.at(nodes, 1).size(), n);
       for (const Constraint &c : constraints.at(nodes, 1))
         if (c.side == bottom && c.component == 1)
-          EXPECT_NEAR(c.value, 2, 1e-14);
+          {
+            EXPECT_NEAR(c.value, 2, 1e-14);
+          }
     }
 
 
