@@ -2,6 +2,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <limber/adaptation/cell_values.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/materials/law_list.h>
 
 #include <algorithm>
@@ -98,7 +99,7 @@ namespace limber
             message.insert(message.end(), records[c].begin(), records[c].end());
           }
       for (const auto &[rank, message] :
-           dealii::Utilities::MPI::some_to_some(grid.communicator, to_send))
+           exchange_records(to_send, grid.communicator))
         for (std::size_t i = 0; i + n < message.size(); i += n + 1)
           {
             const std::uint32_t c = static_cast<std::uint32_t>(message[i]);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/adaptation/occupancy.h>
+#include <limber/base/records_of_ranks.h>
 
 #include <algorithm>
 
@@ -57,8 +58,7 @@ namespace limber
                         numbering.number(level, grid.place_of(cell)),
                         n});
           }
-    for (const auto &part :
-         dealii::Utilities::MPI::all_gather(grid.communicator, own))
+    for (const auto &part : gather_records(own, grid.communicator))
       for (std::size_t i = 0; i + 2 < part.size(); i += 3)
         cells[part[i]].push_back({part[i + 1], part[i + 2]});
 

@@ -3,6 +3,7 @@
 
 #include <limber/base/exceptions.h>
 #include <limber/base/input_file.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 
 #include <zlib.h>
@@ -78,9 +79,10 @@ namespace limber
     if (parallel)
       {
         using dealii::Utilities::MPI::broadcast;
-        read.first = broadcast(MPI_COMM_WORLD, read.first);
+        read.first = broadcast_text(read.first, MPI_COMM_WORLD);
         read.second.resize(
-          broadcast(MPI_COMM_WORLD, std::uint64_t(read.second.size())));
+          dealii::Utilities::MPI::max(std::uint64_t(read.second.size()),
+                                      MPI_COMM_WORLD));
         broadcast(read.second.data(), read.second.size(), 0, MPI_COMM_WORLD);
       }
 

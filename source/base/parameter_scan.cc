@@ -3,6 +3,7 @@
 
 #include <limber/base/exceptions.h>
 #include <limber/base/parameter_scan.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 
 #include <boost/property_tree/json_parser.hpp>
@@ -358,7 +359,11 @@ namespace limber
         dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
       read = read_stream(path);
     if (parallel)
-      read = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, read);
+      {
+        read.first =
+          dealii::Utilities::MPI::max(int(read.first), MPI_COMM_WORLD);
+        read.second = broadcast_text(read.second, MPI_COMM_WORLD);
+      }
 
     if (!read.first)
       throw InputError("The scene file " + in_quotes(result.origin) +

@@ -3,6 +3,7 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <limber/base/exceptions.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 #include <limber/fem/fitted_mesh.h>
 #include <limber/problem/mesh_file.h>
@@ -121,8 +122,7 @@ namespace limber
       std::ostringstream text;
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         text << std::ifstream(path).rdbuf();
-      const std::string result =
-        dealii::Utilities::MPI::broadcast(communicator, text.str());
+      const std::string result = broadcast_text(text.str(), communicator);
       if (result.empty())
         throw FileError("The mesh " + in_quotes(path) +
                         " of 'Reference/Mesh file' cannot be read or is empty. "

@@ -12,6 +12,7 @@
 #include <deal.II/lac/affine_constraints.h>
 
 #include <limber/base/lazy_array.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/grid/background_grid.h>
 #include <limber/grid/order_of_trees.h>
 #include <limber/grid/spline_nodes.h>
@@ -407,9 +408,8 @@ namespace limber
   {
     // A rank's cells are numbered consecutively over all ranks.
     const auto &cells = numbering.cell_records;
-    const auto  first =
-      dealii::Utilities::MPI::all_gather(communicator,
-                                         cells.local_range().first);
+    std::vector first = {cells.local_range().first};
+    unite(first, communicator);
     ghost_cells.clear();
     auto ghost = cells.ghost_indices().begin();
     for (const auto &[owner, n] : cells.ghost_targets())

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <limber/base/records_of_ranks.h>
 #include <limber/grid/refined_cells.h>
 
 #include <algorithm>
@@ -130,12 +131,8 @@ namespace limber
         put_in_order(own);
         if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
           continue;
-        Cells all;
-        for (const Cells &part :
-             dealii::Utilities::MPI::all_gather(communicator, own))
-          all.insert(all.end(), part.begin(), part.end());
-        put_in_order(all);
-        own.swap(all);
+        unite(own, communicator);
+        put_in_order(own);
       }
   }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/grid/shared_records.h>
 
 #include <algorithm>
@@ -58,8 +59,7 @@ namespace limber
     for (const auto &[owner, n] : records.ghost_targets())
       for (unsigned int i = 0; i < n; ++i)
         shared[owner].insert(*ghost++);
-    for (const auto &[owner, told] :
-         dealii::Utilities::MPI::some_to_some(communicator, news))
+    for (const auto &[owner, told] : exchange_records(news, communicator))
       for (const auto &[index, holder] : told)
         shared[holder].insert(index);
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/output/health_figures.h>
 
 #include <algorithm>
@@ -185,9 +186,9 @@ namespace limber
     std::vector<CellCounts> counts;
     for (const auto &body : state.bodies)
       {
-        const auto parts =
-          dealii::Utilities::MPI::gather(state.grid.communicator,
-                                         count_own(state, *body).cells);
+        const auto parts = gather_records(count_own(state, *body).cells,
+                                          state.grid.communicator,
+                                          /*only_first=*/true);
         counts.emplace_back();
         auto &all = counts.back().cells;
         for (const auto &part : parts)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/output/diagnosis.h>
 
 #include <algorithm>
@@ -305,8 +306,9 @@ namespace limber
     Sighting<dim> own;
     for (const auto &body : state.bodies)
       look_at_body(state.problem.grid, *body, own);
-    const auto parts =
-      dealii::Utilities::MPI::gather(state.grid.communicator, packed(own));
+    const auto    parts = gather_records(packed(own),
+                                      state.grid.communicator,
+                                      /*only_first=*/true);
     Sighting<dim> all;
     all.cells.resize(state.bodies.size());
     all.smallest_volume.assign(state.bodies.size(), 1.);

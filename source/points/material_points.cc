@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/points/material_points.h>
 
 #include <algorithm>
@@ -426,9 +427,8 @@ namespace limber
       else
         move(p, kept++);
 
-    const auto arriving =
-      dealii::Utilities::MPI::some_to_some(grid.communicator, leaving);
-    std::size_t n = kept;
+    const auto  arriving = exchange_records(leaving, grid.communicator);
+    std::size_t n        = kept;
     for (const auto &[rank, records] : arriving)
       n += records.size() / stride;
     resize(n);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 #include <limber/output/files.h>
 #include <limber/simulation/checkpoint_folder.h>
@@ -224,8 +225,7 @@ namespace limber
         Candidate candidate;
         on_first_rank(grid.communicator,
                       [&]() { candidate = next_candidate(survey); });
-        good =
-          dealii::Utilities::MPI::broadcast(grid.communicator, candidate.name);
+        good = broadcast_text(candidate.name, grid.communicator);
         RunState<dim> state;
         std::string   damage = damage_on_any_rank(grid.communicator, [&]() {
           state = read_state(good_file(), start);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/fem/solid_samples.h>
 #include <limber/simulation/reference_observables.h>
 
@@ -62,8 +63,8 @@ namespace limber
           candidate[d + 1] = node[d];
         nearest = std::min(nearest, candidate);
       });
-    const auto all =
-      dealii::Utilities::MPI::all_gather(model.communicator, nearest);
+    std::vector<std::array<double, dim + 1>> all = {nearest};
+    unite(all, model.communicator);
     nearest = *std::min_element(all.begin(), all.end());
     dealii::Point<dim> result;
     for (unsigned int d = 0; d < dim; ++d)

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/run_info.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
@@ -90,7 +91,8 @@ namespace limber
       std::pair<std::string, std::string> former;
       if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
         former = former_reference(folder);
-      former = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, former);
+      former = {broadcast_text(former.first, MPI_COMM_WORLD),
+                broadcast_text(former.second, MPI_COMM_WORLD)};
       if (former.second.empty())
         return {};
       try

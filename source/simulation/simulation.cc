@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
 #include <limber/simulation/passed_sides.h>
@@ -296,7 +297,7 @@ namespace limber
         text << " with velocity (" << point.momentum / point.mass << ") m/s";
         own.push_back(text.str());
       }
-    for (const auto &texts : dealii::Utilities::MPI::gather(communicator, own))
+    for (const auto &texts : gather_texts(own, communicator))
       for (const std::string &text : texts)
         console.warn_once("lost point " +
                             std::to_string(

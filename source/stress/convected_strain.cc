@@ -7,15 +7,17 @@ namespace limber
 {
   template <int dim>
   StressSummary
-  strain_domains(const PointView<dim>  &points,
-                 const GridView<dim>   &grid,
-                 const StressSweep     &what,
-                 const Projection       kind,
-                 const PackStrain<dim> &law,
-                 PackFindings<dim>     &found)
+  strain_domains(const PointView<dim> &points,
+                 const GridView<dim>  &grid,
+                 const CellSums<dim> *,
+                 const StressSweep      &what,
+                 const StrainProjection &projection,
+                 const PackStrain<dim>  &law,
+                 PackFindings<dim>      &found)
   {
-    using Number = PointPack<dim>;
-    using Layout = NodeLayout<dim>;
+    using Number          = PointPack<dim>;
+    using Layout          = NodeLayout<dim>;
+    const Projection kind = projection.kind;
     check_projection_of_domains(kind);
     VelocityFindings<dim> taken;
     Number                displacement{};
@@ -77,15 +79,17 @@ namespace limber
   template StressSummary
   strain_domains(const PointView<2> &,
                  const GridView<2> &,
+                 const CellSums<2> *,
                  const StressSweep &,
-                 Projection,
+                 const StrainProjection &,
                  const PackStrain<2> &,
                  PackFindings<2> &);
   template StressSummary
   strain_domains(const PointView<3> &,
                  const GridView<3> &,
+                 const CellSums<3> *,
                  const StressSweep &,
-                 Projection,
+                 const StrainProjection &,
                  const PackStrain<3> &,
                  PackFindings<3> &);
 } // namespace limber

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/spline.h>
 #include <limber/stress/make_sweep.h>
-#include <limber/stress/strain_packs.h>
+#include <limber/stress/sweeps.h>
 
 namespace limber
 {
@@ -11,13 +11,13 @@ namespace limber
                    const StrainProjection &projection,
                    const Frame             frame)
   {
-    return std::visit(
-      [&](const auto &law) {
-        return frame == Frame::initial ?
-                 make_initial_frame_sweep<Cubic<dim>>(law, projection) :
-                 make_pack_sweep<Cubic<dim>>(law, projection);
-      },
-      any);
+    if (frame == Frame::initial)
+      return std::visit(
+        [&](const auto &law) {
+          return make_initial_frame_sweep<Cubic<dim>>(law, projection);
+        },
+        any);
+    return make_pack_sweep<dim>(any, projection, {strain_packs<Cubic<dim>>});
   }
 
 

@@ -65,17 +65,19 @@ namespace limber
 
   template <int dim>
   StressSummary
-  strain_by_dual_domain(const PointView<dim>  &points,
-                        const GridView<dim>   &grid,
-                        const StressSweep     &what,
-                        const Projection       kind,
-                        const PackStrain<dim> &law,
-                        PackFindings<dim>     &found)
+  strain_by_dual_domain(const PointView<dim> &points,
+                        const GridView<dim>  &grid,
+                        const CellSums<dim> *,
+                        const StressSweep      &what,
+                        const StrainProjection &projection,
+                        const PackStrain<dim>  &law,
+                        PackFindings<dim>      &found)
   {
-    const auto with = [&](const auto averaged) {
+    const Projection kind = projection.kind;
+    const auto       with = [&](const auto averaged) {
       return what.remapped ? strain_dual_domain<dim, averaged(), dim>(
                                points, grid, what, kind, law, found) :
-                             strain_dual_domain<dim, averaged(), 0>(
+                                   strain_dual_domain<dim, averaged(), 0>(
                                points, grid, what, kind, law, found);
     };
     check_projection_of_domains(kind);
@@ -88,15 +90,17 @@ namespace limber
   template StressSummary
   strain_by_dual_domain(const PointView<2> &,
                         const GridView<2> &,
+                        const CellSums<2> *,
                         const StressSweep &,
-                        Projection,
+                        const StrainProjection &,
                         const PackStrain<2> &,
                         PackFindings<2> &);
   template StressSummary
   strain_by_dual_domain(const PointView<3> &,
                         const GridView<3> &,
+                        const CellSums<3> *,
                         const StressSweep &,
-                        Projection,
+                        const StrainProjection &,
                         const PackStrain<3> &,
                         PackFindings<3> &);
 } // namespace limber

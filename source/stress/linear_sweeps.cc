@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/linear.h>
 #include <limber/stress/make_sweep.h>
-#include <limber/stress/strain_packs.h>
+#include <limber/stress/sweeps.h>
 
 namespace limber
 {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/stress/make_sweep.h>
+#include <limber/stress/convected_sweep.h>
+#include <limber/stress/dual_domain_sweep.h>
+#include <limber/stress/pack_sweep.h>
 #include <limber/stress/strain_projection.h>
+#include <limber/stress/sweeps.h>
 
 #include <stdexcept>
 
@@ -52,9 +55,11 @@ namespace limber
       else if (frame == Frame::initial || kernel == KernelKind::linear)
         result = make_linear_sweep<dim>(law, projection, frame);
       else if (kernel == KernelKind::ddmp)
-        result = make_dual_domain_sweep<dim>(law, projection);
+        result =
+          make_pack_sweep<dim>(law, projection, {strain_by_dual_domain<dim>});
       else
-        result = make_convected_sweep<dim>(law, projection);
+        result =
+          make_pack_sweep<dim>(law, projection, {strain_domains<dim>, true});
     });
     if (!result)
       throw std::logic_error("no law " + name);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 
-#include <limber/base/unite.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/time/averaged_volumes.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
 #include <limber/time/contact_geometry.h>
@@ -215,7 +216,7 @@ namespace limber
               }
           }
     for (const auto &[rank, numbers] :
-         dealii::Utilities::MPI::some_to_some(parts.grid.communicator, told))
+         exchange_records(told, parts.grid.communicator))
       for (auto number = numbers.begin(); number != numbers.end();)
         {
           const auto side = static_cast<unsigned int>(*number++);
@@ -256,7 +257,7 @@ namespace limber
       }
     parts_elsewhere.clear();
     for (const auto &[rank, numbers] :
-         dealii::Utilities::MPI::some_to_some(parts.grid.communicator, asked))
+         exchange_records(asked, parts.grid.communicator))
       for (auto number = numbers.begin(); number != numbers.end();)
         {
           peers[rank].parts.push_back(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/time/loaded_face.h>
 
 #include <algorithm>
@@ -179,8 +180,7 @@ namespace limber
     for (unsigned int i = 0; i < all.size(); ++i)
       if (best[i] < nobody)
         own.emplace_back(i, best[i]);
-    for (const auto &of_rank :
-         dealii::Utilities::MPI::all_gather(grid.communicator, own))
+    for (const auto &of_rank : gather_records(own, grid.communicator))
       for (const auto &[i, candidate] : of_rank)
         best[i] = std::min(best[i], candidate);
 
@@ -247,8 +247,7 @@ namespace limber
     for (std::size_t i = 0; i < pieces.size(); ++i)
       (is_here[i] ? staying : leaving).push_back(pieces[i]);
     pieces.swap(staying);
-    for (const auto &of_rank :
-         dealii::Utilities::MPI::all_gather(grid.communicator, leaving))
+    for (const auto &of_rank : gather_records(leaving, grid.communicator))
       adopt(of_rank);
     order = 0;
   }
@@ -259,10 +258,8 @@ namespace limber
   std::vector<FacePiece<dim>>
   LoadedFace<dim>::all_pieces() const
   {
-    std::vector<FacePiece<dim>> result;
-    for (const auto &of_rank :
-         dealii::Utilities::MPI::all_gather(grid.communicator, pieces))
-      result.insert(result.end(), of_rank.begin(), of_rank.end());
+    std::vector<FacePiece<dim>> result = pieces;
+    unite(result, grid.communicator);
     return result;
   }
 

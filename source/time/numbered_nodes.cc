@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/mpi.h>
 
+#include <limber/base/records_of_ranks.h>
 #include <limber/points/cell_batch.h>
 #include <limber/time/numbered_nodes.h>
 
@@ -66,16 +67,11 @@ namespace limber
   std::vector<typename NumberedNodes<dim>::Key>
   NumberedNodes<dim>::united(std::vector<Key> own) const
   {
-    std::vector<Key> result;
     if (parallel)
-      for (const auto &of_rank :
-           dealii::Utilities::MPI::all_gather(parts.grid.communicator, own))
-        result.insert(result.end(), of_rank.begin(), of_rank.end());
-    else
-      result = std::move(own);
-    std::sort(result.begin(), result.end());
-    result.erase(std::unique(result.begin(), result.end()), result.end());
-    return result;
+      unite(own, parts.grid.communicator);
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+    return own;
   }
 
 

@@ -9,6 +9,7 @@
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <limber/base/exceptions.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 #include <limber/time/envelope_cholesky.h>
 #include <limber/time/pressure_solver.h>
@@ -218,7 +219,9 @@ namespace limber
   {
     if (equations.n_all > most_rows_of_factor)
       return false;
-    n_of_ranks  = dealii::Utilities::MPI::all_gather(communicator, equations.n);
+    n_of_ranks = {equations.n};
+    unite(n_of_ranks, communicator);
+
     whole.n_all = whole.n = equations.n_all;
     whole.width = dealii::Utilities::MPI::max(equations.width, communicator);
     gather(equations.columns, whole.width, whole.columns);

@@ -14,40 +14,14 @@ namespace limber
    */
   template <int dim>
   StressSummary
-  strain_domains(const PointView<dim>  &points,
-                 const GridView<dim>   &grid,
-                 const StressSweep     &what,
-                 Projection             kind,
-                 const PackStrain<dim> &law,
-                 PackFindings<dim>     &found);
+  strain_domains(const PointView<dim> &points,
+                 const GridView<dim>  &grid,
+                 const CellSums<dim> *,
+                 const StressSweep      &what,
+                 const StrainProjection &projection,
+                 const PackStrain<dim>  &law,
+                 PackFindings<dim>      &found);
 
-
-
-  /** StressUpdate of a law on points with domains. */
-  template <int dim, class Law>
-  class ConvectedSweep final : public LawOnPacks<dim, Law>
-  {
-  public:
-    using LawOnPacks<dim, Law>::LawOnPacks;
-
-    StressSummary
-    update(const PointView<dim> &points,
-           const GridView<dim>  &grid,
-           const CellSums<dim> *,
-           const StressSweep &what) const override
-    {
-      PackFindings<dim>   found;
-      const StressSummary moved = strain_domains<dim>(
-        points, grid, what, this->strain_projection.kind, *this, found);
-      return this->whole_summary(found, moved);
-    }
-
-    bool
-    takes_velocity() const override
-    {
-      return true;
-    }
-  };
 } // namespace limber
 
 #endif

@@ -14,34 +14,14 @@ namespace limber
    */
   template <int dim>
   StressSummary
-  strain_by_dual_domain(const PointView<dim>  &points,
-                        const GridView<dim>   &grid,
-                        const StressSweep     &what,
-                        Projection             kind,
-                        const PackStrain<dim> &law,
-                        PackFindings<dim>     &found);
+  strain_by_dual_domain(const PointView<dim> &points,
+                        const GridView<dim>  &grid,
+                        const CellSums<dim> *,
+                        const StressSweep      &what,
+                        const StrainProjection &projection,
+                        const PackStrain<dim>  &law,
+                        PackFindings<dim>      &found);
 
-
-
-  /** StressUpdate of a law with the dual domain method. */
-  template <int dim, class Law>
-  class DualDomainSweep final : public LawOnPacks<dim, Law>
-  {
-  public:
-    using LawOnPacks<dim, Law>::LawOnPacks;
-
-    StressSummary
-    update(const PointView<dim> &points,
-           const GridView<dim>  &grid,
-           const CellSums<dim> *,
-           const StressSweep &what) const override
-    {
-      PackFindings<dim>   found;
-      const StressSummary moved = strain_by_dual_domain<dim>(
-        points, grid, what, this->strain_projection.kind, *this, found);
-      return this->whole_summary(found, moved);
-    }
-  };
 } // namespace limber
 
 #endif

@@ -2,35 +2,13 @@
 #ifndef limber_stress_law_on_points_h
 #define limber_stress_law_on_points_h
 
-#include <limber/interpolation/batch_lanes.h>
-#include <limber/materials/law.h>
-#include <limber/stress/stress_update.h>
+#include <limber/stress/pack_strain.h>
 
 #include <algorithm>
 #include <stdexcept>
 
 namespace limber
 {
-  /** What becomes of the volumetric variable of points before they strain. */
-  struct HistoryChange
-  {
-    bool   any   = false;
-    double share = 0; // of the way to the mean
-    double mean  = 0; // of the cell
-    double shift = 0; // added besides
-  };
-
-
-
-  /** What a sweep finds while it strains points, by lanes; J, m^2/s^2. */
-  template <int dim>
-  struct PackFindings
-  {
-    PointPack<dim> waves{}, viscous{}, removed{}, plastic{};
-  };
-
-
-
   /**
    * What a law knows of the points of a body, whatever strains them: the part
    * of a StressUpdate that does not look at the grid.

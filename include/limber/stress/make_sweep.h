@@ -7,6 +7,7 @@
 #include <limber/stress/initial_frame_sweep.h>
 #include <limber/stress/law_sweep.h>
 #include <limber/stress/pack_sweep.h>
+#include <limber/stress/strain_packs.h>
 
 #include <memory>
 #include <stdexcept>
@@ -14,16 +15,6 @@
 /** @file The sweeps of a law, for each basis. */
 namespace limber
 {
-  /** That of any law and projection: the law is called once per pack. */
-  template <class Basis, class Law>
-  std::unique_ptr<const StressUpdate<Basis::dim>>
-  make_pack_sweep(const Law &law, const StrainProjection &projection)
-  {
-    return std::make_unique<PackSweep<Basis, Law>>(law, projection);
-  }
-
-
-
   /**
    * The fastest there is. The treatments that most scenes have are compiled for
    * each law, `assumed strain` for those of solids; so are none of those of a
@@ -53,7 +44,7 @@ namespace limber
           default:
             break;
         }
-    return make_pack_sweep<Basis>(law, projection);
+    return make_pack_sweep<Basis::dim>(law, projection, {strain_packs<Basis>});
   }
 
 
@@ -87,34 +78,6 @@ namespace limber
     throw std::logic_error("law or projection without an initial frame");
   }
 
-
-
-  /** All of any law, each basis in a translation unit of its own. */
-  template <int dim>
-  std::unique_ptr<const StressUpdate<dim>>
-  make_linear_sweep(const AnyLaw           &law,
-                    const StrainProjection &projection,
-                    Frame                   frame);
-  template <int dim>
-  std::unique_ptr<const StressUpdate<dim>>
-  make_quadratic_sweep(const AnyLaw           &law,
-                       const StrainProjection &projection,
-                       Frame                   frame);
-  template <int dim>
-  std::unique_ptr<const StressUpdate<dim>>
-  make_cubic_sweep(const AnyLaw           &law,
-                   const StrainProjection &projection,
-                   Frame                   frame);
-
-  /** The same for points with convected domains. */
-  template <int dim>
-  std::unique_ptr<const StressUpdate<dim>>
-  make_convected_sweep(const AnyLaw &law, const StrainProjection &projection);
-
-  /** The same with gradients that partly come from the nodes. */
-  template <int dim>
-  std::unique_ptr<const StressUpdate<dim>>
-  make_dual_domain_sweep(const AnyLaw &law, const StrainProjection &projection);
 } // namespace limber
 
 #endif

@@ -2,10 +2,32 @@
 #ifndef limber_stress_pack_strain_h
 #define limber_stress_pack_strain_h
 
-#include <limber/stress/averaged_law.h>
+#include <limber/interpolation/batch_lanes.h>
+#include <limber/materials/law.h>
+#include <limber/stress/stress_update.h>
 
 namespace limber
 {
+  /** What becomes of the volumetric variable of points before they strain. */
+  struct HistoryChange
+  {
+    bool   any   = false;
+    double share = 0; // of the way to the mean
+    double mean  = 0; // of the cell
+    double shift = 0; // added besides
+  };
+
+
+
+  /** What a sweep finds while it strains points, by lanes; J, m^2/s^2. */
+  template <int dim>
+  struct PackFindings
+  {
+    PointPack<dim> waves{}, viscous{}, removed{}, plastic{};
+  };
+
+
+
   /**
    * What a law does to the points of a pack whose motion is known
    * (LawOnPoints::strain). Sweeps of kernels that see many nodes, which take
@@ -34,57 +56,6 @@ namespace limber
 
   protected:
     ~PackStrain() = default;
-  };
-
-
-
-  /** The sweep of a law that calls it so: update() remains to be written. */
-  template <int dim, class Law>
-  class LawOnPacks : public AveragedLaw<dim, Law>, protected PackStrain<dim>
-  {
-    using Motion = typename PackStrain<dim>::Motion;
-
-  public:
-    LawOnPacks(const Law &law, const StrainProjection &projection)
-      : AveragedLaw<dim, Law>(law, projection)
-      , measure_waves(!law.has_constant_wave_speed())
-    {}
-
-  protected:
-    /** What a sweep has found, with where the points have gone. */
-    StressSummary
-    whole_summary(const PackFindings<dim> &found,
-                  const StressSummary     &moved) const
-    {
-      StressSummary result = this->summary(found, measure_waves);
-      result.displacement  = moved.displacement;
-      result.speed_squared = moved.speed_squared;
-      result.removed       = moved.removed;
-      return result;
-    }
-
-  private:
-    PointPack<dim>
-    strain_pack(const PointView<dim>        &points,
-                const BatchLanes<dim, true> &lanes,
-                const Motion                &motion,
-                const HistoryChange         &change,
-                PackFindings<dim>           &found) const override
-    {
-      return this->strain(points, lanes, motion, change, measure_waves, found);
-    }
-
-    PointPack<dim>
-    strain_pack(const PointView<dim>         &points,
-                const BatchLanes<dim, false> &lanes,
-                const Motion                 &motion,
-                const HistoryChange          &change,
-                PackFindings<dim>            &found) const override
-    {
-      return this->strain(points, lanes, motion, change, measure_waves, found);
-    }
-
-    const bool measure_waves;
   };
 } // namespace limber
 

@@ -2,50 +2,37 @@
 #ifndef limber_stress_pack_sweep_h
 #define limber_stress_pack_sweep_h
 
+#include <limber/materials/law_list.h>
 #include <limber/stress/pack_strain.h>
 
+#include <memory>
+
+/** @file Sweeps that call their law once per pack: laws and kernels apart. */
 namespace limber
 {
-  /**
-   * Strain points by the functions of a basis with any of the projections it
-   * knows, and move them, as StrainSweep; @p law is called once per pack.
-   */
-  template <class Basis>
-  StressSummary
-  strain_packs(const PointView<Basis::dim>  &points,
-               const GridView<Basis::dim>   &grid,
-               const CellSums<Basis::dim>   *sums,
-               const StressSweep            &what,
-               const StrainProjection       &projection,
-               const PackStrain<Basis::dim> &law,
-               PackFindings<Basis::dim>     &found);
-
-
-
-  /**
-   * StressUpdate of a law that is called once per pack: a basis is compiled
-   * once for all laws.
-   */
-  template <class Basis, class Law>
-  class PackSweep final : public LawOnPacks<Basis::dim, Law>
+  /** How a kernel strains and moves the points of a body, whatever its law. */
+  template <int dim>
+  struct PackSweep
   {
-    static constexpr int dim = Basis::dim;
-
-  public:
-    using LawOnPacks<dim, Law>::LawOnPacks;
-
-    StressSummary
-    update(const PointView<dim> &points,
-           const GridView<dim>  &grid,
-           const CellSums<dim>  *sums,
-           const StressSweep    &what) const override
-    {
-      PackFindings<dim>   found;
-      const StressSummary moved = strain_packs<Basis>(
-        points, grid, sums, what, this->strain_projection, *this, found);
-      return this->whole_summary(found, moved);
-    }
+    StressSummary (*strain)(const PointView<dim>   &points,
+                            const GridView<dim>    &grid,
+                            const CellSums<dim>    *sums,
+                            const StressSweep      &what,
+                            const StrainProjection &projection,
+                            const PackStrain<dim>  &law,
+                            PackFindings<dim>      &found);
+    // Whether it lets them take their velocities (StressUpdate).
+    bool takes_velocity = false;
   };
+
+
+
+  /** Any law with such a sweep. */
+  template <int dim>
+  std::unique_ptr<const StressUpdate<dim>>
+  make_pack_sweep(const AnyLaw           &law,
+                  const StrainProjection &projection,
+                  const PackSweep<dim>   &sweep);
 } // namespace limber
 
 #endif

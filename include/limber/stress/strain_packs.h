@@ -33,6 +33,10 @@ namespace limber
 
 
 
+  /**
+   * Strain points by the functions of a basis with any of the projections it
+   * knows, and move them, as StrainSweep; @p law is called once per pack.
+   */
   template <class Basis>
   StressSummary
   strain_packs(const PointView<Basis::dim>  &points,

@@ -177,7 +177,8 @@ namespace
       what.remapped             = remapped;
       what.projected_divergence = mean;
       PackFindings<dim> found;
-      strain_by_dual_domain<dim>(points, view(), what, kind, result, found);
+      strain_by_dual_domain<dim>(
+        points, view(), nullptr, what, {kind}, result, found);
       return result;
     }
 
