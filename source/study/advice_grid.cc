@@ -175,7 +175,7 @@ namespace limber
     /** The grid without layers of cells farther than @p way from all bodies. */
     template <int dim>
     GridDescription<dim>
-    trimmed(const Problem<dim> &problem, const double way)
+    fitted(const Problem<dim> &problem, const double way)
     {
       GridDescription<dim> grid = problem.grid;
       for (unsigned int d = 0; d < dim; ++d)
@@ -472,7 +472,7 @@ namespace limber
     if (is_moved_from_outside(problem))
       return {}; // what that does is not known beforehand
     const double               way  = reach(problem);
-    const GridDescription<dim> grid = trimmed(problem, way);
+    const GridDescription<dim> grid = fitted(problem, way);
     const double kept = number_of_cells(grid) / number_of_cells(problem.grid);
     if (kept > 0.5)
       return {};
