@@ -112,11 +112,37 @@ SPARE = ("#1f78b4", "#b2443a", "#33a02c", "#6a51a3", "#b15928", "#a6761d",
 MARKERS = "os^vD<>pPXh"
 
 
+def kernel_and_treatment(method):
+    """('quadratic', 'node') of 'quadratic node'; nothing of any other name."""
+    kernel = next((k for k in sorted(KERNELS, key=len, reverse=True)
+                   if method.startswith(f"{k} ")), None)
+    treatment = method[len(kernel) + 1:] if kernel else ""
+    return (kernel, treatment) if treatment in TREATMENTS else None
+
+
+# Line and filling of the marker of a treatment that stands behind a kernel.
+FILLINGS = {"none": ("-", "none"), "cell": ("-", "full"),
+            "node": ((0, (4, 1.5)), "left"),
+            "assumed strain": ("-.", "top")}
+
+
 def style_of(method):
     """Colour, marker and line of a method, by its name alone: the same in every
-    chart. A name that is not known gets a style that only depends on it."""
+    chart. A kernel alone, or without treatment, has open markers; with one the
+    colour and the marker stay the kernel's, the line and the filling of the
+    marker say which treatment. A name that is not known gets a style that only
+    depends on it."""
+    filling = "full"
+    known = kernel_and_treatment(method)
     if method in ALONE:
         colour, marker, line = ALONE[method]
+        if method in KERNELS and method not in ("initial frame", "quasi-static"):
+            filling = "none"
+    elif known:
+        kernel, treatment = known
+        colour, marker, _ = ALONE[kernel if kernel != "initial"
+                                  else "initial frame"]
+        line, filling = FILLINGS.get(treatment, (":", "full"))
     else:
         words = method.replace(",", " ").replace("(", " ").split()
         text = f" {' '.join(words)} "
@@ -141,29 +167,7 @@ def style_of(method):
             number = zlib.crc32(method.encode())
             colour, marker = SPARE[number % 8], MARKERS[number // 8 % 11]
     return {"color": colour, "marker": marker or "None",
-            "linestyle": line or "None"}
-
-
-def kernel_and_treatment(method):
-    """('quadratic', 'node') of 'quadratic node'; nothing of any other name."""
-    kernel = next((k for k in sorted(KERNELS, key=len, reverse=True)
-                   if method.startswith(f"{k} ")), None)
-    treatment = method[len(kernel) + 1:] if kernel else ""
-    return (kernel, treatment) if treatment in TREATMENTS else None
-
-
-LINES = {"none": "-", "cell": "-", "node": "--", "assumed strain": "-."}
-
-
-def style_of_kernel(method):
-    """As style_of(), where panels tell treatments apart: the colour and marker
-    are the kernel's, the line is the treatment's."""
-    known = kernel_and_treatment(method)
-    if not known:
-        return style_of(method)
-    kernel, treatment = known
-    style = style_of("initial frame" if kernel == "initial" else kernel)
-    return {**style, "linestyle": LINES.get(treatment, ":")}
+            "linestyle": line or "None", "fillstyle": filling}
 
 
 def line_of(method):

@@ -3,7 +3,7 @@
 
     plot_beam.py <run folder> <run folder of the locked beam> <observable>
 
-The observable is a displacement, 'tip' for instance. The runs need pictures
+The observable is a displacement of the end, 'tip' for instance. The runs need pictures
 with the fields 'displacement' and 'pressure'. Above: both beams at the time of
 the first one's first largest deflection, displacements enlarged. Below: the observable over
 time. The picture goes into the first folder: beam.png.
@@ -41,10 +41,10 @@ def draw_beam(axis, name, time, cloud, factor, largest_pressure):
     dots = axis.scatter(place[:, 0], place[:, 1], c=cloud["pressure"], s=20,
                         linewidths=0, vmin=-largest_pressure,
                         vmax=largest_pressure, cmap="RdBu_r")
+    axis.set_xlabel("x [m]")
     axis.set_title(f"{name}, t = {time:.3g} s, displacements x {factor:.0f}",
                    fontsize=10)
     axis.set_aspect("equal")
-    axis.set_axis_off()
     return dots
 
 
@@ -57,6 +57,10 @@ def main():
     states = {name: state_at(folder, extreme)
               for name, folder in folders.items()}
 
+    largest = abs(states["cell"][1]["pressure"]).max()
+    unit_factor, unit = charts.scaled_unit("Pa", largest)
+    for _, cloud in states.values():
+        cloud["pressure"] = cloud["pressure"] / unit_factor
     treated = states["cell"][1]
     length = np.ptp(treated["position"][:, 0])
     factor = LARGEST_DRAWN * length / abs(treated["displacement"]).max()
@@ -68,7 +72,8 @@ def main():
     for axis, (name, (time, cloud)) in zip(axes, states.items()):
         dots = draw_beam(axis, f"Locking treatment = {name}", time, cloud,
                          factor, pressure)
-    above.colorbar(dots, ax=axes, label="pressure [Pa]", extend="both")
+    axes[0].set_ylabel("y [m]")
+    above.colorbar(dots, ax=axes, label=f"pressure [{unit}]", extend="both")
 
     axis = below.subplots()
     for name, folder in folders.items():
@@ -76,7 +81,7 @@ def main():
         axis.plot(table["time"], table[observable], label=name,
                   **charts.line_of(name))
     axis.set_xlabel("time [s]")
-    axis.set_ylabel(f"{observable} [{units[observable]}]")
+    axis.set_ylabel(f"displacement of the {observable} [{units[observable]}]")
     axis.grid(alpha=0.3)
     charts.legend_outside(axis)
 

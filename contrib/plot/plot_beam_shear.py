@@ -77,17 +77,18 @@ def main():
         line = np.flatnonzero(abs(start[:, 1] - above) < 1e-4 * edge[1])
         line = line[np.argsort(start[line, 0])]
         row[1].plot(start[line, 0], share[line], ".-", markersize=4,
-                    linewidth=0.8)
+                    linewidth=0.8, color=charts.style_of(treatment)["color"])
         row[1].set_ylim(-8, 14)
+        row[1].set_ylabel("share [%]")
         row[1].grid(alpha=0.3)
-    axes[0, 0].set_title("shear stress, % of the bending stress at the root",
-                         fontsize=10)
-    axes[0, 1].set_title("the same along the row of points above the middle",
+    axes[0, 0].set_title("shear stress of the points", fontsize=10)
+    axes[0, 1].set_title("along the row of points above the middle",
                          fontsize=10)
     for axis in axes[-1]:
         axis.set_xlabel("x [m]")
 
     figure.colorbar(dots, ax=axes[:, 0], extend="both",
+                    label="shear stress / bending stress at the root [%]",
                     orientation="horizontal", shrink=0.6, aspect=40)
 
     path = folders[0] / "shear.png"

@@ -45,7 +45,9 @@ def main():
         table, _ = run_folder.statistics(folder)
         scaled = table["time"] * SCALE
         for column in ("front", "height"):
-            axis.plot(scaled, table[column], line, label=f"{column}, {name}",
+            label = f"{column}, 3D" if line == "-" else {
+                "front": "both in 2D"}.get(column)  # one entry for both
+            axis.plot(scaled, table[column], line, label=label,
                       color=COLOURS[column] if line == "-" else "black",
                       linewidth=3 if line == "-" else 1)
             values = np.interp((1, 2, 3), scaled, table[column])

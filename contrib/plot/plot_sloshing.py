@@ -63,6 +63,7 @@ def main():
         axis.set_aspect("equal")
         axis.set_xlabel("x [m]")
         axis.set_ylim(0, 0.56)
+        axis.set_xticks([-0.4, 0, 0.4])
     axes[0].set_ylabel("y [m]")
     above.colorbar(dots, ax=axes, label="pressure [kPa]", extend="both")
 
@@ -83,7 +84,7 @@ def main():
     axis.plot(table["time"], -np.cos(angular * table["time"]), "k--",
               linewidth=1, label="linear theory")
     axis.set_xlabel("time [s]")
-    axis.set_ylabel("x of the centre of mass / start")
+    axis.set_ylabel("x of the centre of mass / its start")
     axis.grid(alpha=0.3)
     charts.legend_outside(axis)
 

@@ -10,9 +10,9 @@ their values. On charts of error against cost the Pareto front is ringed, and
 the ends of lines say which variant they are; where several kernels stand there
 with and without a treatment of locking ('quadratic none', 'quadratic node'), one
 panel shows them without and one with it, in the same colours. Variants that have failed stand
-as crosses at the upper edge, each with what went wrong; open triangles at the
-lower edge are values too small for the axis, with the value beside. On maps of
-stability an open triangle means that no limit was found below it.
+as crosses at the upper edge, and the legend says what went wrong; open triangles
+at the lower edge are values too small for the axis, with the value beside. On
+maps of stability an open triangle means that no limit was found below it.
 """
 
 import argparse
@@ -111,7 +111,6 @@ def draw_line(axis, rows, measure, meta, style, floor, marks, grown=1.):
                 (floor is None or y >= floor)):
             axis.plot(x, y, "o", markersize=11, fillstyle="none",
                       color="black", markeredgewidth=0.8)
-    return bool(points)
 
 
 def coincide(rows, others, measure, meta):
@@ -123,28 +122,27 @@ def coincide(rows, others, measure, meta):
         for x in own)
 
 
-def draw_failed(axis, rows, meta, colour):
-    """Crosses at the upper edge; a failed run may have no cost at all."""
+def draw_failed(axis, rows, meta, colour, taken):
+    """Crosses at the upper edge, below those of other methods that failed at the
+    same place; the reason goes into the legend. A failed run may have no cost at
+    all. @p taken: how many crosses stand at a place so far."""
     transform = axis.get_xaxis_transform()
     reasons = {}
     for row in rows:
         x = number(row[meta["horizontal"]])
         if row["outcome"] != "finished" and np.isfinite(x):
-            axis.plot(x, 0.98, "x", color=colour, transform=transform,
-                      clip_on=False)
-            reasons.setdefault(row["outcome"], []).append(
-                (x, label_of(row, meta["variations"])))
+            reasons.setdefault(row["outcome"], []).append((x, row))
     for reason, places in reasons.items():
-        x = np.mean([x for x, _ in places])
-        which = " / ".join(label for _, label in places[:3]) + (
-            " ..." if len(places) > 3 else "")
-        axis.annotate(f"{which}: {reason}" if meta["against cost"] else reason,
-                      (places[0][0] if len(places) < 3 else x, 0.98),
-                      fontsize=7, xycoords=transform, rotation=90, color=colour,
-                      textcoords="offset points", xytext=(0, -5), zorder=4,
-                      horizontalalignment="center", verticalalignment="top",
-                      bbox={"facecolor": "white", "alpha": 0.8, "pad": 1,
-                            "linewidth": 0})
+        which = ("" if not meta["against cost"] else " at " + " / ".join(
+            label_of(row, meta["variations"]) for _, row in places))
+        label = f"{rows[0]['method']}{which}: {reason}"
+        for x, _ in places:
+            y = 0.98 - 0.04 * taken.get(x, 0)
+            taken[x] = taken.get(x, 0) + 1
+            axis.plot(x, y, "x", color=colour, transform=transform,
+                      clip_on=False, markeredgewidth=1.5,
+                      label="\n".join(textwrap.wrap(label, 26)))
+            label = ""
 
 
 def draw_closed_forms(axis, methods, meta):
@@ -195,15 +193,14 @@ def draw_panel(axis, rows, measure, meta):
             axis.set_xticks(values, [f"{value:g}" for value in values])
             axis.set_xmargin(0.2)
             axis.xaxis.set_minor_locator(NullLocator())
-    floor, marks = floor_of(rows, measure, meta), []
+    floor, marks, taken = floor_of(rows, measure, meta), [], {}
     counts = not meta["against cost"] and all(
         y == round(y) and y < 100 for _, y, _ in points_of(rows, measure, meta))
     if counts:  # zeros among them
         floor = None
     for index, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
-        style = (charts.style_of_kernel if meta["rivals"] else
-                 charts.style_of)(method)
+        style = charts.style_of(method)
         # where formulas are drawn, measured values stand alone, and can be
         # told apart where they coincide
         if meta["closed forms"]:
@@ -215,10 +212,8 @@ def draw_panel(axis, rows, measure, meta):
                                          if row["method"] == other],
                                    measure, meta)
                           for other in methods[index + 1:])))
-        drawn = draw_line(axis, own, measure, meta, style, floor, marks, grown)
-        if not drawn and any(row["outcome"] != "finished" for row in own):
-            axis.plot([], [], "x", color=style["color"], label=method)
-        draw_failed(axis, own, meta, style["color"])
+        draw_line(axis, own, measure, meta, style, floor, marks, grown)
+        draw_failed(axis, own, meta, style["color"], taken)
     if is_logarithmic(meta, "horizontal"):
         axis.set_xscale("log")
     if is_logarithmic(meta, "vertical") and not counts:
@@ -316,6 +311,14 @@ def measures_of(rows, meta):
     return list(known.values())
 
 
+def key_of(meta):
+    """What the small marks of a chart of error against cost mean."""
+    return (f"Numbers at the ends of lines: {', '.join(meta['variations'])}. "
+            "Ringed: none is more exact at less cost (Pareto front)."
+            + (" Dotted: errors for which the page names the cheapest."
+               if meta["error levels"] else ""))
+
+
 PER_ROW = 2  # panels; with more of them texts are too small on a page
 
 
@@ -329,7 +332,10 @@ def draw(rows, meta):
     per_row = min(number_of_panels, PER_ROW)
     lines = -(-number_of_panels // per_row)
     total = 2.5 + (6.5 if per_row == 1 else 4.5 * per_row)
-    caption = "\n".join(textwrap.wrap(meta["caption"], int(14 * total)))
+    caption = "\n".join(textwrap.wrap(meta["caption"], int(16 * total)))
+    if meta["against cost"]:
+        caption = "\n".join(textwrap.wrap(key_of(meta), int(16 * total))
+                            + [caption])
     figure, axes = plt.subplots(
         lines, per_row, squeeze=False, layout="constrained",
         figsize=(total, 0.9 + (4.5 if per_row == 1 else 3.9) * lines))

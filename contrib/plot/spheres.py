@@ -75,7 +75,10 @@ def render(camera, places, colours, radius):
     buffer = buffer.reshape(rows, columns)
     owner = owner.reshape(rows, columns)
     buffer, owner = _closed(buffer, owner, r)
-    covered = owner >= 0
+    cover = _rim(owner >= 0, r)
+    buffer, owner = _filled(buffer, owner, cover > 0)
+    covered = (owner >= 0) & (cover > 0)
+    buffer[~covered] = -np.inf
 
     flat = np.ones((rows, columns, 3))
     flat[covered] = colours[order][owner[covered]]
@@ -85,10 +88,40 @@ def render(camera, places, colours, radius):
     # A little white light shows the shape of dark colours, too.
     lit = (flat * (0.66 + 0.42 * diffuse)[..., None] +
            (0.07 * diffuse + 0.14 * highlight)[..., None]) * sky[..., None]
-    picture = np.zeros((rows, columns, 4))
+    picture = np.ones((rows, columns, 4))
     picture[covered, :3] = lit[covered]
-    picture[covered, 3] = 1
+    picture[..., 3] = np.where(covered, cover, 0)
     return np.clip(picture, 0, 1)
+
+
+def _rim(covered, r):
+    """How much of each pixel is covered, 0 to 1: the outline of the material, not
+    of its spheres, which is a mean over somewhat more than the distance of two.
+    What stands alone, as a drop does, stays a sphere."""
+    reach = max(int(round(r)), 1)
+    share = _blurred(covered.astype(float), reach)
+    smooth = np.clip(0.5 + (share - 0.5) * 2 * reach, 0, 1)
+    # 0.5 at a straight edge, 0.25 at a corner, 0.2 in a sphere alone
+    company = _blurred(covered.astype(float), 2 * reach)
+    weight = np.clip((company - 0.25) / 0.15, 0, 1)
+    return weight * smooth + (1 - weight) * covered
+
+
+def _filled(depth, owner, wanted):
+    """Pixels in the notches between spheres take what is beside them."""
+    for _ in range(64):
+        if not (wanted & (owner < 0)).any():
+            break
+        before = owner
+        for i, j in ((0, 1), (0, -1), (1, 0), (-1, 0)):
+            missing = wanted & (owner < 0)
+            other = _shifted(before, i, j, -1)
+            take = missing & (other >= 0)
+            depth = np.where(take, _shifted(depth, i, j, -np.inf), depth)
+            owner = np.where(take, other, owner)
+        if (owner == before).all():
+            break
+    return depth, owner
 
 
 def shadow(camera, places, radius, floor, up):

@@ -58,7 +58,7 @@ def draw_panel(axis, lines, title):
     for method, points in lines.items():
         known = charts.kernel_and_treatment(method)
         bare = known is not None and known[1] == "none"
-        style = charts.style_of_kernel(method)
+        style = charts.style_of(method)
         axis.plot(*points.T, **style, linewidth=0.8 if bare else 1.6,
                   markersize=3 if bare else 5.5, alpha=0.4 if bare else 1,
                   label=None if bare else method)

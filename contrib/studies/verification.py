@@ -59,6 +59,9 @@ def checks(folder):
 
 def tank(runner):
     """Pressure over depth after 4 s, and how the motion grows."""
+    # Each line is thinner than the one below it, as they coincide.
+    widths = dict(zip(("none", "cell without control", "cell",
+                       "cell, Damping time = 0.16 s"), (6, 4, 2.2, 0.8)))
     variants = {"none": ["Body water/Locking treatment=none"],
                 "cell without control": ["Body water/Hourglass control=0",
                                          "Body water/Chequerboard control=0"],
@@ -72,8 +75,10 @@ def tank(runner):
                             "Output/Fields=pressure", *settings)
         values, _ = run_folder.statistics(folder)
         energy = values["kinetic energy"] / 4905
-        right.semilogy(values["time"], np.maximum(energy, 1e-33), label=name,
-                       **charts.line_of(name))
+        right.semilogy(values["time"], np.maximum.accumulate(
+            np.maximum(energy, 1e-33)), label=name,
+                       **{**charts.line_of(name), "linestyle": "-",
+                          "linewidth": widths[name]})
         data = last_points(folder)
         exact = 9810 * (1 - data["position"][:, 1])
         error = np.sqrt(((data["pressure"] - exact)**2).sum() /
@@ -81,12 +86,13 @@ def tank(runner):
         print(f"| {name} | {energy.max():.1e} | {100 * error:.1f} |")
         if name in ("cell without control", "cell"):
             left.plot(data["pressure"] / 1e3, data["position"][:, 1], ".",
-                      ms=3, label=name, color=charts.style_of(name)["color"])
-    left.plot([9.81, 0], [0, 1], "k-", label="exact")
+                      ms=8 if name != "cell" else 4,
+                      color=charts.style_of(name)["color"])
+    left.plot([9.81, 0], [0, 1], "k-")
+    right.plot([], [], "k-", label="exact pressure")
     left.set(xlabel="pressure [kPa]", ylabel="y [m]")
-    right.set(xlabel="time [s]", ylabel="kinetic energy / (rho g H² W/2)",
-              ylim=(1e-18, 1))
-    left.legend()
+    right.set(xlabel="time [s]", ylabel="largest kinetic energy so far\n/ (rho g H² W/2)",
+              ylim=(1e-18, 1e-8))
     charts.legend_outside(right)
     runner.save(figure, "hydrostatic_tank")
 
@@ -101,10 +107,11 @@ def column(runner):
     exact = -80 * 10 * (50 - place)
     figure, axes = plt.subplots(figsize=(7, 4.4))
     axes.plot(exact / 1e3, place, "k-", label="exact")
-    axes.plot(yy / 1e3, place, ".", ms=4, label="points")
+    axes.plot(yy / 1e3, place, ".", ms=4, label="points",
+              color=charts.TREATMENTS["cell"])
     axes.set(xlabel="vertical stress [kPa]",
              ylabel="height in the initial state [m]")
-    axes.legend()
+    charts.legend_outside(axes)
     runner.save(figure, "column")
     error = np.abs(yy - exact).mean() / (80 * 10 * 50)
     print(f"\ncolumn: mean error of the stress over rho g L: {error:.2e}")
@@ -114,22 +121,23 @@ def bar(runner):
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
     time = np.linspace(0, 32.5, 500)
     omega = 0.2 * np.pi
-    left.plot(time, np.sin(omega * time), "k-", lw=1, label="exact")
     for order in ("musl", "usavg"):
         folder = runner.run("bar", f"Method/Stress update={order}",
                             "Output/Statistics interval=1")
         values, _ = run_folder.statistics(folder)
-        left.plot(values["time"], values["end"] / (1e-4 / omega), "--",
-                  label=order, color=charts.style_of(order.upper())["color"])
+        left.plot(values["time"], values["end"] / (1e-4 / omega),
+                  label=order.upper(), lw=4 if order == "musl" else 1.5,
+                  color=charts.style_of(order.upper())["color"])
         energy = values["total energy"] if "total energy" in values else (
             values["kinetic energy"] + values["strain energy"])
-        right.plot(values["time"], 100 * (energy / energy[0] - 1), label=order,
+        right.plot(values["time"], 100 * (energy / energy[0] - 1),
                    color=charts.style_of(order.upper())["color"])
         print(f"bar, {order}: largest swing of the energy "
               f"{np.abs(energy / energy[0] - 1).max():.1e}, " +
               ", ".join(f"{n} {v:.6g}" for n, v in checks(folder).items()))
+    left.plot(time, np.sin(omega * time), "k:", lw=1.5, label="exact")
     left.set(xlabel="time [s]", ylabel="displacement of the end / amplitude")
-    right.set(xlabel="time [s]", ylabel="E / E0 - 1 [%]")
+    right.set(xlabel="time [s]", ylabel="change of the total energy [%]")
     handles, labels = left.get_legend_handles_labels()
     right.legend(handles, labels, loc="upper left", bbox_to_anchor=(1.01, 1))
     runner.save(figure, "bar")
@@ -167,8 +175,8 @@ def manufactured_solution(runner):
     axes.set_xticks(1 / cells, [f"1/{n}" for n in cells])
     axes.minorticks_off()
     axes.set(xlabel="edge of a cell [m]",
-             ylabel="rms error of the displacement / A")
-    axes.legend()
+             ylabel="rms error of the displacement / its amplitude")
+    charts.legend_outside(axes)
     runner.save(figure, "manufactured_solution")
 
 
@@ -183,9 +191,6 @@ def pressurised_ring(runner):
         return 1e3 * ((1 + nu) / young * stress_scale *
                       ((1 - 2 * nu) * r + b**2 / r))
 
-    left.plot(exact_radius, lame(exact_radius), "k-", lw=1, label="Lamé")
-    right.plot(exact_radius, stress_scale * (1 - b**2 / exact_radius**2),
-               "k-", lw=1, label="Lamé")
     for name in ("assumed strain", "cell", "none"):
         folder = runner.run("pressurised_ring", "Output/Time interval=2",
                             "Output/Fields=displacement, stress",
@@ -202,15 +207,21 @@ def pressurised_ring(runner):
         error = np.sqrt(((radial - exact)**2).sum() / (exact**2).sum())
         print(f"pressurised ring, {name}: error of the displacement "
               f"{100 * error:.2f} %")
-        left.plot(radius, radial, ".", ms=2, label=name,
+        left.plot(radius, radial, ".", label=name,
+                  ms=5 if name == "assumed strain" else 2,
                   color=charts.style_of(name)["color"])
         if name != "none":
-            right.plot(radius, radial_stress, ".", ms=2, label=name,
+            right.plot(radius, radial_stress, ".", ms=2,
                        color=charts.style_of(name)["color"])
-    left.set(xlabel="r [m]", ylabel="radial displacement [mm]")
-    right.set(xlabel="r [m]", ylabel="radial stress / p")
-    left.legend()
-    right.legend()
+    left.plot(exact_radius, lame(exact_radius), "k-", lw=1)
+    right.plot(exact_radius, stress_scale * (1 - b**2 / exact_radius**2),
+               "k-", lw=1)
+    left.set(xlabel="radius [m]", ylabel="radial displacement [mm]")
+    right.set(xlabel="radius [m]", ylabel="radial stress / pressure")
+    handles, labels = left.get_legend_handles_labels()
+    handles.append(right.lines[-1])
+    right.legend(handles, labels + ["Lamé, exact"], loc="upper left",
+                 markerscale=3, bbox_to_anchor=(1.01, 1))
     runner.save(figure, "pressurised_ring")
 
 
@@ -224,7 +235,8 @@ def cantilever_3d(runner):
                             f"Body beam/Locking treatment={name}")
         values, _ = run_folder.statistics(folder)
         axes.plot(values["time"], 1e3 * values["tip"], label=name,
-                  **charts.line_of(name))
+                  linewidth=4 if name == "assumed strain" else 1.5,
+                  **charts.line_of(name))  # the first two coincide
         frequency = checks(folder)["first mode"]
         amplitude = amplitude or np.abs(values["tip"]).max()
         print(f"cantilever in 3d, nu = 0.49, {name}: {frequency:.4f} Hz "
