@@ -103,7 +103,7 @@ CHANGES = {
     "FMPM": ("#17807e", "H"),
     "3 points": ("#17807e", "P"), "3 x 3": ("#17807e", "P"),
     "soft water": ("#a6761d", "X"), "chi 0.3": ("#6a51a3", "d"),
-    "Damping time": ("#a6761d", "X"), "control": ("#d01c8b", "d"),
+    "Blend time": ("#a6761d", "X"), "control": ("#d01c8b", "d"),
     "bending": ("#6a3d9a", "D"), "replaced": ("#8a8d00", "p"),
     "semi-implicit": ("#08519c", "*")}
 

@@ -61,12 +61,12 @@ def tank(runner):
     """Pressure over depth after 4 s, and how the motion grows."""
     # Each line is thinner than the one below it, as they coincide.
     widths = dict(zip(("none", "cell without control", "cell",
-                       "cell, Damping time = 0.16 s"), (6, 4, 2.2, 0.8)))
+                       "cell, Blend time = 0.16 s"), (6, 4, 2.2, 0.8)))
     variants = {"none": ["Body water/Locking treatment=none"],
                 "cell without control": ["Body water/Hourglass control=0",
                                          "Body water/Chequerboard control=0"],
                 "cell": [],
-                "cell, Damping time = 0.16 s": ["Method/Damping time=0.16"]}
+                "cell, Blend time = 0.16 s": ["Method/Blend time=0.16"]}
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))
     print("| hydrostatic tank, 4 s | largest kinetic energy over rho g H^2 W/2"
           " | error of the pressure (%) |\n| --- | --: | --: |")

@@ -166,6 +166,14 @@ namespace limber
 
 
   void
+  Parameters::renamed(const std::string &former, const std::string &now)
+  {
+    successors[full_name(present, former)] = now;
+  }
+
+
+
+  void
   Parameters::declare_list(const std::string &list,
                            const std::string &default_value,
                            const std::string &prefix,
@@ -351,6 +359,15 @@ namespace limber
   Parameters::refuse_entry(const ScannedEntry &entry,
                            const std::string  &place) const
   {
+    const auto now = successors.find(full_name(entry.section, entry.name));
+    if (now != successors.end())
+      throw InputError("Entry " + in_quotes(entry.name) + " " +
+                       in_section(entry.section) + " (" + place +
+                       ") is called " + in_quotes(now->second) +
+                       " now. Usually the scene was written for a former "
+                       "version. Write '" +
+                       now->second + "'.");
+
     std::vector<std::string> siblings;
     std::string              elsewhere;
     for (const Declaration &declaration : declarations)

@@ -154,7 +154,7 @@ namespace limber
             body.hourglass_control == 0 && !is_spline(problem.grid.kernel))
           return "Body " + body.name + "/Hourglass control = 0.2'.";
       constexpr double share = 0.05; // twenty swings in the time of the run
-      return "Method/Damping time = " + brief(share * problem.end_time) +
+      return "Method/Blend time = " + brief(share * problem.end_time) +
              "' or the shortest time of interest.";
     }
   } // namespace

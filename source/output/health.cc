@@ -79,15 +79,14 @@ namespace limber
       line.text  = brief(all) + " J of " + brief(figures.kinetic) +
                   " J kinetic energy are motion of points against each other "
                   "that no node sees";
-      line.entry = "Method/Damping time";
+      line.entry = "Method/Blend time";
       if (all <= negligible * figures.energy_scale)
         return line;
       line.verdict = check.verdict(line.value);
       if (line.verdict != Verdict::good)
-        line.text +=
-          ", most in body '" + worst(figures, energy).name +
-          "'; set 'Damping time' to the shortest time of interest, as "
-          "that of an impact";
+        line.text += ", most in body '" + worst(figures, energy).name +
+                     "'; set 'Blend time' to the shortest time of interest, as "
+                     "that of an impact";
       return line;
     }
 

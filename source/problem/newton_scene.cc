@@ -53,11 +53,11 @@ namespace limber
                "Transfer",
                "where points take increments",
                "'Transfer = flip'");
-      if (method.damping_time > 0)
+      if (method.blend_time > 0)
         refuse(section,
-               "Damping time",
+               "Blend time",
                "which has no such damping",
-               "'Damping time = 0'");
+               "'Blend time = 0'");
       if (method.damping_rate > 0)
         refuse(section,
                "Damping rate",

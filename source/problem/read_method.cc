@@ -39,7 +39,8 @@ namespace limber
                        admissible::positive_integer("10"),
                        "FMPM and XPIC act every so many steps; in between the "
                        "transfer is FLIP.");
-    parameters.declare("Damping time",
+    parameters.renamed("Damping time", "Blend time");
+    parameters.declare("Blend time",
                        "0",
                        admissible::non_negative_number("0.1"),
                        "PIC/FLIP blend: time constant T, s, in which PIC takes "
@@ -105,7 +106,7 @@ namespace limber
       static_cast<unsigned int>(section.number("Transfer order"));
     method.transfer_period =
       static_cast<unsigned int>(section.number("Transfer period"));
-    method.damping_time        = section.number("Damping time");
+    method.blend_time          = section.number("Blend time");
     method.damping_rate        = section.number("Damping rate");
     method.courant_number      = section.number("Courant number");
     method.time_step           = section.number("Time step");
@@ -114,14 +115,14 @@ namespace limber
     method.lost_points_limit   = section.number("Lost points limit");
     method.energy_growth_limit = section.number("Energy growth limit");
 
-    if (method.damping_time > 0 && method.transfer != Transfer::flip &&
+    if (method.blend_time > 0 && method.transfer != Transfer::flip &&
         method.transfer != Transfer::aflip)
-      throw InputError("The damping time " + section.text("Damping time") +
-                       " in " + section.where("Damping time") +
+      throw InputError("The blend time " + section.text("Blend time") + " in " +
+                       section.where("Blend time") +
                        " belongs to FLIP and AFLIP, but 'Transfer' is " +
                        in_quotes(section.text("Transfer")) +
                        ". Usually one of them was changed alone. Set "
-                       "'Transfer = flip' or 'Damping time = 0'.");
+                       "'Transfer = flip' or 'Blend time = 0'.");
     const auto refuse = [&](const std::string &entry,
                             const std::string &reason,
                             const std::string &remedy) {

@@ -152,9 +152,8 @@ namespace limber
     if (method.transfer == Transfer::pic || method.transfer == Transfer::apic ||
         (full_mass && steps_since_filter == 0))
       return 0;
-    return method.damping_time > 0 ?
-             std::max(0., 1 - step / method.damping_time) :
-             1;
+    return method.blend_time > 0 ? std::max(0., 1 - step / method.blend_time) :
+                                   1;
   }
 
 

@@ -60,6 +60,13 @@ namespace limber
             const std::string &text);
 
     /**
+     * Say what the entry @p former of the present section is called now: a
+     * scene with the old name is refused with the new one.
+     */
+    void
+    renamed(const std::string &former, const std::string &now);
+
+    /**
      * Declare the entry @p list of the present section as a list of names,
      * each of which has a section called @p prefix + name beside it.
      */
@@ -139,6 +146,9 @@ namespace limber
     std::vector<Declaration>         declarations;
     std::vector<NameList>            lists;
     SectionPath                      present;
+
+    // What entries of former versions are called now, by full former name.
+    std::map<std::string, std::string> successors;
 
     // Where a value came from: "line 12 of scene.prm", by full name.
     std::map<std::string, std::string> places;

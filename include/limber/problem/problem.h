@@ -344,7 +344,7 @@ namespace limber
     Transfer          transfer       = Transfer::flip;
     unsigned int      transfer_order = 4; // k of FMPM(k) and XPIC(k)
     unsigned int transfer_period = 1; // they act every so many steps, else FLIP
-    double       damping_time    = 0; // s; FLIP share 1 - dt/time, 0: pure FLIP
+    double       blend_time      = 0; // s; FLIP share 1 - dt/time, 0: pure FLIP
     double       damping_rate    = 0; // alpha of the acceleration -alpha v, 1/s
     double       courant_number  = 0.4; // C
     double       time_step       = 0;   // s; 0: from the Courant number

@@ -112,7 +112,7 @@ namespace limber::test
     EXPECT_GT(seen.unseen_energy, 0.8); // all but at the free ends
     const Diagnosis found = diagnose(seen, run.problem, false);
     EXPECT_EQ(found.mode, "null space");
-    EXPECT_NE(found.text.find("Method/Damping time = 0.05'"), std::string::npos)
+    EXPECT_NE(found.text.find("Method/Blend time = 0.05'"), std::string::npos)
       << found.text;
     EXPECT_EQ(found.text.find("apic"), std::string::npos);
 
@@ -122,7 +122,7 @@ namespace limber::test
                 .text.find("Body block/Hourglass control = 0.2'"),
               std::string::npos);
     run.problem.bodies[0].hourglass_control = 0.1;
-    EXPECT_NE(diagnose(seen, run.problem, false).text.find("Damping time"),
+    EXPECT_NE(diagnose(seen, run.problem, false).text.find("Blend time"),
               std::string::npos);
   }
 

@@ -99,7 +99,7 @@ namespace limber::test
     HealthFigures figures = sound();
 
     figures.bodies[0].unseen_energy = 30; // of 50 J
-    expect_bad("unseen", figures, "Damping time");
+    expect_bad("unseen", figures, "Blend time");
 
     figures       = sound();
     figures.drift = -0.2;

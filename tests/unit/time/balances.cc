@@ -187,7 +187,7 @@ TEST(Balances, FrictionDecelerates)
                       {"Body block/Initial velocity=2; 0",
                        "Boundaries/bottom=friction",
                        "Loads/Gravity=0, -10",
-                       "Method/Damping time=0.02",
+                       "Method/Blend time=0.02",
                        "Method/Stress update=" + order});
       run.advance_to(0.1);
       const double before = run.totals().all.momentum[0];
@@ -213,7 +213,7 @@ TEST(Balances, MovingAndStickingFloorsTakeTheBlockAlong)
         SceneRun<2> run(block_on_floor,
                         {"Body block/Initial velocity=0.2; 0",
                          "Boundaries/bottom=" + floor,
-                         "Method/Damping time=0.005",
+                         "Method/Blend time=0.005",
                          "Method/Stress update=" + order});
         run.advance_to(3);
         double sum = 0;
@@ -266,7 +266,7 @@ TEST(Balances, ReactionOfARestingBlockIsItsWeight)
       SCOPED_TRACE(order);
       SceneRun<2> run(block_on_floor,
                       {"Loads/Gravity=0, -10",
-                       "Method/Damping time=0.005",
+                       "Method/Blend time=0.005",
                        "Method/Stress update=" + order});
       run.advance_to(2);
       const double before = run.totals().side_impulse[2][1];

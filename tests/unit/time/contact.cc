@@ -90,7 +90,7 @@ namespace
       set top = free
     end
     subsection Method
-      set Damping time = 0.01
+      set Blend time = 0.01
     end)";
 
   // 20 mm in 40 cells, each at 1 % of sqrt(E / rho), 1 mm apart

@@ -43,7 +43,7 @@ namespace
       set Gravity = 0, -9.81
     end
     subsection Method
-      set Damping time = 0.01
+      set Blend time = 0.01
     end)";
 
   // 1 m x 0.5 m above a floor
@@ -385,7 +385,7 @@ TEST(ObstacleContact, ADiscRollsInItsInitialFrame)
 
 
 // It rolls where friction suffices, as fast as it turns, with 2/3 g sin, less
-// a resistance that cells of a tenth of its radius have. A damping time would
+// a resistance that cells of a tenth of its radius have. A blend time would
 // brake the turning as well.
 TEST(ObstacleContact, ADiscRolls)
 {
@@ -419,7 +419,7 @@ TEST(ObstacleContact, AWallTakesABlockAlong)
                   {"Obstacle floor/Half-space/Point=0.49, 0",
                    "Obstacle floor/Half-space/Normal=1, 0",
                    "Obstacle floor/Displacement=0.5*t; 0",
-                   "Method/Damping time=0.01"});
+                   "Method/Blend time=0.01"});
   run.advance_to(0.9);
   const auto totals = run.totals();
   EXPECT_GT(totals.all.momentum[0], 0.499 * 500);

@@ -219,7 +219,7 @@ TEST(SeparatingSides, ABlockSlidesDownASlope)
         SCOPED_TRACE(order + " " + digits(degrees) + " " + digits(friction));
         auto variant = slope(degrees, friction);
         variant.push_back("Method/Stress update=" + order);
-        variant.push_back("Method/Damping time=0.005");
+        variant.push_back("Method/Blend time=0.005");
         SceneRun<2>  run(block_on_slope, variant);
         const double weight = 9.81 * std::cos(degrees * std::acos(-1.) / 180);
         run.advance_to(0.2); // what follows on the sudden start
@@ -251,7 +251,7 @@ TEST(SeparatingSides, ABlockSlidesDownASlope)
 TEST(SeparatingSides, ABlockRestsWhereFrictionHoldsIt)
 {
   auto variant = slope(30, 0.8);
-  variant.push_back("Method/Damping time=0.005");
+  variant.push_back("Method/Blend time=0.005");
   SceneRun<2> run(block_on_slope, variant);
   run.advance_to(1.5);
   const double before = run.totals().centre_of_mass[0];

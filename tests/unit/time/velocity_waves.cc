@@ -145,15 +145,15 @@ TEST(VelocityWaves, PicIsAViscosity)
 {
   const double       kh = dealii::numbers::PI / 8; // < 0.4
   const unsigned int n  = 40;
-  for (const double damping_time : {0., 4 * step})
+  for (const double blend_time : {0., 4 * step})
     {
       SceneRun<2> run(wave_strip,
                       {std::string("Method/Transfer=") +
-                         (damping_time > 0 ? "flip" : "pic"),
-                       "Method/Damping time=" + std::to_string(damping_time)});
+                         (blend_time > 0 ? "flip" : "pic"),
+                       "Method/Blend time=" + std::to_string(blend_time)});
       set_wave(run, kh);
       run.advance(step, n);
-      const double share     = damping_time > 0 ? step / damping_time : 1;
+      const double share     = blend_time > 0 ? step / blend_time : 1;
       const double viscosity = share * 3. / (16 * step);
       const double rate      = -std::log(amplitude(run, kh).first) / (n * step);
       EXPECT_NEAR(rate, viscosity * kh * kh, 0.05 * viscosity * kh * kh);
@@ -182,11 +182,11 @@ TEST(VelocityWaves, NullModeIsKeptByFlipAndRemovedByPic)
     {
       SCOPED_TRACE(order);
       const auto share_of_energy = [&](const std::string &transfer,
-                                       const double       damping_time,
+                                       const double       blend_time,
                                        const unsigned int n) {
         SceneRun<2> run(wave_strip,
                         {"Method/Transfer=" + transfer,
-                         "Method/Damping time=" + std::to_string(damping_time),
+                         "Method/Blend time=" + std::to_string(blend_time),
                          "Method/Stress update=" + order});
         set_null_mode(run);
         const double before = run.totals().all.kinetic_energy;
