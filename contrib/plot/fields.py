@@ -1,6 +1,7 @@
 """The fields of a run or of a finite element reference, at the times of its
 pictures: places, values, unit, bodies by name."""
 
+import difflib
 import re
 from pathlib import Path
 
@@ -204,9 +205,15 @@ def value(cloud, name, folder):
         found = _find(known(), name)
         if found is not None:
             return found
+    known = names_of(cloud)
+    base, _, last = name.rpartition(" ")
+    base = base if last in ("x", "y", "z", *COMPONENTS) else name
+    meant = difflib.get_close_matches(name, known + list(UNITS), 1)
     fail(f"There is no field '{name}' in '{folder}'. It has: "
-         + ", ".join(names_of(cloud)) + ". What pictures of a run carry is "
-         f"said in its scene: --set \"Output/Fields={name.split(' x')[0]}\".")
+         + ", ".join(known) + "." + (
+             f" Pictures carry it with --set \"Output/Fields={base}\" of the run."
+             if base in UNITS else
+             f" Did you mean '{meant[0]}'?" if meant else ""))
 
 
 def _find(fields, name):

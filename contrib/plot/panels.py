@@ -339,13 +339,25 @@ def _scale(axis, places, values, name, centre):
                   **style)
 
 
+def _below_each_other(states, aspect):
+    """Pictures of one run in rows: what is flat, a beam or a slope, stands in one
+    column or two, as it would be tiny side by side."""
+    columns = len(states)
+    if aspect < 0.4 and columns > 2:
+        columns = 1 if aspect < 0.15 or columns == 3 else 2
+    return [states[i:i + columns] for i in range(0, len(states), columns)]
+
+
 def figure_of(states, look, labels, width=None):
     """A figure with a row for each run and a column for each time; @p states is
     a list of rows. Returns the figure."""
     look.fix([state for row in states for state in row])
-    rows, columns = len(states), max(len(row) for row in states)
     dimension = states[0][0].source.dimension
     aspect = look.aspect
+    if len(states) == 1 and dimension == 2 and not width:
+        states, labels = _below_each_other(states[0], aspect), [""] * len(
+            states[0])
+    rows, columns = len(states), max(len(row) for row in states)
     if dimension == 3:
         camera = _camera_of(look, _upwards(states[0][0].source), 100)
         look.pixels = 1000 if width else 1500 if columns == 1 else 1100
