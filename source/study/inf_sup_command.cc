@@ -208,7 +208,7 @@ square, no velocity on its boundary.
       beta.name             = "beta";
       beta.source           = MeasureSource::summary;
       Measure mean          = beta;
-      mean.name             = "mean of the fillings";
+      mean.name             = "mean beta of the fillings";
       Measure zero          = beta;
       zero.name             = "zero modes";
       report.study.measures = {beta, mean, zero};
