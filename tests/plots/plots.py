@@ -233,6 +233,12 @@ class Scripts(unittest.TestCase):
     def test_gaps_between_points_that_were_pulled_apart(self):
         self.run_python(GAPS)
 
+    def test_charts_say_what_failed(self):
+        self.run_python(FAILED)
+
+    def test_flat_bodies_stand_in_rows(self):
+        self.run_python(ROWS)
+
     def test_a_shadow_lies_beside_what_throws_it(self):
         self.run_python(SHADOW)
 
@@ -329,6 +335,38 @@ figure = plot_study.draw(rows, meta)
 assert len(figure.axes) == 1, figure.axes
 widths = [line.get_linewidth() for line in figure.axes[0].lines]
 assert widths[0] > widths[1] == widths[2], widths
+"""
+
+# What has failed is a cross of its own, and the legend says why.
+FAILED = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import plot_study
+rows = [{"method": m, "outcome": outcome, "beyond": "", "n": "1",
+         "cost": "1", "a value": v, "a error": v, "a Pareto": "0"}
+        for m, outcome, v in (("none", "finished", "1"), ("cell", "lost points", ""),
+                              ("node", "lost points", ""))]
+meta = {"title": "", "caption": "", "measures": ["a"], "variations": ["n"],
+        "horizontal": "cost", "horizontal label": "cost", "vertical label": "",
+        "against cost": True, "logarithmic": "none", "error levels": [],
+        "closed forms": {}}
+axis = plot_study.draw(rows, meta).axes[0]
+texts = [text.get_text().replace("\\n", " ") for text in
+         axis.get_legend().get_texts()]
+assert texts == ["none", "cell at 1: lost points", "node at 1: lost points"], texts
+crosses = [float(line.get_ydata()[0]) for line in axis.lines
+           if line.get_marker() == "x"]
+assert len(set(crosses)) == 2, crosses
+"""
+
+# Pictures of a flat body stand in rows.
+ROWS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import panels
+shape = [[len(row) for row in panels._below_each_other(list(range(n)), aspect)]
+         for n, aspect in ((4, 1.), (4, 0.3), (4, 0.1), (3, 0.3), (2, 0.1))]
+assert shape == [[4], [2, 2], [1] * 4, [1] * 3, [2]], shape
 """
 
 PALETTE = """
