@@ -54,9 +54,9 @@ displacement\nequivalent\\ stress\nvolume\\ ratio\nmass\nbody' -- "$word")
     inf-sup) options="--help --cells --pressure --points --fill --samples
       --output-directory --replace" ;;
     advise) options="--help --for-error --seconds --set" ;;
-    plot) options="--help --field --body --enlarge --range --view --labels
+    plot) options="--help --field --body --enlarge --range --view --grid --labels
       --output --time --snapshots --columns" ;;
-    animate) options="--help --field --body --enlarge --range --view --labels
+    animate) options="--help --field --body --enlarge --range --view --grid --labels
       --output --rate --frames" ;;
   esac
 
