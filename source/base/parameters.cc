@@ -4,6 +4,7 @@
 #include <limber/base/text.h>
 
 #include <algorithm>
+#include <cctype>
 #include <optional>
 #include <set>
 
@@ -323,11 +324,27 @@ namespace limber
     for (const NameList &list : lists)
       if (list.section == outer &&
           name.compare(0, list.prefix.size(), list.prefix) == 0)
-        throw InputError(
-          start + "belongs to no name in the list " + in_quotes(list.entry) +
-          ". Usually it was forgotten there. Write 'set " + list.entry + " = " +
-          printable(trimmed(name.substr(list.prefix.size()))) +
-          "', after any other names.");
+        {
+          std::vector<std::string> known;
+          for (const Declaration &declaration : declarations)
+            if (declaration.section.size() > outer.size() &&
+                std::equal(outer.begin(),
+                           outer.end(),
+                           declaration.section.begin()) &&
+                declaration.section[outer.size()].compare(0,
+                                                          list.prefix.size(),
+                                                          list.prefix) == 0)
+              known.push_back(declaration.section[outer.size()]);
+          const auto meant = nearest(name, known);
+          throw InputError(
+            start + "belongs to no name in the list " + in_quotes(list.entry) +
+            (meant ? ". Did you mean " + in_quotes(*meant) +
+                       "? Otherwise write 'set " :
+                     ". Usually it was forgotten there. Write 'set ") +
+            list.entry + " = " +
+            printable(trimmed(name.substr(list.prefix.size()))) +
+            "', after any other names.");
+        }
 
     std::vector<std::string> siblings;
     std::string              elsewhere;
@@ -368,22 +385,55 @@ namespace limber
                        "version. Write '" +
                        now->second + "'.");
 
+    // What says that a section is not in use: "'Material' is 'j2'." of 'Linear
+    // elastic'; empty where it is, or nothing chooses it.
+    const auto what_chooses_another = [&](const SectionPath &section) {
+      if (section.empty())
+        return std::string();
+      const SectionPath around(section.begin(), section.end() - 1);
+      std::string       word = section.back();
+      std::transform(word.begin(), word.end(), word.begin(), [](const char c) {
+        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      });
+      for (const Declaration &declaration : declarations)
+        if (declaration.section == around &&
+            declaration.admissible.is_choice() &&
+            declaration.admissible.match(word))
+          {
+            const std::string chosen = value(around, declaration.name);
+            return chosen == word ? std::string() :
+                                    in_quotes(declaration.name) + " is " +
+                                      in_quotes(chosen) + ".";
+          }
+      return std::string();
+    };
+
+    // Sections that a word beside them has not chosen, as 'Linear elastic'
+    // where the material is another one, are no place to move an entry to.
     std::vector<std::string> siblings;
-    std::string              elsewhere;
+    std::string              elsewhere, not_chosen;
     for (const Declaration &declaration : declarations)
       if (declaration.section == entry.section)
         siblings.push_back(declaration.name);
       else if (declaration.name == entry.name && elsewhere.empty())
-        elsewhere = in_section(declaration.section);
+        {
+          const std::string but = what_chooses_another(declaration.section);
+          if (but.empty())
+            elsewhere = in_section(declaration.section);
+          else if (not_chosen.empty())
+            not_chosen = "It belongs to " +
+                         in_quotes(declaration.section.back()) + ", but " + but;
+        }
 
     const auto meant = nearest(entry.name, siblings);
     throw InputError(
       "Entry " + in_quotes(entry.name) + " " + in_section(entry.section) +
       " (" + place + ") is not known. Usually it is misspelt or in the wrong " +
       "section. " + (elsewhere.empty() ? "" : "It exists " + elsewhere + ". ") +
-      (meant             ? "Did you mean " + in_quotes(*meant) + "?" :
-       elsewhere.empty() ? known_names(siblings) :
-                           "Move it there."));
+      (meant               ? "Did you mean " + in_quotes(*meant) + "?" :
+       !elsewhere.empty()  ? "Move it there." :
+       !not_chosen.empty() ? not_chosen :
+                             known_names(siblings)));
   }
 
 
