@@ -315,7 +315,7 @@ def key_of(meta):
     """What the small marks of a chart of error against cost mean."""
     return (f"Numbers at the ends of lines: {', '.join(meta['variations'])}. "
             "Ringed: none is more exact at less cost (Pareto front)."
-            + (" Dotted: errors for which the page names the cheapest."
+            + (" Dotted: errors named on the page."
                if meta["error levels"] else ""))
 
 
