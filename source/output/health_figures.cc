@@ -175,7 +175,8 @@ namespace limber
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());
         figures.is_cut = body.placement == Placement::cut ||
-                         body.placement == Placement::fitted;
+                         body.placement == Placement::fitted ||
+                         body.placement == Placement::gauss;
         at_start.push_back(figures);
       }
     look_at_seeding(start, at_start);

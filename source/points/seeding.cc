@@ -24,13 +24,13 @@ namespace limber
 
     template <int dim>
     std::vector<Site<dim>>
-    sites(const Body<dim> &body)
+    sites(const std::array<unsigned int, dim> &per_edge, const bool gauss)
     {
       std::array<dealii::Quadrature<1>, dim> lines;
       for (int d = 0; d < dim; ++d)
         {
-          const unsigned int n = body.points_per_cell_edge[d];
-          if (body.placement == Placement::gauss)
+          const unsigned int n = per_edge[d];
+          if (gauss)
             lines[d] = dealii::QGauss<1>(n);
           else
             {
@@ -77,23 +77,42 @@ namespace limber
 
 
 
-    /**
-     * What of a box is inside a shape, its weight being the share of the
-     * volume and its place the centroid.
-     */
     template <int dim>
-    Site<dim>
+    double
+    volume_of(const Corners<dim> &box)
+    {
+      double volume = 1;
+      for (int d = 0; d < dim; ++d)
+        volume *= box.second[d] - box.first[d];
+      return volume;
+    }
+
+
+
+    /** What of a box is inside a shape. */
+    template <int dim>
+    PartInside<dim>
     inside_of(const Shape<dim> &shape, const Corners<dim> &box)
     {
-      if (const auto part = shape.inside_of(box))
+      const double volume = volume_of<dim>(box);
+      if (auto part = shape.inside_of(box))
         {
-          double volume = 1;
-          for (int d = 0; d < dim; ++d)
-            volume *= box.second[d] - box.first[d];
           // Decimal fractions need not meet exactly.
-          const double weight = part->volume / volume;
-          return {part->centroid, weight > 1e-6 ? weight : 0.};
+          if (part->volume <= 1e-6 * volume)
+            part->volume = 0;
+          return *part;
         }
+
+      // of a box n times as small along each edge
+      const auto spread_of_box = [&](const unsigned int n) {
+        dealii::SymmetricTensor<2, dim> result;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double edge = (box.second[d] - box.first[d]) / n;
+            result[d][d]      = edge * edge / 12;
+          }
+        return result;
+      };
 
       using Geometry      = dealii::GeometryInfo<dim>;
       const auto place_at = [&](const dealii::Point<dim> &xi) {
@@ -117,21 +136,165 @@ namespace limber
       if (!is_near &&
           n_inside ==
             (shape.contains(centre) ? Geometry::vertices_per_cell : 0))
-        return {centre, n_inside > 0 ? 1. : 0.};
+        return {n_inside > 0 ? volume : 0., centre, spread_of_box(1)};
 
-      static const dealii::QIterated<dim> samples(dealii::QMidpoint<1>(),
-                                                  dim == 2 ? 16 : 8);
-      Site<dim>                           result{{}, 0.};
+      constexpr unsigned int              fine = dim == 2 ? 16 : 8;
+      static const dealii::QIterated<dim> samples(dealii::QMidpoint<1>(), fine);
+      PartInside<dim>                     result;
+      dealii::Tensor<1, dim>              moment; // about the centre
       for (unsigned int q = 0; q < samples.size(); ++q)
         {
           const dealii::Point<dim> place = place_at(samples.point(q));
           if (!shape.contains(place))
             continue;
-          result.weight += samples.weight(q);
-          result.place += samples.weight(q) * place;
+          const double sample = samples.weight(q) * volume;
+          result.volume += sample;
+          moment += sample * (place - centre);
+          result.spread +=
+            sample * symmetrize(outer_product(place - centre, place - centre));
         }
-      if (result.weight > 0)
-        result.place /= result.weight;
+      if (result.volume > 0)
+        {
+          moment /= result.volume;
+          result.centroid = centre + moment;
+          result.spread   = result.spread / result.volume -
+                          symmetrize(outer_product(moment, moment)) +
+                          spread_of_box(fine);
+        }
+      return result;
+    }
+
+
+
+    /** Several parts as one. */
+    template <int dim>
+    PartInside<dim>
+    sum_of(const std::vector<PartInside<dim>> &parts)
+    {
+      PartInside<dim>        result;
+      dealii::Tensor<1, dim> moment;
+      for (const PartInside<dim> &part : parts)
+        {
+          result.volume += part.volume;
+          moment += part.volume * part.centroid;
+        }
+      if (result.volume == 0)
+        return result;
+      result.centroid = dealii::Point<dim>(moment / result.volume);
+      for (const PartInside<dim> &part : parts)
+        {
+          const dealii::Tensor<1, dim> arm = part.centroid - result.centroid;
+          result.spread += part.volume / result.volume *
+                           (part.spread + symmetrize(outer_product(arm, arm)));
+        }
+      return result;
+    }
+
+
+
+    /**
+     * The symmetric map of the cube [-1/2, 1/2]^dim to a parallelepiped of this
+     * spread, see PartInside; of a box it is the box.
+     */
+    template <int dim>
+    dealii::Tensor<2, dim>
+    box_of_spread(const dealii::SymmetricTensor<2, dim> &spread)
+    {
+      dealii::Tensor<2, dim> result;
+      // rotations of Jacobi's, which leave what is diagonal as it is
+      for (const auto &[square, axis] :
+           eigenvectors(spread,
+                        dealii::SymmetricTensorEigenvectorMethod::jacobi))
+        result +=
+          std::sqrt(12 * std::max(0., square)) * outer_product(axis, axis);
+      return result;
+    }
+
+
+
+    /**
+     * The places of Gauss and Legendre in what of a cell is inside, whatever
+     * its shape: their box has the same centroid and second moments, so that a
+     * body that bends has its energy. Should some be beyond the cell, two along
+     * each edge, which are closer to the centroid; if even of these some are,
+     * all are drawn towards it. @p work gets each place and its volume.
+     */
+    template <int dim, class Work>
+    void
+    for_each_gauss_place(const PartInside<dim>               &inside,
+                         const std::array<unsigned int, dim> &per_edge,
+                         const Corners<dim>                  &cell,
+                         const Work                          &work)
+    {
+      const dealii::Tensor<2, dim> box = box_of_spread(inside.spread);
+
+      // The largest share, up to 1, of their distances from the centroid with
+      // which all are within the cell.
+      const auto largest_share = [&](const std::vector<Site<dim>> &sites) {
+        double share = 1;
+        for (const Site<dim> &site : sites)
+          {
+            dealii::Tensor<1, dim> arm = site.place;
+            for (int d = 0; d < dim; ++d)
+              arm[d] -= 0.5;
+            arm = box * arm;
+            for (int d = 0; d < dim; ++d)
+              {
+                const double room = arm[d] > 0 ?
+                                      cell.second[d] - inside.centroid[d] :
+                                      inside.centroid[d] - cell.first[d];
+                if (std::abs(arm[d]) * share > room)
+                  share = room / std::abs(arm[d]);
+              }
+          }
+        return share;
+      };
+
+      auto   places = sites<dim>(per_edge, true);
+      double share  = largest_share(places);
+      if (share < 1)
+        {
+          std::array<unsigned int, dim> two;
+          for (int d = 0; d < dim; ++d)
+            two[d] = std::min(2u, per_edge[d]);
+          places = sites<dim>(two, true);
+          share  = largest_share(places);
+        }
+      for (const Site<dim> &site : places)
+        {
+          dealii::Tensor<1, dim> arm = site.place;
+          for (int d = 0; d < dim; ++d)
+            arm[d] -= 0.5;
+          work(inside.centroid + share * (box * arm),
+               site.weight * inside.volume);
+        }
+    }
+
+
+
+    /**
+     * A point on the edge of its cell gives nothing to the nodes beyond, which
+     * may have no mass then and no velocity, but it is strained by them, and
+     * its stress would be lost there. However little they get, momentum over
+     * mass is right.
+     */
+    template <int dim>
+    dealii::Point<dim>
+    off_the_edges(const dealii::Point<dim>  &place,
+                  const BackgroundGrid<dim> &grid,
+                  const std::uint32_t        cell)
+    {
+      constexpr double         least    = 1e-9; // edges
+      const CellGeometry<dim> &geometry = grid.geometry[cell];
+      dealii::Point<dim>       result   = place;
+      for (int d = 0; d < dim; ++d)
+        {
+          const double xi =
+            (place[d] - geometry.origin[d]) * geometry.inverse_edge[d];
+          if (xi < least || xi > 1 - least)
+            result[d] = geometry.origin[d] + (xi < 0.5 ? least : 1 - least) /
+                                               geometry.inverse_edge[d];
+        }
       return result;
     }
 
@@ -147,7 +310,7 @@ namespace limber
                   const BackgroundGrid<dim> &grid,
                   const Work                &work)
     {
-      const auto regular = sites(body);
+      const auto regular = sites<dim>(body.points_per_cell_edge, false);
       const auto box     = body.shape->bounding_box();
       const auto touches = [&](const auto &cell) {
         for (int d = 0; d < dim; ++d)
@@ -179,14 +342,16 @@ namespace limber
 
           // with a box of their volume around them
           const auto give = [&](const dealii::Point<dim> &place,
-                                const double              share) {
+                                const double              part) {
             dealii::Tensor<2, dim> half_edges;
             for (int d = 0; d < dim; ++d)
-              half_edges[d][d] = 0.5 * edge[d] / body.points_per_cell_edge[d] *
-                                 std::pow(share * regular.size(), 1. / dim);
-            work(grid.cell_number(cell), place, share * volume, half_edges);
+              half_edges[d][d] =
+                0.5 * edge[d] / body.points_per_cell_edge[d] *
+                std::pow(part / volume * regular.size(), 1. / dim);
+            work(grid.cell_number(cell), place, part, half_edges);
           };
 
+          std::vector<PartInside<dim>> parts; // of 'cut' and 'gauss'
           for (Site<dim> site : regular)
             {
               if (random)
@@ -194,7 +359,8 @@ namespace limber
               dealii::Point<dim> place = lower;
               for (int d = 0; d < dim; ++d)
                 place[d] += site.place[d] * edge[d];
-              if (body.placement == Placement::cut)
+              if (body.placement == Placement::cut ||
+                  body.placement == Placement::gauss)
                 {
                   Corners<dim> part(place, place);
                   for (int d = 0; d < dim; ++d)
@@ -204,42 +370,25 @@ namespace limber
                       part.first[d] -= half;
                       part.second[d] += half;
                     }
-                  const Site<dim> inside = inside_of(*body.shape, part);
-                  if (inside.weight > 0)
-                    give(inside.place, inside.weight * site.weight);
+                  const auto inside = inside_of(*body.shape, part);
+                  if (inside.volume > 0)
+                    parts.push_back(inside);
                 }
               else if (body.shape->contains(place))
-                give(place, site.weight);
+                give(place, site.weight * volume);
             }
+          if (body.placement == Placement::gauss && !parts.empty())
+            for_each_gauss_place<dim>(
+              sum_of(parts),
+              body.points_per_cell_edge,
+              Corners<dim>(lower, lower + edge),
+              [&](const dealii::Point<dim> &place, const double part) {
+                give(off_the_edges(place, grid, grid.cell_number(cell)), part);
+              });
+          else
+            for (const PartInside<dim> &part : parts)
+              give(part.centroid, part.volume);
         }
-    }
-
-
-
-    /**
-     * A point on the edge of its cell gives nothing to the nodes beyond, which
-     * may have no mass then and no velocity, but it is strained by them, and
-     * its stress would be lost there. However little they get, momentum over
-     * mass is right.
-     */
-    template <int dim>
-    dealii::Point<dim>
-    off_the_edges(const dealii::Point<dim>  &place,
-                  const BackgroundGrid<dim> &grid,
-                  const std::uint32_t        cell)
-    {
-      constexpr double         least    = 1e-9; // edges
-      const CellGeometry<dim> &geometry = grid.geometry[cell];
-      dealii::Point<dim>       result   = place;
-      for (int d = 0; d < dim; ++d)
-        {
-          const double xi =
-            (place[d] - geometry.origin[d]) * geometry.inverse_edge[d];
-          if (xi < least || xi > 1 - least)
-            result[d] = geometry.origin[d] + (xi < 0.5 ? least : 1 - least) /
-                                               geometry.inverse_edge[d];
-        }
-      return result;
     }
 
 

@@ -45,7 +45,7 @@ namespace limber
 
 
 
-    /** Area and centroid within a closed line, counterclockwise. */
+    /** What is within a closed line, counterclockwise, by its triangles. */
     PartInside<2>
     enclosed_by(const std::vector<Point<2>> &outline)
     {
@@ -54,15 +54,24 @@ namespace limber
         return result;
       const Point<2> &first = outline.front();
       Tensor<1, 2>    moment;
+
+      dealii::SymmetricTensor<2, 2> second_moment;
       for (std::size_t i = 1; i + 1 < outline.size(); ++i)
         {
           const Tensor<1, 2> a = outline[i] - first, b = outline[i + 1] - first;
           const double       area = 0.5 * (a[0] * b[1] - a[1] * b[0]);
           result.volume += area;
           moment += area / 3 * (a + b);
+          for (const Tensor<1, 2> &c : {a, b, a + b})
+            second_moment += area / 12 * symmetrize(outer_product(c, c));
         }
       if (result.volume > 0)
-        result.centroid = first + moment / result.volume;
+        {
+          const Tensor<1, 2> centre = moment / result.volume;
+          result.centroid           = first + centre;
+          result.spread             = second_moment / result.volume -
+                          symmetrize(outer_product(centre, centre));
+        }
       return result;
     }
   } // namespace

@@ -53,13 +53,14 @@ namespace limber
   std::optional<PartInside<dim>>
   BoxShape<dim>::inside_of(const Corners<dim> &box) const
   {
-    PartInside<dim> result{1, {}};
+    PartInside<dim> result{1, {}, {}};
     for (unsigned int d = 0; d < dim; ++d)
       {
         const double first  = std::max(lower[d], box.first[d]);
         const double second = std::min(upper[d], box.second[d]);
         result.volume *= std::max(0., second - first);
-        result.centroid[d] = 0.5 * (first + second);
+        result.centroid[d]  = 0.5 * (first + second);
+        result.spread[d][d] = (second - first) * (second - first) / 12;
       }
     return result;
   }

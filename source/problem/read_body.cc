@@ -423,7 +423,8 @@ namespace limber
         return;
       for (const Body<dim> &body : problem.bodies)
         if (body.placement == Placement::fitted ||
-            body.placement == Placement::cut)
+            body.placement == Placement::cut ||
+            body.placement == Placement::gauss)
           problem.notes.push_back(
             "Warning: an affine 'Transfer' with linear functions is unstable "
             "where points lie near the edges of cells, as those of body " +

@@ -169,13 +169,18 @@ namespace limber
     static const Words<Placement> words = {
       {"auto",
        Placement::automatic,
-       "'regular', but for boxes and blocks of solids on cells of one size "
-       "'cut' if their faces run across the cells, or 'regular' would miss "
-       "the volume by more than 2 % (with several bodies, the faces), and "
-       "for balls, cylinders and formulas in their initial frame; "
-       "'fitted' with domains, or linear functions and contact"},
+       "'regular', but 'gauss' for boxes, blocks, balls, cylinders and "
+       "formulas in their initial frame; for boxes and blocks of solids on "
+       "cells of one size 'cut' if their faces run across the cells, or "
+       "'regular' would miss the volume by more than 2 % (with several "
+       "bodies, the faces); 'fitted' with domains, or linear functions and "
+       "contact"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
-      {"gauss", Placement::gauss, "Gauss-Legendre places, weighted masses"},
+      {"gauss",
+       Placement::gauss,
+       "Gauss-Legendre places, weighted masses; in cells that the surface "
+       "cuts, in a box of the volume, centroid and second moments of what is "
+       "inside"},
       {"jittered", Placement::jittered, "regular, moved at random"},
       {"cut",
        Placement::cut,

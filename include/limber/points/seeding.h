@@ -16,8 +16,12 @@ namespace limber
    * Placements cell by cell give a point its share of the volume of the cell,
    * and a point belongs to the body when its place lies inside the shape; with
    * 'cut' a part whose corners and centre do not agree on this has the volume
-   * and the centroid of those of its 16^2 or 8^3 sample places that do. The
-   * placement 'fitted' divides the shape itself, into parts of exact volume.
+   * and the centroid of those of its 16^2 or 8^3 sample places that do. With
+   * 'gauss' what of a cell is inside, from the same parts, has the places of
+   * Gauss and Legendre in a parallelepiped with its centroid and its second
+   * moments: volume, first and second moments of the body are those of its
+   * shape, exactly in boxes and in blocks of the plane. The placement 'fitted'
+   * divides the shape itself, into parts of exact volume.
    *
    * Placement is reproducible: jitter depends on the place of a cell, not on
    * ranks.

@@ -3,6 +3,7 @@
 #define limber_problem_shape_h
 
 #include <deal.II/base/point.h>
+#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
@@ -41,6 +42,8 @@ namespace limber
   {
     double             volume = 0; // m^dim
     dealii::Point<dim> centroid;
+    // Mean of (x - centroid) (x - centroid)^T, m^2
+    dealii::SymmetricTensor<2, dim> spread;
   };
 
 

@@ -299,7 +299,16 @@ TEST(Scenes, PlacementFollowsTheFaces)
                        "Method/Kernel=cpdi",
                        "Body block/Frame=current"}),
             Placement::fitted);
-  EXPECT_EQ(placement({"Body block/Shape=ball"}), Placement::cut);
+  // Where the body keeps its frame and meets nothing
+  const std::string initial = "Body block/Frame=initial";
+  EXPECT_EQ(placement({initial}), Placement::gauss);
+  EXPECT_EQ(placement({initial, "Body block/Shape=block", tilted}),
+            Placement::gauss);
+  EXPECT_EQ(placement({"Body block/Shape=ball", initial}), Placement::gauss);
+  EXPECT_EQ(placement({initial, "Body block/Points along edges=20, 20"}),
+            Placement::fitted);
+  EXPECT_EQ(placement({initial, "Body block/Placement=regular"}),
+            Placement::regular);
   EXPECT_EQ(placement({"Body block/Shape=ball", "Body block/Frame=current"}),
             Placement::regular);
 }
