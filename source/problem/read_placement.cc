@@ -13,6 +13,25 @@
 
 namespace limber
 {
+  template <int dim>
+  bool
+  is_upright(const Shape<dim> &shape)
+  {
+    const auto *block = dynamic_cast<const BlockShape<dim> *>(&shape);
+    if (block == nullptr)
+      return false;
+    const Corners<dim> box = block->bounding_box();
+    for (unsigned int d = 0; d < dim; ++d)
+      for (unsigned int i = 0; i < block->vertices.size(); ++i)
+        if (std::abs(block->vertices[i][d] -
+                     (i >> d & 1 ? box.second[d] : box.first[d])) >
+            1e-6 * (box.second[d] - box.first[d]))
+          return false;
+    return true;
+  }
+
+
+
   namespace
   {
     template <int dim>
@@ -100,23 +119,6 @@ namespace limber
         }
       // Decimal fractions need not meet exactly.
       return std::lround(std::clamp(std::ceil(longest - 1e-6), 1., 1e9));
-    }
-
-
-
-    /** Whether all faces lie across the axes. */
-    template <int dim>
-    bool
-    is_upright(const BlockShape<dim> &block)
-    {
-      const Corners<dim> box = block.bounding_box();
-      for (unsigned int d = 0; d < dim; ++d)
-        for (unsigned int i = 0; i < block.vertices.size(); ++i)
-          if (std::abs(block.vertices[i][d] -
-                       (i >> d & 1 ? box.second[d] : box.first[d])) >
-              1e-6 * (box.second[d] - box.first[d]))
-            return false;
-      return true;
     }
 
 
@@ -300,6 +302,10 @@ namespace limber
 
 
 
+  template bool
+  is_upright(const Shape<2> &);
+  template bool
+  is_upright(const Shape<3> &);
   template void
   read_placement(const Section &, bool, Body<2> &, Problem<2> &);
   template void

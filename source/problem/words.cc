@@ -59,8 +59,8 @@ namespace limber
     static const Words<KernelKind> words = {
       {"auto",
        KernelKind::automatic,
-       "'quadratic' if points of an elastic solid may cross cells, else "
-       "'linear'"},
+       "'quadratic' if points of a solid may cross cells, or a body that a "
+       "side holds may bend across them, else 'linear'"},
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
       {"quadratic",
        KernelKind::quadratic,

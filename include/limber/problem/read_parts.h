@@ -204,6 +204,11 @@ namespace limber
 
   // Where the points of bodies are (source/problem/read_placement.cc)
 
+  /** Whether a shape is a block whose faces all lie across the axes. */
+  template <int dim>
+  bool
+  is_upright(const Shape<dim> &shape);
+
   /**
    * How many points a body has, and where; its shape and kernel are known.
    * @p touches: there are obstacles or bodies that touch each other.
