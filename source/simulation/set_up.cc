@@ -8,6 +8,7 @@
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 #include <limber/simulation/set_up.h>
+#include <limber/time/contact.h>
 #include <limber/transfer/meeting_bodies.h>
 
 #include <algorithm>
@@ -118,7 +119,7 @@ namespace limber
     presses_at_points(const Problem<dim> &problem)
     {
       return !problem.obstacles.empty() ||
-             (is_spline(problem.grid.kernel) &&
+             (!presses_at_nodes(problem) &&
               std::any_of(problem.contacts.begin(),
                           problem.contacts.end(),
                           [](const ContactPair &pair) {

@@ -5,6 +5,7 @@
 #include <limber/time/contact_geometry.h>
 
 #include <algorithm>
+#include <utility>
 
 /**
  * @file Where bodies touch, in which direction, and whether their points do; as
@@ -12,6 +13,16 @@
  */
 namespace limber
 {
+  namespace
+  {
+    // Over which gradients of linear functions are summed: without, a block
+    // that slides on a plate across the grid lacks a sixth of its momentum,
+    // after two 5 to 6 %, after four 4 %, after five 3 %.
+    constexpr unsigned int passes_of_gradients = 4;
+  } // namespace
+
+
+
   template <int dim>
   void
   Contact<dim>::find(const double step)
@@ -292,13 +303,67 @@ namespace limber
                                 parts.nodes.view(),
                                 batches_of(group),
                                 volume_gradients.data());
+    share_gradients();
+    cut_at_sides();
+    if (at_nodes || grid.quadratics != nullptr || grid.cubics != nullptr)
+      return;
+    for (unsigned int pass = 0; pass < passes_of_gradients; ++pass)
+      {
+        smooth_gradients();
+        share_gradients();
+        cut_at_sides();
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  Contact<dim>::share_gradients()
+  {
     share(gradients_of_ranks, [this](const std::size_t t) {
       std::array<double *, 2 * dim> slots;
       for (int d = 0; d < 2 * dim; ++d)
         slots[d] = &volume_gradients[t * 2 * dim + d];
       return slots;
     });
-    // As if the material went on behind a side that holds it.
+  }
+
+
+
+  // Each node gets the sum of all that its cells see, of cells in which its
+  // body has points on this rank.
+  template <int dim>
+  void
+  Contact<dim>::smooth_gradients()
+  {
+    around.assign(volume_gradients.size(), 0.);
+    is_counted.assign(corners.size(), 0);
+    for (const MeetingBatch &batch : batches)
+      {
+        // points of a cell need not lie side by side
+        if (std::exchange(is_counted[batch.first], 1))
+          continue;
+        for (std::uint32_t from = batch.first; from < batch.last; ++from)
+          for (std::uint32_t to = batch.first; to < batch.last; ++to)
+            if (const Touch &one = touches[corners[from].slot / 2],
+                &other           = touches[corners[to].slot / 2];
+                one.a == other.a && one.b == other.b)
+              for (int d = 0; d < dim; ++d)
+                around[corners[to].slot * dim + d] +=
+                  corners[to].share * corners[from].share *
+                  volume_gradients[corners[from].slot * dim + d];
+      }
+    volume_gradients.swap(around);
+  }
+
+
+
+  // As if the material went on behind a side that holds it.
+  template <int dim>
+  void
+  Contact<dim>::cut_at_sides()
+  {
     for (std::size_t t = 0; t < touches.size(); ++t)
       if (const auto sides_of_box = parts.nodes.table.sides[touches[t].node])
         for (unsigned int side = 0; side < 2 * dim; ++side)
