@@ -5,7 +5,6 @@
 #include <limber/time/contact_geometry.h>
 
 #include <algorithm>
-#include <utility>
 
 /**
  * @file Where bodies touch, in which direction, and whether their points do; as
@@ -338,21 +337,26 @@ namespace limber
   Contact<dim>::smooth_gradients()
   {
     around.assign(volume_gradients.size(), 0.);
-    is_counted.assign(corners.size(), 0);
-    for (const MeetingBatch &batch : batches)
+    sums_by_field.resize(n_fields);
+    // by the field of the other body of the touch
+    const auto sum_of = [&](const MeetingCorner &corner) -> Vector & {
+      const Touch &touch = touches[corner.slot / 2];
+      return sums_by_field[corner.slot % 2 == 0 ? touch.b : touch.a];
+    };
+    for (const Rim &rim : rims)
       {
-        // points of a cell need not lie side by side
-        if (std::exchange(is_counted[batch.first], 1))
-          continue;
-        for (std::uint32_t from = batch.first; from < batch.last; ++from)
-          for (std::uint32_t to = batch.first; to < batch.last; ++to)
-            if (const Touch &one = touches[corners[from].slot / 2],
-                &other           = touches[corners[to].slot / 2];
-                one.a == other.a && one.b == other.b)
-              for (int d = 0; d < dim; ++d)
-                around[corners[to].slot * dim + d] +=
-                  corners[to].share * corners[from].share *
-                  volume_gradients[corners[from].slot * dim + d];
+        const auto begin = corners.begin() + rim.first,
+                   end   = corners.begin() + rim.last;
+        for (auto corner = begin; corner != end; ++corner)
+          sum_of(*corner) +=
+            corner->share *
+            vector_in<dim>(&volume_gradients[corner->slot * dim]);
+        for (auto corner = begin; corner != end; ++corner)
+          for (int d = 0; d < dim; ++d)
+            around[corner->slot * dim + d] +=
+              corner->share * sum_of(*corner)[d];
+        for (auto corner = begin; corner != end; ++corner)
+          sum_of(*corner) = 0;
       }
     volume_gradients.swap(around);
   }

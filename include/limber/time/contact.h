@@ -359,8 +359,8 @@ namespace limber
     std::vector<Group>         groups;  // of these
     std::vector<double>        volume_gradients; // in slots, m^(dim-1)
     std::vector<double>        around;           // their sums over cells
-    std::vector<char>          is_counted; // rims in these, by first corner
-    std::vector<double>        directions; // of the touches, see Extents
+    std::vector<Vector>        sums_by_field;    // over the corners of a rim
+    std::vector<double>        directions;       // of the touches, see Extents
     Extents<dim>               extents;
     std::vector<Faces<dim>>    faces;        // of the touches
     std::vector<char>          points_touch; // likewise
