@@ -409,21 +409,39 @@ namespace limber
     };
 
     // Sections that a word beside them has not chosen, as 'Linear elastic'
-    // where the material is another one, are no place to move an entry to.
+    // where the material is another one, are no place to move an entry to; but
+    // those within the section that it stands in tell what was meant.
+    const auto is_within = [&](const SectionPath &section) {
+      return section.size() > entry.section.size() &&
+             std::equal(entry.section.begin(),
+                        entry.section.end(),
+                        section.begin());
+    };
     std::vector<std::string> siblings;
     std::string              elsewhere, not_chosen;
+    bool                     is_here = false;
     for (const Declaration &declaration : declarations)
       if (declaration.section == entry.section)
         siblings.push_back(declaration.name);
-      else if (declaration.name == entry.name && elsewhere.empty())
+      else if (declaration.name == entry.name)
         {
           const std::string but = what_chooses_another(declaration.section);
           if (but.empty())
-            elsewhere = in_section(declaration.section);
-          else if (not_chosen.empty())
-            not_chosen = "It belongs to " +
-                         in_quotes(declaration.section.back()) + ", but " + but;
+            {
+              if (elsewhere.empty())
+                elsewhere = in_section(declaration.section);
+            }
+          else if (not_chosen.empty() ||
+                   (!is_here && is_within(declaration.section)))
+            {
+              not_chosen = "It belongs to " +
+                           in_quotes(declaration.section.back()) + ", but " +
+                           but;
+              is_here = is_within(declaration.section);
+            }
         }
+    if (is_here)
+      elsewhere.clear();
 
     const auto meant = nearest(entry.name, siblings);
     throw InputError(

@@ -571,7 +571,7 @@ TEST(Contact, ABlockSlidesOnAPlateAcrossTheGrid)
                                kernel,
                                dealii::Point<2>(),
                                1,
-                               {"Method/Damping time=0.01",
+                               {"Method/Blend time=0.01",
                                  "Body block/Placement=fitted",
                                  "Body plate/Placement=fitted",
                                  "Grid/Upper corner=5, 5",
