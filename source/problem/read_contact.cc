@@ -271,9 +271,9 @@ namespace limber
     if (problem.grid.kernel == KernelKind::linear && any_solids_part(problem))
       problem.notes.push_back(
         "Solids touch with linear functions: what slides across the grid may "
-        "lose some 4 % of its way, with liquids or cells of several sizes a "
-        "quarter; what is pressed creeps. 'Method/Kernel = quadratic' keeps "
-        "it within 1 %.");
+        "lose a quarter of its momentum, what rolls a tenth, and what is "
+        "pressed creeps. 'Method/Kernel = quadratic' keeps it within 1 to 3 "
+        "%.");
   }
 
 

@@ -8,7 +8,6 @@
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 #include <limber/simulation/set_up.h>
-#include <limber/time/contact.h>
 #include <limber/transfer/meeting_bodies.h>
 
 #include <algorithm>
@@ -119,7 +118,7 @@ namespace limber
     presses_at_points(const Problem<dim> &problem)
     {
       return !problem.obstacles.empty() ||
-             (!presses_at_nodes(problem) &&
+             (is_spline(problem.grid.kernel) &&
               std::any_of(problem.contacts.begin(),
                           problem.contacts.end(),
                           [](const ContactPair &pair) {

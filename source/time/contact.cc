@@ -20,33 +20,13 @@ namespace limber
 
 
   template <int dim>
-  bool
-  presses_at_nodes(const Problem<dim> &problem)
-  {
-    return problem.grid.kernel == KernelKind::linear &&
-           (problem.grid.levels > 0 ||
-            std::any_of(problem.contacts.begin(),
-                        problem.contacts.end(),
-                        [&](const ContactPair &pair) {
-                          return pair.law == ContactLaw::separate &&
-                                 (problem.bodies[pair.bodies[0]].is_liquid ||
-                                  problem.bodies[pair.bodies[1]].is_liquid);
-                        }));
-  }
-
-
-
-  template <int dim>
   Contact<dim>::Contact(const RunParts<dim> &parts)
     : parts(parts)
     , n_fields(n_nodal_fields(parts.problem))
-    , at_nodes(presses_at_nodes(parts.problem))
     , laws(n_fields * n_fields)
     , edge(n_fields)
     , reach(n_fields)
-    , impulses(parts.nodes,
-               false,
-               parts.problem.grid.kernel == KernelKind::linear && !at_nodes)
+    , impulses(parts.nodes)
     , stretches(parts.bodies.size())
     , this_rank(
         dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator))
@@ -157,10 +137,6 @@ namespace limber
   n_nodal_fields(const Problem<2> &);
   template unsigned int
   n_nodal_fields(const Problem<3> &);
-  template bool
-  presses_at_nodes(const Problem<2> &);
-  template bool
-  presses_at_nodes(const Problem<3> &);
   template class Contact<2>;
   template class Contact<3>;
 } // namespace limber

@@ -4,7 +4,6 @@
 #include <limber/time/contact_impulses.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace limber
@@ -15,26 +14,6 @@ namespace limber
     // sixteen.
     constexpr unsigned int passes_of_places = 4;
 
-    // With MUSL, what four have not brought to rest of a thousandfold mass on
-    // linear functions shakes it for good.
-    constexpr unsigned int accelerated_passes = 8;
-
-    // How far passes go beyond what they found, in parts of how much they
-    // changed it. (Beck and Teboulle 2009, eq. 4.2 and 4.3)
-    std::vector<double>
-    extrapolations(const unsigned int n_passes, const bool accelerated)
-    {
-      std::vector<double> result(n_passes, 0.);
-      double              t = 1;
-      for (unsigned int pass = 0; accelerated && pass + 1 < n_passes; ++pass)
-        {
-          const double next = 0.5 * (1 + std::sqrt(1 + 4 * t * t));
-          result[pass]      = (t - 1) / next;
-          t                 = next;
-        }
-      return result;
-    }
-
     constexpr int tag_of_places = 4711;
   } // namespace
 
@@ -42,12 +21,9 @@ namespace limber
 
   template <int dim>
   ContactImpulses<dim>::ContactImpulses(NodalFields<dim> &nodes,
-                                        const bool        leapfrogs,
-                                        const bool        accelerated)
+                                        const bool        leapfrogs)
     : nodes(nodes)
     , leapfrogs(leapfrogs)
-    , beyond(extrapolations(accelerated ? accelerated_passes : passes_of_places,
-                            accelerated))
     , seen_as(nodes.n_fields())
     , given(nodes.n_fields())
   {
@@ -126,7 +102,7 @@ namespace limber
   {
     peers    = std::move(of_places);
     at_nodes = false;
-    n_passes = static_cast<unsigned int>(beyond.size());
+    n_passes = passes_of_places;
     any_place =
       dealii::Utilities::MPI::max<unsigned int>(places.empty() ? 0 : 1,
                                                 nodes.grid.communicator) > 0;
@@ -148,7 +124,7 @@ namespace limber
     for (std::size_t p = 1; p < places.size(); ++p)
       if (seen[shares.all[shares.begin[p]].node].number ==
           seen[shares.all[shares.begin[p - 1]].node].number)
-        n_passes = static_cast<unsigned int>(beyond.size());
+        n_passes = passes_of_places;
     find_relaxation();
   }
 
@@ -402,13 +378,9 @@ namespace limber
                   along *= most / rubbing;
                 impulse = pressing * place.normal + along;
               }
-            const Vector next =
-              pass == 0 ? impulse :
-                          impulse + beyond[pass] * (impulse - place.former);
-            place.former  = impulse;
-            takes_part[p] = next != place.impulse;
-            store_at(next - place.impulse, p, given_by_place);
-            place.impulse = next;
+            takes_part[p] = impulse != place.impulse;
+            store_at(impulse - place.impulse, p, given_by_place);
+            place.impulse = impulse;
           }
         give_impulses();
       }
@@ -574,13 +546,7 @@ namespace limber
             Vector       lacking = place.least * place.normal - now;
             if (!place.sticks)
               lacking -= along_surface(lacking, place.normal);
-            if (pass == 0)
-              place.former = place.holding = 0;
-            const Vector found = place.holding + place.relaxation * lacking;
-            const Vector next  = found + beyond[pass] * (found - place.former);
-            const Vector impulse = next - place.holding;
-            place.former         = found;
-            place.holding        = next;
+            const Vector impulse = place.relaxation * lacking;
             store_at(impulse, p, given_by_place);
             if (!tell)
               continue;

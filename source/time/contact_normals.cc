@@ -12,16 +12,6 @@
  */
 namespace limber
 {
-  namespace
-  {
-    // Over which gradients of linear functions are summed: without, a block
-    // that slides on a plate across the grid lacks a sixth of its momentum,
-    // after two 5 to 6 %, after four 4 %, after five 3 %.
-    constexpr unsigned int passes_of_gradients = 4;
-  } // namespace
-
-
-
   template <int dim>
   void
   Contact<dim>::find(const double step)
@@ -302,72 +292,13 @@ namespace limber
                                 parts.nodes.view(),
                                 batches_of(group),
                                 volume_gradients.data());
-    share_gradients();
-    cut_at_sides();
-    if (at_nodes || grid.quadratics != nullptr || grid.cubics != nullptr)
-      return;
-    for (unsigned int pass = 0; pass < passes_of_gradients; ++pass)
-      {
-        smooth_gradients();
-        share_gradients();
-        cut_at_sides();
-      }
-  }
-
-
-
-  template <int dim>
-  void
-  Contact<dim>::share_gradients()
-  {
     share(gradients_of_ranks, [this](const std::size_t t) {
       std::array<double *, 2 * dim> slots;
       for (int d = 0; d < 2 * dim; ++d)
         slots[d] = &volume_gradients[t * 2 * dim + d];
       return slots;
     });
-  }
-
-
-
-  // Each node gets the sum of all that its cells see, of cells in which its
-  // body has points on this rank.
-  template <int dim>
-  void
-  Contact<dim>::smooth_gradients()
-  {
-    around.assign(volume_gradients.size(), 0.);
-    sums_by_field.resize(n_fields);
-    // by the field of the other body of the touch
-    const auto sum_of = [&](const MeetingCorner &corner) -> Vector & {
-      const Touch &touch = touches[corner.slot / 2];
-      return sums_by_field[corner.slot % 2 == 0 ? touch.b : touch.a];
-    };
-    for (const Rim &rim : rims)
-      {
-        const auto begin = corners.begin() + rim.first,
-                   end   = corners.begin() + rim.last;
-        for (auto corner = begin; corner != end; ++corner)
-          sum_of(*corner) +=
-            corner->share *
-            vector_in<dim>(&volume_gradients[corner->slot * dim]);
-        for (auto corner = begin; corner != end; ++corner)
-          for (int d = 0; d < dim; ++d)
-            around[corner->slot * dim + d] +=
-              corner->share * sum_of(*corner)[d];
-        for (auto corner = begin; corner != end; ++corner)
-          sum_of(*corner) = 0;
-      }
-    volume_gradients.swap(around);
-  }
-
-
-
-  // As if the material went on behind a side that holds it.
-  template <int dim>
-  void
-  Contact<dim>::cut_at_sides()
-  {
+    // As if the material went on behind a side that holds it.
     for (std::size_t t = 0; t < touches.size(); ++t)
       if (const auto sides_of_box = parts.nodes.table.sides[touches[t].node])
         for (unsigned int side = 0; side < 2 * dim; ++side)

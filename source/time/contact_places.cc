@@ -19,12 +19,6 @@ namespace limber
     // Steps after which one looks how much bodies are stretched: it decides
     // what points are looked at, with room for half as much again.
     constexpr unsigned int steps_of_a_stretch = 32;
-
-    // With linear functions normals jump as points enter cells, and gaps with
-    // them. To push out what that makes of them, as fast as with splines, is
-    // work on the bodies: two disks that meet gain up to a sixth of their
-    // energy.
-    constexpr double linear_expulsion = 0.1;
   } // namespace
 
 
@@ -129,23 +123,23 @@ namespace limber
   Contact<dim>::find_places(const double step)
   {
     impulses.clear();
-    if (at_nodes)
-      {
-        add_nodes();
-        return;
-      }
     with_degree(parts.nodes.view(), [&](const auto degree) {
       constexpr int n = decltype(degree)::value;
-      sides.resize(parting.size());
-      for (Sides &both : sides)
-        for (auto &side : both)
-          side.clear();
-      for (const Group &group : groups)
-        gather<n>(group);
-      tell_candidates();
-      for (std::size_t k = 0; k < parting.size(); ++k)
-        add_points<n>(parting[k], sides[k], step);
-      impulses.finish_adding(exchange_parts<n>());
+      if constexpr (n == 1)
+        add_nodes();
+      else
+        {
+          sides.resize(parting.size());
+          for (Sides &both : sides)
+            for (auto &side : both)
+              side.clear();
+          for (const Group &group : groups)
+            gather<n>(group);
+          tell_candidates();
+          for (std::size_t k = 0; k < parting.size(); ++k)
+            add_points<n>(parting[k], sides[k], step);
+          impulses.finish_adding(exchange_parts<n>());
+        }
     });
   }
 
@@ -546,10 +540,9 @@ namespace limber
           continue;
         const auto place_number =
           static_cast<std::uint32_t>(impulses.all().size());
-        auto &place  = impulses.add_place();
-        place.normal = -p.normal;
-        place.least =
-          least_growth(gap, p.reach, degree == 1 ? linear_expulsion : 1) / step;
+        auto &place    = impulses.add_place();
+        place.normal   = -p.normal;
+        place.least    = least_growth(gap, p.reach) / step;
         place.friction = law.friction;
         place.mass     = p.mass;
         add_part<degree>(p, p.reach * p.normal, 1);

@@ -17,14 +17,6 @@ namespace limber
   unsigned int
   n_nodal_fields(const Problem<dim> &problem);
 
-  /**
-   * Whether bodies press on each other at nodes (see Contact): with linear
-   * functions, where a liquid may part from another body, or with levels.
-   */
-  template <int dim>
-  bool
-  presses_at_nodes(const Problem<dim> &problem);
-
 
 
   /**
@@ -46,20 +38,17 @@ namespace limber
    * impulse that this takes acts there, on both. a is the one whose points are
    * smaller.
    *
-   * Liquids have no surface that their points could tell. With linear functions
-   * bodies of a problem in which one may part from another, or with levels,
-   * press at nodes at which both have mass, w = v_a - v_b, if the points that
-   * see them touch, min_b (x . n - R) - max_a (x . n + R) <= 0.
+   * With linear functions the velocity of what is outside its cell depends on
+   * nodes that hardly have any mass, and jumps when points enter cells. There
+   * impulses act at nodes at which both have mass, w = v_a - v_b, if the points
+   * that see them touch, min_b (x . n - R) - max_a (x . n + R) <= 0.
    *
    * What presses in the new velocity does so in every other one of the step. So
    * momentum is kept, and energy does not grow.
    *
    * Normals are those of nodes at which both bodies have mass: of -g_b, g_a and
    * g_a - g_b, with the gradient of volume g = sum V grad N of each body, the
-   * direction along which the points are furthest apart. Gradients of linear
-   * functions jump as points enter cells, and lean to one side where the face
-   * runs across the grid; their sums over the cells around are used in their
-   * place, four times.
+   * direction along which the points are furthest apart.
    *
    * Bodies of different fields that are in no pair stick together: both have
    * the velocity and the increment that one field would give them.
@@ -260,12 +249,6 @@ namespace limber
     void
     share(SharedSlots &slots, const SlotsOf &slots_of);
     void
-    share_gradients();
-    void
-    cut_at_sides();
-    void
-    smooth_gradients();
-    void
     find_gradients();
     void
     find_normals();
@@ -333,7 +316,6 @@ namespace limber
 
     const RunParts<dim> parts;
     const unsigned int  n_fields;
-    const bool          at_nodes; // presses_at_nodes()
     std::vector<Law>    laws;
     std::vector<double> edge;  // of the largest point of a field, m
     std::vector<double> reach; // the furthest of a point of a field, m
@@ -358,8 +340,6 @@ namespace limber
     std::vector<MeetingBatch>  batches; // of points in cells with a rim
     std::vector<Group>         groups;  // of these
     std::vector<double>        volume_gradients; // in slots, m^(dim-1)
-    std::vector<double>        around;           // their sums over cells
-    std::vector<Vector>        sums_by_field;    // over the corners of a rim
     std::vector<double>        directions;       // of the touches, see Extents
     Extents<dim>               extents;
     std::vector<Faces<dim>>    faces;        // of the touches

@@ -36,13 +36,12 @@ namespace limber
 
   /**
    * The least of what a gap may grow by in a step, m: it may close; of what has
-   * gone in, a tenth comes out, and no more than a fiftieth of the reach, or @p
-   * share of that.
+   * gone in, a tenth comes out, and no more than a fiftieth of the reach.
    */
   inline double
-  least_growth(const double gap, const double reach, const double share = 1)
+  least_growth(const double gap, const double reach)
   {
-    return gap > 0 ? -gap : share * std::min(-0.1 * gap, 0.02 * reach);
+    return gap > 0 ? -gap : std::min(-0.1 * gap, 0.02 * reach);
   }
 
 } // namespace limber

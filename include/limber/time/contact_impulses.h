@@ -28,10 +28,7 @@ namespace limber
    * J_p by m_p (least - w_n) / s_p with s_p = sum_i |a_pi| M_i / m_i: what is
    * the same at all places is right after one pass, and nothing overshoots.
    * All of them are found together, so that it does not matter how many places
-   * or obstacles a node sees; functions may be those of any kernel. Accelerated
-   * passes go on in the direction of the change since the one before (Beck and
-   * Teboulle 2009), which takes half as many where functions of few nodes lead
-   * from place to place.
+   * or obstacles a node sees; functions may be those of any kernel.
    *
    * Of a step, FLIP points lose by them what ContactLoss tells: with the
    * velocity b that they bring to a place, r that they give back, the increase
@@ -72,9 +69,6 @@ namespace limber
       double relaxation = 0; // m_p / s_p, kg
       bool   sticks     = false;
 
-      // Of the pass before; what the passes of hold() have given
-      Vector former, holding;
-
       // What ContactLoss wants to know: a, b or r, the new velocity; K
       Vector increase, brought, after, held;
     };
@@ -92,9 +86,7 @@ namespace limber
      * in a step strains them in the next as well: K_b is K_r of the step
      * before.
      */
-    explicit ContactImpulses(NodalFields<dim> &nodes,
-                             bool              leapfrogs   = false,
-                             bool              accelerated = false);
+    explicit ContactImpulses(NodalFields<dim> &nodes, bool leapfrogs = false);
 
     /** Adopt a changed mesh. */
     void
@@ -345,7 +337,6 @@ namespace limber
 
     NodalFields<dim>          &nodes;
     const bool                 leapfrogs;
-    const std::vector<double>  beyond; // by pass, see the passes
     std::vector<Place>         places;
     PlaceShares                shares;
     std::vector<Node>          seen;

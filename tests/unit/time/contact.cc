@@ -160,7 +160,7 @@ TEST(Contact, EqualBarsSwapTheirVelocities)
       SCOPED_TRACE(order);
       SceneRun<2>  run(two_bars, {"Method/Stress update=" + order});
       const double mass = 20, start = energy(run.totals());
-      double       first = -1, last = -1, former = 0.1;
+      double       first = -1, last = -1, former = 0.1, loss = 0;
       run.advance_to(0.4, [&]() {
         const auto   totals = run.totals();
         const double now    = totals.bodies[0].momentum[0] / mass;
@@ -172,8 +172,8 @@ TEST(Contact, EqualBarsSwapTheirVelocities)
           }
         former = now;
         EXPECT_LT(totals.momentum_error, 1e-12);
-        // it may fall by a part of what has been lost
-        EXPECT_GE(totals.contact_loss, -1e-5 * start);
+        EXPECT_GE(totals.contact_loss, loss - 1e-5 * start);
+        loss = totals.contact_loss;
       });
       const auto totals = run.totals();
       EXPECT_GT(totals.bodies[1].momentum[0] / mass,
@@ -444,42 +444,39 @@ TEST(Contact, TwoDisksBounceOffEachOther)
 
 
 
-// In any direction, with linear functions as well.
+// In any direction, with splines.
 TEST(Contact, TwoDisksBounceInAnyDirection)
 {
-  for (const std::string kernel : {"linear", "quadratic"})
-    for (const double degrees : {20., 65.})
-      {
-        SCOPED_TRACE(kernel + " " + digits(degrees));
-        const double angle = degrees * std::acos(-1.) / 180,
-                     c = std::cos(angle), s = std::sin(angle);
-        const auto at =
-          [](const double x, const double y, const std::string &separator) {
-            return digits(x) + separator + digits(y);
-          };
-        const double away = 0.0105, speed = 8.165;
-        SceneRun<2>  run(
-          two_disks,
-          {"Method/Kernel=" + kernel,
-            "Grid/Upper corner=0.06, 0.06",
-            "Grid/Cells=120, 120",
-            "Body lower/Ball/Centre=" +
-              at(0.03 - away * c, 0.03 - away * s, ", "),
-            "Body upper/Ball/Centre=" +
-              at(0.03 + away * c, 0.03 + away * s, ", "),
-            "Body lower/Initial velocity=" + at(speed * c, speed * s, "; "),
-            "Body upper/Initial velocity=" + at(-speed * c, -speed * s, "; ")});
-        const double start = energy(run.totals());
-        double       most  = 0;
-        run.advance_to(2.5e-4,
-                       [&]() { most = std::max(most, energy(run.totals())); });
-        const auto totals = run.totals();
-        RecordProperty("energy " + kernel + " " + digits(degrees),
-                       digits(energy(totals) / start));
-        EXPECT_LT(most, 1.001 * start);
-        EXPECT_GT(energy(totals), 0.99 * start);
-        EXPECT_LT(totals.momentum_error, 1e-12);
-      }
+  for (const double degrees : {20., 65.})
+    {
+      SCOPED_TRACE(digits(degrees));
+      const double angle = degrees * std::acos(-1.) / 180, c = std::cos(angle),
+                   s = std::sin(angle);
+      const auto at =
+        [](const double x, const double y, const std::string &separator) {
+          return digits(x) + separator + digits(y);
+        };
+      const double away = 0.0105, speed = 8.165;
+      SceneRun<2>  run(
+        two_disks,
+        {"Method/Kernel=quadratic",
+          "Grid/Upper corner=0.06, 0.06",
+          "Grid/Cells=120, 120",
+          "Body lower/Ball/Centre=" + at(0.03 - away * c, 0.03 - away * s, ", "),
+          "Body upper/Ball/Centre=" + at(0.03 + away * c, 0.03 + away * s, ", "),
+          "Body lower/Initial velocity=" + at(speed * c, speed * s, "; "),
+          "Body upper/Initial velocity=" + at(-speed * c, -speed * s, "; ")});
+      const double start = energy(run.totals());
+      double       most  = 0;
+      run.advance_to(2.5e-4,
+                     [&]() { most = std::max(most, energy(run.totals())); });
+      const auto totals = run.totals();
+      RecordProperty("energy " + digits(degrees),
+                     digits(energy(totals) / start));
+      EXPECT_LT(most, 1.001 * start);
+      EXPECT_GT(energy(totals), 0.99 * start);
+      EXPECT_LT(totals.momentum_error, 1e-12);
+    }
 }
 
 
@@ -490,7 +487,6 @@ namespace
   // what comes down on it, 30 degrees steep as gravity has it.
   std::vector<std::string>
   tilted(const double             degrees,
-         const std::string       &kernel,
          const dealii::Point<2>  &on_plate, // a disc, along it and across
          const double             speed,    // along it
          std::vector<std::string> settings)
@@ -514,7 +510,7 @@ namespace
     };
     const double along = 9.81 * std::sin(slope), down = 9.81 * std::cos(slope);
     for (const std::string &more :
-         {"Method/Kernel=" + kernel,
+         {"Method/Kernel=quadratic",
           "Body plate/Block/Corners=" + block(0, 0, 4, 0.5),
           "Body block/Block/Corners=" + block(0.5, 0.5, 1, 0.5),
           "Body block/Ball/Centre=" +
@@ -562,34 +558,30 @@ namespace
 // a = g (sin - mu cos), and what it bounces taken into account, as above.
 TEST(Contact, ABlockSlidesOnAPlateAcrossTheGrid)
 {
-  for (const std::string kernel : {"linear", "quadratic"})
-    for (const double degrees : {20., 45.})
-      {
-        SCOPED_TRACE(kernel + " " + digits(degrees));
-        SceneRun<2>  run(tilted_plate,
-                        tilted(degrees,
-                               kernel,
-                               dealii::Point<2>(),
-                               1,
-                               {"Method/Blend time=0.01",
-                                 "Body block/Placement=fitted",
-                                 "Body plate/Placement=fitted",
-                                 "Grid/Upper corner=5, 5",
-                                 "Grid/Cells=80, 80"}));
-        const double mass = run.totals().bodies[0].mass;
-        run.advance_to(0.5);
-        const auto   p      = run.totals().bodies[0].momentum;
-        const double angle  = degrees * std::acos(-1.) / 180;
-        const double along  = p[0] * std::cos(angle) + p[1] * std::sin(angle),
-                     across = p[1] * std::cos(angle) - p[0] * std::sin(angle),
-                     exact  = 1 + sliding_acceleration(0.3) * 0.5;
-        RecordProperty("velocity " + kernel + " " + digits(degrees),
-                       digits((along + 0.3 * across) / mass / exact));
-        EXPECT_NEAR((along + 0.3 * across) / mass,
-                    exact,
-                    (kernel == "linear" ? 0.05 : 0.02) * exact);
-        EXPECT_LT(run.totals().momentum_error, 1e-12);
-      }
+  for (const double degrees : {20., 45.})
+    {
+      SCOPED_TRACE(digits(degrees));
+      SceneRun<2>  run(tilted_plate,
+                      tilted(degrees,
+                             dealii::Point<2>(),
+                             1,
+                             {"Method/Blend time=0.01",
+                               "Body block/Placement=fitted",
+                               "Body plate/Placement=fitted",
+                               "Grid/Upper corner=5, 5",
+                               "Grid/Cells=80, 80"}));
+      const double mass = run.totals().bodies[0].mass;
+      run.advance_to(0.5);
+      const auto   p      = run.totals().bodies[0].momentum;
+      const double angle  = degrees * std::acos(-1.) / 180;
+      const double along  = p[0] * std::cos(angle) + p[1] * std::sin(angle),
+                   across = p[1] * std::cos(angle) - p[0] * std::sin(angle),
+                   exact  = 1 + sliding_acceleration(0.3) * 0.5;
+      RecordProperty("velocity " + digits(degrees),
+                     digits((along + 0.3 * across) / mass / exact));
+      EXPECT_NEAR((along + 0.3 * across) / mass, exact, 0.02 * exact);
+      EXPECT_LT(run.totals().momentum_error, 1e-12);
+    }
 }
 
 
@@ -597,32 +589,30 @@ TEST(Contact, ABlockSlidesOnAPlateAcrossTheGrid)
 // a = 2/3 g sin, as friction suffices.
 TEST(Contact, ADiscRollsDownAPlateAcrossTheGrid)
 {
-  for (const std::string kernel : {"linear", "quadratic"})
-    for (const double degrees : {0., 20.})
-      {
-        SCOPED_TRACE(kernel + " " + digits(degrees));
-        SceneRun<2>  run(tilted_plate,
-                        tilted(degrees,
-                               kernel,
-                               dealii::Point<2>(0.8, 1.0),
-                               0,
-                               {"Body block/Shape=ball",
-                                 "Body block/Ball/Radius=0.5",
-                                 "Body block/Linear elastic/Young's modulus=1e7",
-                                 "Body plate/Linear elastic/Young's modulus=1e7",
-                                 "Grid/Upper corner=5, 4",
-                                 "Grid/Cells=100, 80"}));
-        const double mass = run.totals().bodies[0].mass;
-        run.advance_to(0.6);
-        const auto   p     = run.totals().bodies[0].momentum;
-        const double angle = degrees * std::acos(-1.) / 180;
-        const double along = p[0] * std::cos(angle) + p[1] * std::sin(angle),
-                     exact = 2. / 3 * 9.81 * std::sin(slope) * 0.6;
-        RecordProperty("velocity " + kernel + " " + digits(degrees),
-                       digits(along / mass / exact));
-        EXPECT_NEAR(along / mass, exact, 0.03 * exact);
-        EXPECT_LT(run.totals().momentum_error, 1e-12);
-      }
+  for (const double degrees : {0., 20.})
+    {
+      SCOPED_TRACE(digits(degrees));
+      SceneRun<2>  run(tilted_plate,
+                      tilted(degrees,
+                             dealii::Point<2>(0.8, 1.0),
+                             0,
+                             {"Body block/Shape=ball",
+                               "Body block/Ball/Radius=0.5",
+                               "Body block/Linear elastic/Young's modulus=1e7",
+                               "Body plate/Linear elastic/Young's modulus=1e7",
+                               "Grid/Upper corner=5, 4",
+                               "Grid/Cells=100, 80"}));
+      const double mass = run.totals().bodies[0].mass;
+      run.advance_to(0.6);
+      const auto   p     = run.totals().bodies[0].momentum;
+      const double angle = degrees * std::acos(-1.) / 180;
+      const double along = p[0] * std::cos(angle) + p[1] * std::sin(angle),
+                   exact = 2. / 3 * 9.81 * std::sin(slope) * 0.6;
+      RecordProperty("velocity " + digits(degrees),
+                     digits(along / mass / exact));
+      EXPECT_NEAR(along / mass, exact, 0.03 * exact);
+      EXPECT_LT(run.totals().momentum_error, 1e-12);
+    }
 }
 
 
