@@ -110,7 +110,7 @@ namespace limber
         {
           const BodySymptoms &body  = symptoms.bodies[b];
           const std::string   start = "Body " + body.body + "/";
-          const bool averaged = problem.bodies[b].treatment != Projection::none;
+          const bool averaged = problem.bodies[b].treatment != Treatment::none;
           if (!averaged && body.pressure_scatter > 1)
             return {"locking",
                     "in cells of body '" + body.body +
@@ -150,7 +150,7 @@ namespace limber
     remedy_for_unseen_motion(const Problem<dim> &problem)
     {
       for (const Body<dim> &body : problem.bodies)
-        if (body.is_liquid && body.treatment != Projection::none &&
+        if (body.is_liquid && body.treatment != Treatment::none &&
             body.hourglass_control == 0 && !is_spline(problem.grid.kernel))
           return "Body " + body.name + "/Hourglass control = 0.2'.";
       constexpr double share = 0.05; // twenty swings in the time of the run

@@ -352,7 +352,7 @@ namespace limber
     bool
     is_projected(const MaterialBody<dim> &body)
     {
-      return body.stress->projection().kind != Projection::none;
+      return body.stress->treatment().kind != Treatment::none;
     }
 
 

@@ -46,10 +46,10 @@ namespace limber
   PointStress<dim>::compute(const MaterialBody<dim> &body)
   {
     points = body.points.view();
-    kind   = body.stress->projection().kind;
+    kind   = body.stress->treatment().kind;
     volume_ratios.resize(points.size);
     body.stress->volume_ratio(points, volume_ratios.data());
-    if (kind != Projection::none)
+    if (kind != Treatment::none)
       sum_over_cells();
     if (is_nodal())
       sum_around_nodes();
@@ -117,13 +117,13 @@ namespace limber
   PointStress<dim>::pressure(const std::size_t p) const
   {
     const std::uint32_t cell = points.cell[p];
-    if (kind == Projection::none || cell == invalid_cell)
+    if (kind == Treatment::none || cell == invalid_cell)
       return point_pressure(p);
     if (!is_nodal())
       return in_cell(cell).mean_pressure();
 
     const CellGeometry<dim> &geometry = nodes.grid.geometry[cell];
-    return NodalMean<dim, Projection::node>(nodal.data(), geometry)
+    return NodalMean<dim, Treatment::node>(nodal.data(), geometry)
       .template value<double>(natural_place(points, geometry, p));
   }
 
@@ -157,7 +157,7 @@ namespace limber
       in_cell(cell).volume;
     for (unsigned int i = 0; i < 3; ++i)
       for (unsigned int j = 0; j <= i; ++j)
-        if (i != j || kind == Projection::cell_full)
+        if (i != j || kind == Treatment::cell_full)
           result[i][j] = mean[i][j];
     return result;
   }

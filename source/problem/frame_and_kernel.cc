@@ -40,7 +40,7 @@ namespace limber
         return Hindrance{"has a stress that follows from the deformation "
                          "alone, so that no 'Initial stress' can be",
                          ", or leave 'Initial stress' empty"};
-      const Projection treatment =
+      const Treatment treatment =
         read_word(section, "Locking treatment", locking_words());
       if (!treatment_of(treatment).in_initial_frame)
         return Hindrance{
@@ -76,7 +76,7 @@ namespace limber
                          "jumps where no point crosses",
                          ", or 'Method/Kernel = linear', 'quadratic' or "
                          "'auto'"};
-      if (is_spline(kernel) && treatment == Projection::assumed_strain)
+      if (is_spline(kernel) && treatment == Treatment::assumed_strain)
         return Hindrance{"has an assumed strain with linear functions only",
                          ", or 'Method/Kernel = linear', or 'Locking treatment "
                          "= cell' or 'none'"};
@@ -99,7 +99,7 @@ namespace limber
     misfit_of_splines(const Section &section)
     {
       if (read_word(section, "Locking treatment", locking_words()) ==
-          Projection::assumed_strain)
+          Treatment::assumed_strain)
         return Misfit{"Locking treatment",
                       "splines have no hourglass modes to which it could give "
                       "a strain",

@@ -91,9 +91,9 @@ namespace limber
                "Material",
                "in which flow has no rate",
                "'Viscosity' or 'Limit friction angle' of the law to 0");
-      if (body.treatment != Projection::none &&
-          body.treatment != Projection::cell &&
-          body.treatment != Projection::assumed_strain)
+      if (body.treatment != Treatment::none &&
+          body.treatment != Treatment::cell &&
+          body.treatment != Treatment::assumed_strain)
         refuse(section,
                "Locking treatment",
                "whose tangent knows 'assumed strain', 'cell' and 'none' alone",

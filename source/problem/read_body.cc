@@ -189,10 +189,10 @@ namespace limber
      */
     template <int dim>
     bool
-    needs_hourglass_control(const Projection treatment, const bool fluid)
+    needs_hourglass_control(const Treatment treatment, const bool fluid)
     {
-      const Treatment &row = treatment_of(treatment);
-      if (treatment == Projection::none)
+      const TreatmentRow &row = treatment_of(treatment);
+      if (treatment == Treatment::none)
         return false;
       return fluid || (dim == 2 ? row.weak_in_2d : row.weak_in_3d);
     }
@@ -210,7 +210,7 @@ namespace limber
 
     /** The treatment for a material; says in the log what and why. */
     template <int dim>
-    Projection
+    Treatment
     automatic_treatment(const Body<dim> &body,
                         const bool       fluid,
                         Problem<dim>    &problem)
@@ -220,29 +220,29 @@ namespace limber
       const bool   soft   = moduli.bulk <= large_moduli_ratio * moduli.shear;
       struct Choice
       {
-        Projection  kind;
+        Treatment   kind;
         const char *reason;
       };
       const Choice choice =
         fluid ?
-          Choice{Projection::cell,
+          Choice{Treatment::cell,
                  "'cell', as a liquid resists volume changes only."} :
         !soft && is_solved_by_newton(problem.method.integration) ?
-          Choice{Projection::cell,
+          Choice{Treatment::cell,
                  "'cell', which does not lock in volume, and whose pressures "
                  "are solved for as well where the system is large."} :
         !linear && soft ?
-          Choice{Projection::none,
+          Choice{Treatment::none,
                  "'none', as smooth functions do not lock at this "
                  "Poisson's ratio."} :
         !linear && body.frame == Frame::initial ?
-          Choice{Projection::cell,
+          Choice{Treatment::cell,
                  "'cell', which does not lock in volume, and nothing "
                  "crosses cells."} :
-        !linear ? Choice{Projection::node,
+        !linear ? Choice{Treatment::node,
                          "'node', which does not lock in volume and does not "
                          "jump where points cross cells."} :
-                  Choice{Projection::assumed_strain,
+                  Choice{Treatment::assumed_strain,
                          "'assumed strain', which neither locks in volume nor "
                          "in bending and leaves no motion of a cell without "
                          "resistance."};
@@ -272,7 +272,7 @@ namespace limber
 
       if (body.history != HistoryTreatment::keep)
         {
-          if (body.treatment == Projection::none)
+          if (body.treatment == Treatment::none)
             refuse("History",
                    "needs the mean of a cell, which " + treatment +
                      " does not form",
@@ -337,7 +337,7 @@ namespace limber
     {
       const bool fluid = body.is_liquid;
       body.treatment = read_word(section, "Locking treatment", locking_words());
-      if (body.treatment == Projection::automatic)
+      if (body.treatment == Treatment::automatic)
         body.treatment = automatic_treatment(body, fluid, problem);
       body.hourglass =
         read_word(section, "Hourglass response", hourglass_words());
@@ -352,7 +352,7 @@ namespace limber
             needs_hourglass_control<dim>(body.treatment, fluid) ?
           0.2 :
           0;
-      if (body.hourglass_control > 0 && body.treatment == Projection::none)
+      if (body.hourglass_control > 0 && body.treatment == Treatment::none)
         throw InputError(
           "The hourglass control " + section.text("Hourglass control") +
           " in " + section.where("Hourglass control") +

@@ -131,7 +131,7 @@ namespace limber
           {
             const Section     section = root.subsection("Body " + body.name);
             const std::string of_body = " of body " + in_quotes(body.name);
-            if (body.treatment != Projection::cell)
+            if (body.treatment != Treatment::cell)
               return "the locking treatment" + of_body + " is not 'cell'";
             if (body.history != HistoryTreatment::keep)
               return "the history" + of_body + " is not kept";
@@ -259,7 +259,7 @@ namespace limber
     has_pressure_of_cells(const Section &section, const Body<dim> &body)
     {
       return read_word(section, "Material", law_words()).is_elastic &&
-             body.treatment == Projection::cell &&
+             body.treatment == Treatment::cell &&
              body.frame == Frame::current &&
              body.history == HistoryTreatment::keep;
     }
@@ -271,7 +271,7 @@ namespace limber
     void
     check_liquid(const Section &section, const Body<dim> &body)
     {
-      if (body.treatment != Projection::cell)
+      if (body.treatment != Treatment::cell)
         refuse("the locking treatment " +
                  in_quotes(section.text("Locking treatment")) + " in " +
                  section.where("Locking treatment") +

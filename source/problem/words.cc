@@ -250,12 +250,12 @@ namespace limber
 
 
 
-  const Words<Projection> &
+  const Words<Treatment> &
   locking_words()
   {
-    static const Words<Projection> words = []() {
-      Words<Projection> result;
-      for (const Treatment &treatment : treatments)
+    static const Words<Treatment> words = []() {
+      Words<Treatment> result;
+      for (const TreatmentRow &treatment : treatments)
         result.push_back({treatment.word, treatment.kind, treatment.text});
       return result;
     }();

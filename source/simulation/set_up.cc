@@ -314,7 +314,7 @@ namespace limber
       });
     for (auto &body : bodies)
       {
-        const Projection kind = body->stress->projection().kind;
+        const Treatment kind = body->stress->treatment().kind;
         if (is_for_solids(problem.grid.kernel) && !body->description.is_liquid)
           {
             if (averages_volume_in_cells(kind))

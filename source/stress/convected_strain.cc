@@ -10,15 +10,15 @@ namespace limber
   strain_domains(const PointView<dim> &points,
                  const GridView<dim>  &grid,
                  const CellSums<dim> *,
-                 const StressSweep      &what,
-                 const StrainProjection &projection,
-                 const PackStrain<dim>  &law,
-                 PackFindings<dim>      &found)
+                 const StressSweep     &what,
+                 const StrainTreatment &treatment,
+                 const PackStrain<dim> &law,
+                 PackFindings<dim>     &found)
   {
-    using Number          = PointPack<dim>;
-    using Layout          = NodeLayout<dim>;
-    const Projection kind = projection.kind;
-    check_projection_of_domains(kind);
+    using Number         = PointPack<dim>;
+    using Layout         = NodeLayout<dim>;
+    const Treatment kind = treatment.kind;
+    check_treatment_of_domains(kind);
     VelocityFindings<dim> taken;
     Number                displacement{};
     for_each_batch(points, [&](const CellBatch &batch) {
@@ -81,7 +81,7 @@ namespace limber
                  const GridView<2> &,
                  const CellSums<2> *,
                  const StressSweep &,
-                 const StrainProjection &,
+                 const StrainTreatment &,
                  const PackStrain<2> &,
                  PackFindings<2> &);
   template StressSummary
@@ -89,7 +89,7 @@ namespace limber
                  const GridView<3> &,
                  const CellSums<3> *,
                  const StressSweep &,
-                 const StrainProjection &,
+                 const StrainTreatment &,
                  const PackStrain<3> &,
                  PackFindings<3> &);
 } // namespace limber

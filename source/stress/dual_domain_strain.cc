@@ -14,7 +14,7 @@ namespace limber
     strain_dual_domain(const PointView<dim>  &points,
                        const GridView<dim>   &grid,
                        const StressSweep     &what,
-                       const Projection       kind,
+                       const Treatment        kind,
                        const PackStrain<dim> &law,
                        PackFindings<dim>     &found)
     {
@@ -68,21 +68,21 @@ namespace limber
   strain_by_dual_domain(const PointView<dim> &points,
                         const GridView<dim>  &grid,
                         const CellSums<dim> *,
-                        const StressSweep      &what,
-                        const StrainProjection &projection,
-                        const PackStrain<dim>  &law,
-                        PackFindings<dim>      &found)
+                        const StressSweep     &what,
+                        const StrainTreatment &treatment,
+                        const PackStrain<dim> &law,
+                        PackFindings<dim>     &found)
   {
-    const Projection kind = projection.kind;
-    const auto       with = [&](const auto averaged) {
+    const Treatment kind = treatment.kind;
+    const auto      with = [&](const auto averaged) {
       return what.remapped ? strain_dual_domain<dim, averaged(), dim>(
                                points, grid, what, kind, law, found) :
-                                   strain_dual_domain<dim, averaged(), 0>(
+                                  strain_dual_domain<dim, averaged(), 0>(
                                points, grid, what, kind, law, found);
     };
-    check_projection_of_domains(kind);
-    return kind == Projection::none ? with(std::false_type()) :
-                                      with(std::true_type());
+    check_treatment_of_domains(kind);
+    return kind == Treatment::none ? with(std::false_type()) :
+                                     with(std::true_type());
   }
 
 
@@ -92,7 +92,7 @@ namespace limber
                         const GridView<2> &,
                         const CellSums<2> *,
                         const StressSweep &,
-                        const StrainProjection &,
+                        const StrainTreatment &,
                         const PackStrain<2> &,
                         PackFindings<2> &);
   template StressSummary
@@ -100,7 +100,7 @@ namespace limber
                         const GridView<3> &,
                         const CellSums<3> *,
                         const StressSweep &,
-                        const StrainProjection &,
+                        const StrainTreatment &,
                         const PackStrain<3> &,
                         PackFindings<3> &);
 } // namespace limber

@@ -7,15 +7,15 @@ namespace limber
 {
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_linear_sweep(const AnyLaw           &any,
-                    const StrainProjection &projection,
-                    const Frame             frame)
+  make_linear_sweep(const AnyLaw          &any,
+                    const StrainTreatment &treatment,
+                    const Frame            frame)
   {
     return std::visit(
       [&](const auto &law) {
         return frame == Frame::initial ?
-                 make_initial_frame_sweep<Linear<dim>>(law, projection) :
-                 make_sweep<Linear<dim>>(law, projection);
+                 make_initial_frame_sweep<Linear<dim>>(law, treatment) :
+                 make_sweep<Linear<dim>>(law, treatment);
       },
       any);
   }
@@ -23,7 +23,7 @@ namespace limber
 
 
   template std::unique_ptr<const StressUpdate<2>>
-  make_linear_sweep(const AnyLaw &, const StrainProjection &, Frame);
+  make_linear_sweep(const AnyLaw &, const StrainTreatment &, Frame);
   template std::unique_ptr<const StressUpdate<3>>
-  make_linear_sweep(const AnyLaw &, const StrainProjection &, Frame);
+  make_linear_sweep(const AnyLaw &, const StrainTreatment &, Frame);
 } // namespace limber

@@ -14,10 +14,10 @@ namespace limber
       using Motion = typename PackStrain<dim>::Motion;
 
     public:
-      LawOnPacks(const Law              &law,
-                 const StrainProjection &projection,
-                 const PackSweep<dim>   &sweep)
-        : AveragedLaw<dim, Law>(law, projection)
+      LawOnPacks(const Law             &law,
+                 const StrainTreatment &treatment,
+                 const PackSweep<dim>  &sweep)
+        : AveragedLaw<dim, Law>(law, treatment)
         , sweep(sweep)
         , measure_waves(!law.has_constant_wave_speed())
       {}
@@ -30,7 +30,7 @@ namespace limber
       {
         PackFindings<dim>   found;
         const StressSummary moved = sweep.strain(
-          points, grid, sums, what, this->strain_projection, *this, found);
+          points, grid, sums, what, this->strain_treatment, *this, found);
         StressSummary result = this->summary(found, measure_waves);
         result.displacement  = moved.displacement;
         result.speed_squared = moved.speed_squared;
@@ -76,14 +76,14 @@ namespace limber
 
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_pack_sweep(const AnyLaw           &any,
-                  const StrainProjection &projection,
-                  const PackSweep<dim>   &sweep)
+  make_pack_sweep(const AnyLaw          &any,
+                  const StrainTreatment &treatment,
+                  const PackSweep<dim>  &sweep)
   {
     return std::visit(
       [&](const auto &law) -> std::unique_ptr<const StressUpdate<dim>> {
         using Law = std::decay_t<decltype(law)>;
-        return std::make_unique<LawOnPacks<dim, Law>>(law, projection, sweep);
+        return std::make_unique<LawOnPacks<dim, Law>>(law, treatment, sweep);
       },
       any);
   }
@@ -92,10 +92,10 @@ namespace limber
 
   template std::unique_ptr<const StressUpdate<2>>
   make_pack_sweep(const AnyLaw &,
-                  const StrainProjection &,
+                  const StrainTreatment &,
                   const PackSweep<2> &);
   template std::unique_ptr<const StressUpdate<3>>
   make_pack_sweep(const AnyLaw &,
-                  const StrainProjection &,
+                  const StrainTreatment &,
                   const PackSweep<3> &);
 } // namespace limber

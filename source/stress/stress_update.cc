@@ -2,7 +2,7 @@
 #include <limber/stress/convected_sweep.h>
 #include <limber/stress/dual_domain_sweep.h>
 #include <limber/stress/pack_sweep.h>
-#include <limber/stress/strain_projection.h>
+#include <limber/stress/strain_treatment.h>
 #include <limber/stress/sweeps.h>
 
 #include <stdexcept>
@@ -13,13 +13,13 @@ namespace limber
   {
     /** Without shear stress there is no more to project than the pressure. */
     template <class Law>
-    Projection
-    projection_for(const Projection kind)
+    Treatment
+    treatment_for(const Treatment kind)
     {
-      if (Law::has_deviator || kind == Projection::none ||
-          kind == Projection::automatic)
+      if (Law::has_deviator || kind == Treatment::none ||
+          kind == Treatment::automatic)
         return kind;
-      return averages_around_nodes(kind) ? Projection::node : Projection::cell;
+      return averages_around_nodes(kind) ? Treatment::node : Treatment::cell;
     }
   } // namespace
 
@@ -29,7 +29,7 @@ namespace limber
   std::unique_ptr<const StressUpdate<dim>>
   make_stress_update(const std::string         &name,
                      const std::vector<double> &values,
-                     const Projection           kind,
+                     const Treatment            kind,
                      const HourglassResponse    response,
                      const Frame                frame,
                      const KernelKind           kernel)
@@ -46,20 +46,20 @@ namespace limber
       if (!Law::accepts(own))
         return;
       const Law  law(own);
-      const auto projection =
-        strain_projection(law, projection_for<Law>(kind), response);
+      const auto treatment =
+        strain_treatment(law, treatment_for<Law>(kind), response);
       if (kernel == KernelKind::quadratic)
-        result = make_quadratic_sweep<dim>(law, projection, frame);
+        result = make_quadratic_sweep<dim>(law, treatment, frame);
       else if (kernel == KernelKind::cubic)
-        result = make_cubic_sweep<dim>(law, projection, frame);
+        result = make_cubic_sweep<dim>(law, treatment, frame);
       else if (frame == Frame::initial || kernel == KernelKind::linear)
-        result = make_linear_sweep<dim>(law, projection, frame);
+        result = make_linear_sweep<dim>(law, treatment, frame);
       else if (kernel == KernelKind::ddmp)
         result =
-          make_pack_sweep<dim>(law, projection, {strain_by_dual_domain<dim>});
+          make_pack_sweep<dim>(law, treatment, {strain_by_dual_domain<dim>});
       else
         result =
-          make_pack_sweep<dim>(law, projection, {strain_domains<dim>, true});
+          make_pack_sweep<dim>(law, treatment, {strain_domains<dim>, true});
     });
     if (!result)
       throw std::logic_error("no law " + name);
@@ -71,14 +71,14 @@ namespace limber
   template std::unique_ptr<const StressUpdate<2>>
   make_stress_update(const std::string &,
                      const std::vector<double> &,
-                     Projection,
+                     Treatment,
                      HourglassResponse,
                      Frame,
                      KernelKind);
   template std::unique_ptr<const StressUpdate<3>>
   make_stress_update(const std::string &,
                      const std::vector<double> &,
-                     Projection,
+                     Treatment,
                      HourglassResponse,
                      Frame,
                      KernelKind);

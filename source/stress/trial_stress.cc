@@ -25,10 +25,10 @@ namespace limber
       using Work                    = typename TrialStress<dim>::Work;
 
     public:
-      LawTrialStress(const Law              &law,
-                     const StrainProjection &projection,
-                     const Frame             frame)
-        : strain(law, projection, frame)
+      LawTrialStress(const Law             &law,
+                     const StrainTreatment &treatment,
+                     const Frame            frame)
+        : strain(law, treatment, frame)
         , tangent(strain)
       {}
 
@@ -265,13 +265,13 @@ namespace limber
   std::unique_ptr<const TrialStress<dim>>
   make_trial_stress(const std::string         &name,
                     const std::vector<double> &values,
-                    const Projection           kind,
+                    const Treatment            kind,
                     const HourglassResponse    response,
                     const Frame                frame)
   {
-    if (kind != Projection::none && kind != Projection::cell &&
-        kind != Projection::assumed_strain)
-      throw std::logic_error("no tangent of this projection");
+    if (kind != Treatment::none && kind != Treatment::cell &&
+        kind != Treatment::assumed_strain)
+      throw std::logic_error("no tangent of this treatment");
     std::unique_ptr<const TrialStress<dim>> result;
     for_each_law([&](auto *const candidate) {
       using Law = std::remove_pointer_t<decltype(candidate)>;
@@ -290,7 +290,7 @@ namespace limber
               const Law candidate_law(own);
               result = std::make_unique<LawTrialStress<dim, Law>>(
                 candidate_law,
-                strain_projection(candidate_law, kind, response),
+                strain_treatment(candidate_law, kind, response),
                 frame);
             }
         }
@@ -305,13 +305,13 @@ namespace limber
   template std::unique_ptr<const TrialStress<2>>
   make_trial_stress(const std::string &,
                     const std::vector<double> &,
-                    Projection,
+                    Treatment,
                     HourglassResponse,
                     Frame);
   template std::unique_ptr<const TrialStress<3>>
   make_trial_stress(const std::string &,
                     const std::vector<double> &,
-                    Projection,
+                    Treatment,
                     HourglassResponse,
                     Frame);
 } // namespace limber

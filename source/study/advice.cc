@@ -181,11 +181,11 @@ namespace limber
                      const double                error,
                      std::vector<Advice>        &advice)
     {
-      if (body.treatment == Projection::none)
+      if (body.treatment == Treatment::none)
         return;
       Advice found = without_treatment(grid, body, error);
       if (found.text.empty() && body.law == "newtonian fluid" &&
-          body.material[2] == 0 && body.treatment != Projection::cell)
+          body.material[2] == 0 && body.treatment != Treatment::cell)
         {
           found.text = "Body '" + body.name +
                        "': an inviscid fluid bears no shear stress, so that "

@@ -93,7 +93,7 @@ namespace limber
         what.force =
           with_force && (what.pressure || body->stress->has_deviator());
         what.inverse_density    = 1 / body->stress->density();
-        what.projection         = body->stress->projection();
+        what.treatment          = body->stress->treatment();
         what.projected_pressure = projected(*body);
         what.volume_shares      = shares_of(*body);
         const auto sums         = sums_of(*body);

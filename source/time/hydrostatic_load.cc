@@ -20,7 +20,7 @@ namespace limber
       return;
     for (const auto &body : bodies)
       if (body->cell_sums && body->description.is_liquid &&
-          body->stress->projection().kind == Projection::cell)
+          body->stress->treatment().kind == Treatment::cell)
         liquids.push_back(body.get());
       else if (body->cell_sums)
         others.push_back(body.get());

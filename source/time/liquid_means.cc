@@ -32,7 +32,7 @@ namespace limber
         {
           Group &group = by_field[body->description.nodal_field];
           if (body->description.is_liquid &&
-              body->stress->projection().kind == Projection::cell)
+              body->stress->treatment().kind == Treatment::cell)
             group.liquids.push_back(body.get());
           else
             group.solids.push_back(body.get());

@@ -84,7 +84,7 @@ namespace limber
             if constexpr (force)
               {
                 const DomainMean<dim> projected_pressure(
-                  what.projection.kind,
+                  what.treatment.kind,
                   what.projected_pressure,
                   cell,
                   batch.cell);
@@ -116,7 +116,7 @@ namespace limber
                   const GridView<dim>  &grid,
                   const GiveToGrid     &what)
   {
-    check_projection_of_domains(what.projection.kind);
+    check_treatment_of_domains(what.treatment.kind);
     if (!what.force)
       return what.momentum ? give<dim, true, false>(points, grid, what) : 0;
     return what.momentum ? give<dim, true, true>(points, grid, what) :

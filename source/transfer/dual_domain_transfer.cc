@@ -139,7 +139,7 @@ namespace limber
     {
       return for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim>                  &cell = grid.cells[batch.cell];
-        const DomainMean<dim>                     pressure(what.projection.kind,
+        const DomainMean<dim>                     pressure(what.treatment.kind,
                                        what.projected_pressure,
                                        cell,
                                        batch.cell);
@@ -189,14 +189,14 @@ namespace limber
                         const GridView<dim>  &grid,
                         const GiveToGrid     &what)
   {
-    check_projection_of_domains(what.projection.kind);
+    check_treatment_of_domains(what.treatment.kind);
     const auto with = [&](const auto averaged) {
       return points.deviator[0] != nullptr ?
                give_stress<dim, averaged(), true>(points, grid, what) :
                give_stress<dim, averaged(), false>(points, grid, what);
     };
-    return what.projection.kind == Projection::none ? with(std::false_type()) :
-                                                      with(std::true_type());
+    return what.treatment.kind == Treatment::none ? with(std::false_type()) :
+                                                    with(std::true_type());
   }
 
 

@@ -28,7 +28,7 @@ namespace limber
 
 
 
-    template <Projection kind, bool deviator>
+    template <Treatment kind, bool deviator>
     struct StressForce
     {
       static constexpr bool any = true;
@@ -44,7 +44,7 @@ namespace limber
         const CellMeans<Linear<dim>> means(sums, batch.cell);
         const NodalMean<dim, kind>   nodal(what.projected_pressure, cell);
         StressOperator<dim, kind, deviator> stress(cell,
-                                                   what.projection,
+                                                   what.treatment,
                                                    means,
                                                    nodal);
         constexpr std::size_t               width = pack_width<PointPack<dim>>;
@@ -60,7 +60,7 @@ namespace limber
         for (std::size_t p = batch.begin + width; rarely(p < batch.end);
              p += width)
           add(std::false_type(), p);
-        if constexpr (kind == Projection::cell)
+        if constexpr (kind == Treatment::cell)
           {
             if (!what.pressure)
               stress.scale_pressure(0);
@@ -123,40 +123,40 @@ namespace limber
 
     template <int dim, bool deviator>
     std::size_t
-    choose_projection(const PointView<dim> &points,
-                      const GridView<dim>  &grid,
-                      const GiveToGrid     &what,
-                      const CellSums<dim>  *sums)
+    choose_treatment(const PointView<dim> &points,
+                     const GridView<dim>  &grid,
+                     const GiveToGrid     &what,
+                     const CellSums<dim>  *sums)
     {
-      switch (what.projection.kind)
+      switch (what.treatment.kind)
         {
-          case Projection::automatic: // has been chosen long before
-          case Projection::none:
-            return choose_sums<dim, StressForce<Projection::none, deviator>>(
+          case Treatment::automatic: // has been chosen long before
+          case Treatment::none:
+            return choose_sums<dim, StressForce<Treatment::none, deviator>>(
               points, grid, what, sums);
-          case Projection::cell:
-            return choose_sums<dim, StressForce<Projection::cell, deviator>>(
+          case Treatment::cell:
+            return choose_sums<dim, StressForce<Treatment::cell, deviator>>(
               points, grid, what, sums);
-          case Projection::cell_shear:
+          case Treatment::cell_shear:
             return choose_sums<dim,
-                               StressForce<Projection::cell_shear, deviator>>(
+                               StressForce<Treatment::cell_shear, deviator>>(
               points, grid, what, sums);
-          case Projection::cell_full:
+          case Treatment::cell_full:
             return choose_sums<dim,
-                               StressForce<Projection::cell_full, deviator>>(
+                               StressForce<Treatment::cell_full, deviator>>(
               points, grid, what, sums);
-          case Projection::assumed_strain:
+          case Treatment::assumed_strain:
             return choose_sums<
               dim,
-              StressForce<Projection::assumed_strain, deviator>>(points,
-                                                                 grid,
-                                                                 what,
-                                                                 sums);
-          case Projection::node:
-            return choose_sums<dim, StressForce<Projection::node, deviator>>(
+              StressForce<Treatment::assumed_strain, deviator>>(points,
+                                                                grid,
+                                                                what,
+                                                                sums);
+          case Treatment::node:
+            return choose_sums<dim, StressForce<Treatment::node, deviator>>(
               points, grid, what, sums);
-          case Projection::hybrid:
-            return choose_sums<dim, StressForce<Projection::hybrid, deviator>>(
+          case Treatment::hybrid:
+            return choose_sums<dim, StressForce<Treatment::hybrid, deviator>>(
               points, grid, what, sums);
         }
       return 0;
@@ -189,8 +189,8 @@ namespace limber
         return stress_to_dual_domain(points, grid, what);
       }
     return points.deviator[0] != nullptr ?
-             choose_projection<dim, true>(points, grid, what, sums) :
-             choose_projection<dim, false>(points, grid, what, sums);
+             choose_treatment<dim, true>(points, grid, what, sums) :
+             choose_treatment<dim, false>(points, grid, what, sums);
   }
 
 

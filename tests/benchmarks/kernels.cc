@@ -158,7 +158,7 @@ namespace
     GiveToGrid give;
     give.affine          = apic;
     give.inverse_density = 1e-3;
-    give.projection      = bench.body.stress->projection();
+    give.treatment       = bench.body.stress->treatment();
     const auto label = "points to grid, " + treatment + (apic ? ", apic" : "");
     bench.measure(
       label.c_str(),

@@ -3,7 +3,7 @@
 #define limber_interpolation_assumed_deformation_h
 
 #include <limber/interpolation/pulled_back_stress.h>
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 
 /**
  * @file The assumed strain in the frame of the initial configuration. The law
@@ -41,9 +41,9 @@ namespace limber
     using Matrix = SmallMatrix<dim, Number>;
     using Mean   = SmallMatrix<dim, double>;
 
-    explicit AssumedDeformation(const StrainProjection &projection)
-      : own(dim == 2 ? projection.own : projection.trilinear_own)
-      , mate(dim == 2 ? projection.mate : projection.trilinear_mate)
+    explicit AssumedDeformation(const StrainTreatment &treatment)
+      : own(dim == 2 ? treatment.own : treatment.trilinear_own)
+      , mate(dim == 2 ? treatment.mate : treatment.trilinear_mate)
     {
       set_zero(sums);
     }

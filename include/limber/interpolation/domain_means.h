@@ -69,31 +69,31 @@ namespace limber
 
   /** Those that points with domains have; std::logic_error for the others. */
   inline void
-  check_projection_of_domains(const Projection kind)
+  check_treatment_of_domains(const Treatment kind)
   {
-    if (kind != Projection::none && kind != Projection::cell &&
-        kind != Projection::node)
-      throw std::logic_error("no such projection with domains");
+    if (kind != Treatment::none && kind != Treatment::cell &&
+        kind != Treatment::node)
+      throw std::logic_error("no such treatment with domains");
   }
 
 
 
   /**
-   * The mean within a cell that a projection asks for: none, over its points,
+   * The mean within a cell that a treatment asks for: none, over its points,
    * or around its nodes. Which is asked once per batch, and whether there is
    * one once per pack of convected domains, whose functions outweigh it by far:
-   * compiled for each projection they took half as long again.
+   * compiled for each treatment they took half as long again.
    */
   template <int dim>
   class DomainMean
   {
   public:
     /** With the @p records of the means, which none needs. */
-    DomainMean(const Projection         kind,
+    DomainMean(const Treatment          kind,
                const double *const      records,
                const CellGeometry<dim> &geometry,
                const std::uint32_t      cell)
-      : averaged(kind != Projection::none)
+      : averaged(kind != Treatment::none)
     {
       constexpr auto value = NodalMeanLayout::value;
       if (averages_around_nodes(kind))

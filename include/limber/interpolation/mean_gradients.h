@@ -10,7 +10,7 @@ namespace limber
   /**
    * The mean over the points of a body in a cell of the gradients of the linear
    * functions, <grad N_a> for the corners a, 1/m: the row of the mean
-   * divergence, whose transpose gives a mean pressure to the nodes (Projection
+   * divergence, whose transpose gives a mean pressure to the nodes (Treatment
    * `cell` in strain_operator.h), node by node.
    */
   template <int dim>

@@ -3,7 +3,7 @@
 #define limber_interpolation_nodal_means_h
 
 #include <limber/interpolation/linear.h>
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 
 /**
  * @file The projection S of a quantity q of the points of a body on continuous
@@ -68,10 +68,10 @@ namespace limber
 
 
   /**
-   * S q within a cell, where a projection asks for it. Empty for others, who
+   * S q within a cell, where a treatment asks for it. Empty for others, who
    * have no records.
    */
-  template <int dim, Projection kind>
+  template <int dim, Treatment kind>
   class NodalMean
   {
   public:

@@ -5,10 +5,10 @@
 #include <limber/interpolation/cell_means.h>
 #include <limber/interpolation/nodal_means.h>
 #include <limber/materials/law.h>
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 
 /**
- * @file The strain operator B of each projection and its transpose. B takes
+ * @file The strain operator B of each treatment and its transpose. B takes
  * the velocities of the nodes of a cell to the rate of deformation at the
  * points of a body in it; its transpose takes their stresses to forces on the
  * nodes. They stand side by side because a treatment is consistent (conserves
@@ -45,15 +45,15 @@ namespace limber
 {
   /** Whether points get another shear than their own. */
   inline constexpr bool
-  replaces_shear(const Projection kind)
+  replaces_shear(const Treatment kind)
   {
-    return averages_shear_in_cells(kind) || kind == Projection::assumed_strain;
+    return averages_shear_in_cells(kind) || kind == Treatment::assumed_strain;
   }
 
 
 
   /** B of a cell for one velocity field, times the step. */
-  template <class Basis, Projection kind, class Coefficients>
+  template <class Basis, Treatment kind, class Coefficients>
   class StrainOperator
   {
   public:
@@ -68,7 +68,7 @@ namespace limber
                    const CellGeometry<dim>    &cell,
                    const CellMeans<Basis>     &means,
                    const NodalMean<dim, kind> &nodal,
-                   const StrainProjection     &projection,
+                   const StrainTreatment      &treatment,
                    const double                step)
       : velocity(velocity)
       , nodal(nodal)
@@ -77,9 +77,9 @@ namespace limber
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         scale[d] = step * cell.inverse_edge[d];
-      if constexpr (kind == Projection::none || kind == Projection::node)
+      if constexpr (kind == Treatment::none || kind == Treatment::node)
         return;
-      else if constexpr (kind == Projection::cell)
+      else if constexpr (kind == Treatment::cell)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           divergence += scale[d] * means.derivative(velocity(d), d);
@@ -94,8 +94,8 @@ namespace limber
 #pragma GCC unroll 8
             for (int d = 0; d < dim; ++d)
               divergence += mean_gradient[d][lane + d];
-          if constexpr (kind == Projection::assumed_strain)
-            set_hourglass(means, projection);
+          if constexpr (kind == Treatment::assumed_strain)
+            set_hourglass(means, treatment);
         }
     }
 
@@ -120,14 +120,14 @@ namespace limber
       if constexpr (replaces_shear(kind))
         {
           [[maybe_unused]] std::array<Number, dim> deviation;
-          if constexpr (kind == Projection::assumed_strain)
+          if constexpr (kind == Treatment::assumed_strain)
 #pragma GCC unroll 8
             for (int d = 0; d < dim; ++d)
               deviation[d] = xi[d] - centroid[d];
 #pragma GCC unroll 8
           for (int d = 0; d < dim; ++d)
             {
-              if constexpr (kind == Projection::cell_full)
+              if constexpr (kind == Treatment::cell_full)
                 motion.gradient[d][d] =
                   broadcast<Number>(mean_gradient[d][lane + d]);
 #pragma GCC unroll 8
@@ -136,7 +136,7 @@ namespace limber
                   Number shear =
                     broadcast<Number>(0.5 * (mean_gradient[d][lane + e] +
                                              mean_gradient[e][lane + d]));
-                  if constexpr (kind == Projection::assumed_strain && dim == 3)
+                  if constexpr (kind == Treatment::assumed_strain && dim == 3)
                     {
                       const int f = 3 - d - e;
                       shear += torsion[f] * deviation[f];
@@ -149,11 +149,11 @@ namespace limber
                   motion.gradient[e][d] = shear - spin;
                 }
             }
-          if constexpr (kind == Projection::assumed_strain)
+          if constexpr (kind == Treatment::assumed_strain)
             set_assumed_normals(deviation, motion);
         }
-      if constexpr (kind == Projection::none ||
-                    kind == Projection::assumed_strain)
+      if constexpr (kind == Treatment::none ||
+                    kind == Treatment::assumed_strain)
         motion.volumetric = motion.trace();
       else if constexpr (averages_around_nodes(kind))
         motion.volumetric = step * nodal.template value<Number>(xi);
@@ -166,7 +166,7 @@ namespace limber
     // point, and eight points a cell would have to pay for it one by one.
     __attribute__((always_inline)) void
     set_hourglass(const CellMeans<Basis> &means,
-                  const StrainProjection &projection)
+                  const StrainTreatment  &treatment)
     {
       Components scales{};
 #pragma GCC unroll 8
@@ -178,8 +178,8 @@ namespace limber
       if constexpr (dim == 2)
         {
           const Components mode = scales * velocity.components(3);
-          modes.own[0]          = projection.own * mode;
-          modes.mate[0]         = projection.mate * mode;
+          modes.own[0]          = treatment.own * mode;
+          modes.mate[0]         = treatment.mate * mode;
         }
       else
         {
@@ -193,11 +193,11 @@ namespace limber
             {
               modes.bilinear[f] =
                 velocity.components(7 ^ (1 << f)) + trilinear * centroid[f];
-              modes.own[f]  = (projection.own * scales) * modes.bilinear[f];
-              modes.mate[f] = (projection.mate * scales) * modes.bilinear[f];
+              modes.own[f]  = (treatment.own * scales) * modes.bilinear[f];
+              modes.mate[f] = (treatment.mate * scales) * modes.bilinear[f];
             }
-          modes.own[dim]  = (projection.trilinear_own * scales) * trilinear;
-          modes.mate[dim] = (projection.trilinear_mate * scales) * trilinear;
+          modes.own[dim]  = (treatment.trilinear_own * scales) * trilinear;
+          modes.mate[dim] = (treatment.trilinear_mate * scales) * trilinear;
         }
       read_from_memory<dim>(modes);
       if constexpr (dim == 3)
@@ -275,7 +275,7 @@ namespace limber
    * The transpose: gathers from the points of a batch what their stress gives
    * to the coefficients c_k, and turns it into forces on the nodes.
    */
-  template <int dim, Projection kind, bool deviator>
+  template <int dim, Treatment kind, bool deviator>
   class StressOperator
   {
   public:
@@ -284,11 +284,11 @@ namespace limber
 
     /** @p nodal is the pressure S p, Pa. */
     StressOperator(const CellGeometry<dim>      &cell,
-                   const StrainProjection       &projection,
+                   const StrainTreatment        &treatment,
                    const CellMeans<Linear<dim>> &means,
                    const NodalMean<dim, kind>   &nodal)
       : cell(cell)
-      , projection(projection)
+      , treatment(treatment)
       , means(means)
       , nodal(nodal)
     {}
@@ -409,7 +409,7 @@ namespace limber
     static constexpr bool pressure_in_lane =
       mean_pressure && deviator && dim == 3;
     static constexpr bool normal_as_is =
-      kind == Projection::cell_shear || kind == Projection::hybrid;
+      kind == Treatment::cell_shear || kind == Treatment::hybrid;
 
     template <bool begins>
     __attribute__((always_inline)) static void
@@ -432,7 +432,7 @@ namespace limber
 #pragma GCC unroll 8
       for (int e = 0; e < dim; ++e)
         a[1 << e] = e <= d ? stress[d][e] : stress[e][d];
-      if constexpr (kind != Projection::cell_full)
+      if constexpr (kind != Treatment::cell_full)
 #pragma GCC unroll 8
         for (int k = 3; k < 1 << dim; ++k)
           if (k & (k - 1))
@@ -466,7 +466,7 @@ namespace limber
         {
           on_coefficients[d] *= Linear<dim>::bilinear();
           // bilinear modes about the centroid hold part of c_7
-          if constexpr (kind == Projection::assumed_strain && dim == 3)
+          if constexpr (kind == Treatment::assumed_strain && dim == 3)
 #pragma GCC unroll 8
             for (int f = 0; f < dim; ++f)
               on_coefficients[d] += single[d][7 ^ (1 << f)] * of_trilinear[f];
@@ -488,16 +488,16 @@ namespace limber
     add_hourglass(const std::array<std::array<Number, dim>, dim> &t,
                   const std::array<Number, dim>                  &place)
     {
-      if constexpr (kind == Projection::cell_full)
+      if constexpr (kind == Treatment::cell_full)
         return;
       const double *const h = cell.inverse_edge.data();
       // deviations from the mean, where strains are split so
       std::array<Number, dim> xi = place;
-      if constexpr (kind == Projection::assumed_strain)
+      if constexpr (kind == Treatment::assumed_strain)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           xi[d] -= means[1 << d];
-      if constexpr (kind == Projection::assumed_strain && dim == 3)
+      if constexpr (kind == Treatment::assumed_strain && dim == 3)
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
@@ -506,8 +506,8 @@ namespace limber
               (place[e] - means[1 << e]) * (place[f] - means[1 << f]) -
               (means[1 << e | 1 << f] - means[1 << e] * means[1 << f]);
             accumulate<begins>(hourglass[d][7],
-                               (projection.trilinear_own * t[d][d] +
-                                projection.trilinear_mate *
+                               (treatment.trilinear_own * t[d][d] +
+                                treatment.trilinear_mate *
                                   (t[e][e] + t[f][f])) *
                                  (h[d] * product));
           }
@@ -546,10 +546,10 @@ namespace limber
     {
       const double *const h       = cell.inverse_edge.data();
       Number             &on_mode = hourglass[d][1 << d | 1 << e];
-      if constexpr (kind == Projection::assumed_strain)
+      if constexpr (kind == Treatment::assumed_strain)
         accumulate<begins>(on_mode,
-                           (projection.own * t[d][d] +
-                            projection.mate * t[e][e]) *
+                           (treatment.own * t[d][d] +
+                            treatment.mate * t[e][e]) *
                              (h[d] * xi[e]));
       else if constexpr (normal_as_is)
         accumulate<begins>(on_mode, t[d][d] * (h[d] * xi[e]));
@@ -559,7 +559,7 @@ namespace limber
     }
 
     const CellGeometry<dim>      &cell;
-    const StrainProjection       &projection;
+    const StrainTreatment        &treatment;
     const CellMeans<Linear<dim>> &means;
     const NodalMean<dim, kind>   &nodal;
 

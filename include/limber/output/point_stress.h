@@ -110,7 +110,7 @@ namespace limber
     NodalProjection<dim>    nodal;     // pressure
     PointView<dim>          points;
     std::vector<double>     volume_ratios;
-    Projection              kind = Projection::none;
+    Treatment               kind = Treatment::none;
   };
 } // namespace limber
 

@@ -8,7 +8,7 @@
 #include <limber/base/functions.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/kernel.h>
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 #include <limber/problem/observable.h>
 #include <limber/problem/obstacle.h>
 #include <limber/problem/shapes.h>
@@ -164,7 +164,7 @@ namespace limber
     std::map<unsigned int, Formula<dim>> initial_state;
 
     Frame             frame             = Frame::current;
-    Projection        treatment         = Projection::none;
+    Treatment         treatment         = Treatment::none;
     HourglassResponse hourglass         = HourglassResponse::bending;
     double            hourglass_control = 0; // chi, without dimension
     // Without dimension; where the pressure is implicit, the share gamma of

@@ -67,7 +67,7 @@ namespace limber
   const Words<ReferenceMethod> &
   reference_method_words();
 
-  const Words<Projection> &
+  const Words<Treatment> &
   locking_words();
 
   const Words<HourglassResponse> &

@@ -51,9 +51,9 @@ namespace limber
 
     /** When all points are there; false where a mean is turned inside out. */
     bool
-    finish(const StrainProjection &projection)
+    finish(const StrainTreatment &treatment)
     {
-      operation.emplace(projection);
+      operation.emplace(treatment);
       volume = 0;
       for (const Point &point : points)
         {

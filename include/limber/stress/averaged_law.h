@@ -17,9 +17,9 @@ namespace limber
     using DeviatorSums = limber::DeviatorSums<dim>;
 
   public:
-    AveragedLaw(const Law &law, const StrainProjection &projection)
+    AveragedLaw(const Law &law, const StrainTreatment &treatment)
       : Base(law)
-      , strain_projection(projection)
+      , strain_treatment(treatment)
     {}
 
     void
@@ -45,7 +45,7 @@ namespace limber
                     const double *const   sums,
                     const double          share) const override
     {
-      const Projection kind = strain_projection.kind;
+      const Treatment kind = strain_treatment.kind;
       if (!averages_shear_in_cells(kind))
         throw std::logic_error("no deviatoric history that is averaged");
       double removed = 0;
@@ -57,7 +57,7 @@ namespace limber
             const double *const record =
               sums + points.cell[p] * DeviatorSums::stride;
             const double inverse_mass = 1 / record[DeviatorSums::mass];
-            for (unsigned int k = kind == Projection::cell_full ? 0 : 2;
+            for (unsigned int k = kind == Treatment::cell_full ? 0 : 2;
                  k < e.size();
                  ++k)
               e[k] += share *
@@ -77,10 +77,10 @@ namespace limber
       return removed;
     }
 
-    const StrainProjection &
-    projection() const override
+    const StrainTreatment &
+    treatment() const override
     {
-      return strain_projection;
+      return strain_treatment;
     }
 
   protected:
@@ -89,7 +89,7 @@ namespace limber
     using Base::state_of;
     using Base::store_state;
 
-    const StrainProjection strain_projection;
+    const StrainTreatment strain_treatment;
   };
 } // namespace limber
 

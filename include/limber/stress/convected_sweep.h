@@ -10,17 +10,17 @@ namespace limber
    * Strain points with domains by the means of the velocity gradient over them,
    * or by its differences between their corners, move them, and let them take
    * their velocities where asked (StressSweep); @p law is called once per
-   * pack. The projection is 'none', 'cell' or 'node'.
+   * pack. The treatment is 'none', 'cell' or 'node'.
    */
   template <int dim>
   StressSummary
   strain_domains(const PointView<dim> &points,
                  const GridView<dim>  &grid,
                  const CellSums<dim> *,
-                 const StressSweep      &what,
-                 const StrainProjection &projection,
-                 const PackStrain<dim>  &law,
-                 PackFindings<dim>      &found);
+                 const StressSweep     &what,
+                 const StrainTreatment &treatment,
+                 const PackStrain<dim> &law,
+                 PackFindings<dim>     &found);
 
 } // namespace limber
 

@@ -9,7 +9,7 @@ namespace limber
   /**
    * Strain points by the gradients of the dual domain method
    * (interpolation/dual_domain.h), whose means around nodes the grid holds, and
-   * move them (StressSweep); @p law is called once per pack. The projection is
+   * move them (StressSweep); @p law is called once per pack. The treatment is
    * 'none', 'cell' or 'node'.
    */
   template <int dim>
@@ -17,10 +17,10 @@ namespace limber
   strain_by_dual_domain(const PointView<dim> &points,
                         const GridView<dim>  &grid,
                         const CellSums<dim> *,
-                        const StressSweep      &what,
-                        const StrainProjection &projection,
-                        const PackStrain<dim>  &law,
-                        PackFindings<dim>      &found);
+                        const StressSweep     &what,
+                        const StrainTreatment &treatment,
+                        const PackStrain<dim> &law,
+                        PackFindings<dim>     &found);
 
 } // namespace limber
 

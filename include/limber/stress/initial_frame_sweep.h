@@ -19,14 +19,14 @@ namespace limber
    * (NodeLayout::strain_velocity), and moves them as well: they stay where
    * their F says.
    *
-   * With the projection 'cell' the volumetric part of the stress follows from
+   * With the treatment 'cell' the volumetric part of the stress follows from
    * the mean of the volume ratio over the points of the cell, with
    * 'assumed_strain', which is that of linear functions, all of it from the F_a
    * of assumed_deformation.h. The points never leave their cell, so they always
    * are one batch, on one rank, and their forces can be given in the same
    * sweep. Stress that is given so is not stored.
    */
-  template <class Basis, class Law, Projection kind>
+  template <class Basis, class Law, Treatment kind>
   class InitialFrameSweep final : public LawOnPoints<Basis::dim, Law>
   {
     static constexpr int  dim    = Basis::dim;
@@ -40,9 +40,9 @@ namespace limber
     using Places = std::array<Number, dim>;
 
   public:
-    InitialFrameSweep(const Law &law, const StrainProjection &projection)
+    InitialFrameSweep(const Law &law, const StrainTreatment &treatment)
       : Base(law)
-      , assumption(projection)
+      , assumption(treatment)
     {}
 
     StressSummary
@@ -73,10 +73,10 @@ namespace limber
     }
 
     /** Means are in the stress already: the force needs none. */
-    const StrainProjection &
-    projection() const override
+    const StrainTreatment &
+    treatment() const override
     {
-      static const StrainProjection nothing;
+      static const StrainTreatment nothing;
       return nothing;
     }
 
@@ -387,14 +387,14 @@ namespace limber
                                         {grid, cell_batch.cell},
                                         what,
                                         waves};
-          if constexpr (kind == Projection::none)
+          if constexpr (kind == Treatment::none)
             batch.at_points();
-          else if constexpr (kind == Projection::cell)
+          else if constexpr (kind == Treatment::cell)
             batch.with_mean_volume();
           else
             assumed.add(batch);
         });
-      if constexpr (kind == Projection::assumed_strain)
+      if constexpr (kind == Treatment::assumed_strain)
         assumed.work();
       return waves;
     }
@@ -436,7 +436,7 @@ namespace limber
       return most / (J * J);
     }
 
-    const StrainProjection assumption; // for the assumed strain
+    const StrainTreatment assumption; // for the assumed strain
   };
 } // namespace limber
 

@@ -8,10 +8,10 @@
 namespace limber
 {
   /**
-   * StressUpdate for one basis, one law and one projection of its strain, all
+   * StressUpdate for one basis, one law and one treatment of its strain, all
    * known to the compiler: the fastest, for kernels with few nodes.
    */
-  template <class Basis, class Law, Projection kind>
+  template <class Basis, class Law, Treatment kind>
   class LawSweep final : public AveragedLaw<Basis::dim, Law>
   {
     static constexpr int dim = Basis::dim;
@@ -30,7 +30,7 @@ namespace limber
       PackFindings<dim> found;
       const double      displacement =
         StrainSweep<Basis, kind, Law::uses_spin, Strain>::run(
-          points, grid, sums, what, this->strain_projection, strain, found)
+          points, grid, sums, what, this->strain_treatment, strain, found)
           .displacement;
       StressSummary result = this->summary(found, strain.measure_waves);
       result.displacement  = displacement;

@@ -22,16 +22,16 @@ namespace limber
    */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
-  make_sweep(const Law &law, const StrainProjection &projection)
+  make_sweep(const Law &law, const StrainTreatment &treatment)
   {
     [[maybe_unused]] const auto with = [&](const auto kind) {
       using Sweep = LawSweep<Basis, Law, decltype(kind)::value>;
       return std::unique_ptr<const StressUpdate<Basis::dim>>(
-        std::make_unique<Sweep>(law, projection));
+        std::make_unique<Sweep>(law, treatment));
     };
-    using P = Projection;
+    using P = Treatment;
     if constexpr (!Law::is_plastic)
-      switch (projection.kind)
+      switch (treatment.kind)
         {
           case P::none:
             return with(std::integral_constant<P, P::none>());
@@ -44,7 +44,7 @@ namespace limber
           default:
             break;
         }
-    return make_pack_sweep<Basis::dim>(law, projection, {strain_packs<Basis>});
+    return make_pack_sweep<Basis::dim>(law, treatment, {strain_packs<Basis>});
   }
 
 
@@ -52,17 +52,17 @@ namespace limber
   /** Those in the frame of the initial configuration, of elastic laws. */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
-  make_initial_frame_sweep(const Law                               &law,
-                           [[maybe_unused]] const StrainProjection &projection)
+  make_initial_frame_sweep(const Law                              &law,
+                           [[maybe_unused]] const StrainTreatment &treatment)
   {
     const auto with = [&](const auto kind) {
       using Sweep = InitialFrameSweep<Basis, Law, decltype(kind)::value>;
       return std::unique_ptr<const StressUpdate<Basis::dim>>(
-        std::make_unique<Sweep>(law, projection));
+        std::make_unique<Sweep>(law, treatment));
     };
-    using P = Projection;
+    using P = Treatment;
     if constexpr (Law::is_elastic)
-      switch (projection.kind)
+      switch (treatment.kind)
         {
           case P::none:
             return with(std::integral_constant<P, P::none>());
@@ -75,7 +75,7 @@ namespace limber
           default:
             break;
         }
-    throw std::logic_error("law or projection without an initial frame");
+    throw std::logic_error("law or treatment without an initial frame");
   }
 
 } // namespace limber

@@ -14,13 +14,13 @@ namespace limber
   template <int dim>
   struct PackSweep
   {
-    StressSummary (*strain)(const PointView<dim>   &points,
-                            const GridView<dim>    &grid,
-                            const CellSums<dim>    *sums,
-                            const StressSweep      &what,
-                            const StrainProjection &projection,
-                            const PackStrain<dim>  &law,
-                            PackFindings<dim>      &found);
+    StressSummary (*strain)(const PointView<dim>  &points,
+                            const GridView<dim>   &grid,
+                            const CellSums<dim>   *sums,
+                            const StressSweep     &what,
+                            const StrainTreatment &treatment,
+                            const PackStrain<dim> &law,
+                            PackFindings<dim>     &found);
     // Whether it lets them take their velocities (StressUpdate).
     bool takes_velocity = false;
   };
@@ -30,9 +30,9 @@ namespace limber
   /** Any law with such a sweep. */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_pack_sweep(const AnyLaw           &law,
-                  const StrainProjection &projection,
-                  const PackSweep<dim>   &sweep);
+  make_pack_sweep(const AnyLaw          &law,
+                  const StrainTreatment &treatment,
+                  const PackSweep<dim>  &sweep);
 } // namespace limber
 
 #endif

@@ -34,7 +34,7 @@ namespace limber
 
 
   /**
-   * Strain points by the functions of a basis with any of the projections it
+   * Strain points by the functions of a basis with any of the treatments it
    * knows, and move them, as StrainSweep; @p law is called once per pack.
    */
   template <class Basis>
@@ -43,17 +43,17 @@ namespace limber
                const GridView<Basis::dim>   &grid,
                const CellSums<Basis::dim>   *sums,
                const StressSweep            &what,
-               const StrainProjection       &projection,
+               const StrainTreatment        &treatment,
                const PackStrain<Basis::dim> &law,
                PackFindings<Basis::dim>     &found)
   {
     using Call      = internal::CallOnPacks<Basis::dim>;
-    using P         = Projection;
+    using P         = Treatment;
     const auto with = [&](const auto kind) {
       return StrainSweep<Basis, decltype(kind)::value, true, Call>::run(
-        points, grid, sums, what, projection, Call{law}, found);
+        points, grid, sums, what, treatment, Call{law}, found);
     };
-    switch (projection.kind)
+    switch (treatment.kind)
       {
         case P::none:
           return with(std::integral_constant<P, P::none>());
@@ -74,7 +74,7 @@ namespace limber
         case P::automatic:
           break;
       }
-    throw std::logic_error("no such projection with this basis");
+    throw std::logic_error("no such treatment with this basis");
   }
 } // namespace limber
 

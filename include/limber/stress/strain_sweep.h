@@ -25,11 +25,11 @@ namespace limber
 
   /**
    * The sweep that strains points by the functions of a shared stencil and one
-   * projection, and moves them. What a law does with a pack whose motion is
+   * treatment, and moves them. What a law does with a pack whose motion is
    * known is strain(points, lanes, motion, change, found), which returns the
    * volumetric variables (LawOnPoints::strain).
    */
-  template <class Basis, Projection kind, bool uses_spin, class Strain>
+  template <class Basis, Treatment kind, bool uses_spin, class Strain>
   class StrainSweep
   {
     static constexpr int dim = Basis::dim;
@@ -42,13 +42,13 @@ namespace limber
         const GridView<dim>       &grid,
         const CellSums<dim> *const sums,
         const StressSweep         &what,
-        const StrainProjection    &projection,
+        const StrainTreatment     &treatment,
         const Strain              &strain,
         PackFindings<dim>         &found)
     {
       return what.move > 0 ?
-               run<true>(points, grid, sums, what, projection, strain, found) :
-               run<false>(points, grid, sums, what, projection, strain, found);
+               run<true>(points, grid, sums, what, treatment, strain, found) :
+               run<false>(points, grid, sums, what, treatment, strain, found);
     }
 
   private:
@@ -61,22 +61,22 @@ namespace limber
       using Nodal  = NodalCoefficients<Basis, Layout::velocity, 2 * dim>;
       using Field  = typename Nodal::VectorField;
 
-      __attribute__((always_inline)) Batch(const StrainProjection &projection,
-                                           const CellBatch        &batch,
-                                           const GridView<dim>    &grid,
-                                           const CellSums<dim>    *sums,
-                                           const StressSweep      &what)
+      __attribute__((always_inline)) Batch(const StrainTreatment &treatment,
+                                           const CellBatch       &batch,
+                                           const GridView<dim>   &grid,
+                                           const CellSums<dim>   *sums,
+                                           const StressSweep     &what)
         : cell_number(batch.cell)
         , cell(grid.cells[batch.cell])
         , nodal(grid, batch.cell)
         , strained(nodal.field(what.remapped ? dim : 0))
         , means(sums, batch.cell)
         , shift(what.shift ? what.shift_share * what.shift[batch.cell] : 0)
-        , implicit(kind == Projection::cell ? what.implicit : nullptr)
+        , implicit(kind == Treatment::cell ? what.implicit : nullptr)
         , is_cut(implicit != nullptr && implicit->cuts_tension &&
                  implicit->pressure[batch.cell] == 0)
         , divergence(what.projected_divergence, cell)
-        , strain(strained, cell, means, divergence, projection, what.step)
+        , strain(strained, cell, means, divergence, treatment, what.step)
       {}
 
       Batch(const Batch &) = delete; // the parts know each other's addresses
@@ -109,7 +109,7 @@ namespace limber
         motion.step   = what.step;
         motion.square = what.square;
         batch.strain.template evaluate<Number, uses_spin>(xi, motion);
-        if constexpr (kind == Projection::cell)
+        if constexpr (kind == Treatment::cell)
           if (rarely(what.volume_shares != nullptr && !batch.implicit))
             // with what is of second order in the step, or what turns would
             // grow
@@ -158,7 +158,7 @@ namespace limber
                 Basis::template value<Number>(batch.nodal.component(d), xi);
             if (rarely(what.curved))
               shift = curve<dim>(shift, motion.gradient);
-            if constexpr (kind == Projection::cell &&
+            if constexpr (kind == Treatment::cell &&
                           std::is_same_v<Basis, Linear<dim>>)
               if (rarely(what.uniform_divergence))
                 {
@@ -209,7 +209,7 @@ namespace limber
         const GridView<dim>       &grid,
         const CellSums<dim> *const sums,
         const StressSweep         &what,
-        const StrainProjection    &projection,
+        const StrainTreatment     &treatment,
         const Strain              &strain,
         PackFindings<dim>         &found)
     {
@@ -222,7 +222,7 @@ namespace limber
       for_each_batch(
         points,
         [&](const CellBatch &cell_batch) __attribute__((always_inline)) {
-          const Batch batch(projection, cell_batch, grid, sums, what);
+          const Batch batch(treatment, cell_batch, grid, sums, what);
           for_each_pack<dim>(
             cell_batch, [&](const auto &lanes) __attribute__((always_inline)) {
               progress.update(batch, lanes);
@@ -234,7 +234,7 @@ namespace limber
       return result;
     }
 
-    static constexpr bool projected = kind != Projection::none;
+    static constexpr bool projected = kind != Treatment::none;
   };
 } // namespace limber
 

@@ -5,7 +5,7 @@
 #include <limber/materials/frame.h>
 #include <limber/materials/kernel.h>
 #include <limber/materials/point_start.h>
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 #include <limber/points/point_view.h>
 
 #include <memory>
@@ -58,7 +58,7 @@ namespace limber
     // Whether they follow the velocity field as it is now on their way: by
     // step (1 + a/2) v, of second order, so that what turns does not grow.
     bool curved = false;
-    // With Projection::cell and functions of the corners: whether all places of
+    // With Treatment::cell and functions of the corners: whether all places of
     // a cell move apart as its mean divergence says, by the velocity without
     // beyond_uniform_divergence().
     bool uniform_divergence = false;
@@ -74,10 +74,10 @@ namespace limber
     // Per cell, what that variable gets besides; null: nothing.
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
-    // By cell, with Projection::cell: the dilation of a liquid over the mean
+    // By cell, with Treatment::cell: the dilation of a liquid over the mean
     // divergence of the cell (LiquidMeans); null: one
     const double *volume_shares = nullptr;
-    // Of an implicit pressure, with Projection::cell; null: there is none
+    // Of an implicit pressure, with Treatment::cell; null: there is none
     const CellPressures *implicit = nullptr;
     // The divergence, likewise projected (GiveToGrid::projected_pressure)
     const double *projected_divergence = nullptr;
@@ -144,8 +144,8 @@ namespace limber
                     double                share) const = 0;
 
     /** How the strain, and with it the stress, is averaged over cells. */
-    virtual const StrainProjection &
-    projection() const = 0;
+    virtual const StrainTreatment &
+    treatment() const = 0;
 
     /**
      * Whether points can take their velocities in the same sweep, which spares
@@ -233,14 +233,14 @@ namespace limber
   /**
    * The sweep for the law of that name; @p values in the order of its
    * entries. In the initial frame the law is elastic, the kernel linear and
-   * the projection 'none', 'cell' or 'assumed_strain'; the last is for linear
+   * the treatment 'none', 'cell' or 'assumed_strain'; the last is for linear
    * kernels alone.
    */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_stress_update(const std::string         &law,
                      const std::vector<double> &values,
-                     Projection                 kind,
+                     Treatment                  kind,
                      HourglassResponse          response,
                      Frame                      frame  = Frame::current,
                      KernelKind                 kernel = KernelKind::linear);

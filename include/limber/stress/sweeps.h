@@ -12,19 +12,19 @@ namespace limber
   /** The sweeps of all laws, each basis in a translation unit of its own. */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_linear_sweep(const AnyLaw           &law,
-                    const StrainProjection &projection,
-                    Frame                   frame);
+  make_linear_sweep(const AnyLaw          &law,
+                    const StrainTreatment &treatment,
+                    Frame                  frame);
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_quadratic_sweep(const AnyLaw           &law,
-                       const StrainProjection &projection,
-                       Frame                   frame);
+  make_quadratic_sweep(const AnyLaw          &law,
+                       const StrainTreatment &treatment,
+                       Frame                  frame);
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
-  make_cubic_sweep(const AnyLaw           &law,
-                   const StrainProjection &projection,
-                   Frame                   frame);
+  make_cubic_sweep(const AnyLaw          &law,
+                   const StrainTreatment &treatment,
+                   Frame                  frame);
 } // namespace limber
 
 #endif

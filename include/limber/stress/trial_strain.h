@@ -5,7 +5,7 @@
 #include <limber/interpolation/linear_functions.h>
 #include <limber/points/cell_batch.h>
 #include <limber/stress/cell_trial.h>
-#include <limber/stress/strain_projection.h>
+#include <limber/stress/strain_treatment.h>
 
 #include <algorithm>
 
@@ -27,14 +27,14 @@ namespace limber
     using Trial                   = CellTrial<dim, Law>;
 
   public:
-    TrialStrain(const Law              &law,
-                const StrainProjection &projection,
-                const Frame             frame)
+    TrialStrain(const Law             &law,
+                const StrainTreatment &treatment,
+                const Frame            frame)
       : law(law)
-      , mean_volume(projection.kind == Projection::cell)
-      , assumes(projection.kind == Projection::assumed_strain)
+      , mean_volume(treatment.kind == Treatment::cell)
+      , assumes(treatment.kind == Treatment::assumed_strain)
       , initial(frame == Frame::initial)
-      , projection(projection)
+      , treatment(treatment)
     {}
 
     /** Kinematics and states; false where a point is turned inside out. */
@@ -133,7 +133,7 @@ namespace limber
                                trial.motions[k].volume,
                                functions.gradient};
         }
-      if (!assumed.finish(projection))
+      if (!assumed.finish(treatment))
         return false;
       for (std::size_t k = 0; k < trial.motions.size(); ++k)
         {
@@ -222,7 +222,7 @@ namespace limber
       motion.plastic_work = law.template deform<dim>(motion.f, growth, state);
     }
 
-    const StrainProjection projection;
+    const StrainTreatment treatment;
   };
 } // namespace limber
 

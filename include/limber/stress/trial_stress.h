@@ -3,7 +3,7 @@
 #define limber_stress_trial_stress_h
 
 #include <limber/materials/frame.h>
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 #include <limber/points/point_view.h>
 
 #include <array>
@@ -67,10 +67,10 @@ namespace limber
    * initial places and F grows by the gradient of the displacement; in the
    * current one they are those of the places at the beginning of the step, and
    * what follows is deformed further by f = 1 + grad u. With
-   * Projection::cell the volume of all points in a cell grows by the mean of
+   * Treatment::cell the volume of all points in a cell grows by the mean of
    * det f (current frame) or is the mean of det F (initial frame), weighted by
    * initial volume, in energy, force and tangent alike, so that the tangent is
-   * symmetric (doc/theory/implicit_steps.md). With Projection::assumed_strain
+   * symmetric (doc/theory/implicit_steps.md). With Treatment::assumed_strain
    * f or F is the assumed one of assumed_deformation.h.
    */
   template <int dim>
@@ -126,14 +126,14 @@ namespace limber
 
   /**
    * For the law of that name, of a solid; @p values in the order of its
-   * entries, the projection 'none', 'cell' or 'assumed_strain'; @p response
+   * entries, the treatment 'none', 'cell' or 'assumed_strain'; @p response
    * counts with the last.
    */
   template <int dim>
   std::unique_ptr<const TrialStress<dim>>
   make_trial_stress(const std::string         &law,
                     const std::vector<double> &values,
-                    Projection                 kind,
+                    Treatment                  kind,
                     HourglassResponse          response,
                     Frame                      frame);
 } // namespace limber

@@ -2,7 +2,7 @@
 #ifndef limber_transfer_points_to_grid_h
 #define limber_transfer_points_to_grid_h
 
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 #include <limber/points/point_view.h>
 
 namespace limber
@@ -10,16 +10,16 @@ namespace limber
   /** What the points of a body give to the nodes in one sweep. */
   struct GiveToGrid
   {
-    bool             momentum        = true;  // mass and momentum
-    bool             force           = true;  // internal force
-    bool             pressure        = true;  // its part of the force
-    bool             affine          = false; // momentum with the affine part
-    double           inverse_density = 0;     // 1 / rho_0, m^3/kg
-    StrainProjection projection; // of the strain that the force works with
+    bool            momentum        = true;  // mass and momentum
+    bool            force           = true;  // internal force
+    bool            pressure        = true;  // its part of the force
+    bool            affine          = false; // momentum with the affine part
+    double          inverse_density = 0;     // 1 / rho_0, m^3/kg
+    StrainTreatment treatment; // of the strain that the force works with
     // The pressure projected on nodes, or of domains averaged over cells
     // (nodal_means.h, domain_means.h), where that is asked
     const double *projected_pressure = nullptr;
-    // By cell, with Projection::cell: the factor of the pressures of a liquid
+    // By cell, with Treatment::cell: the factor of the pressures of a liquid
     // (LiquidMeans); null: one
     const double *volume_shares = nullptr;
   };
@@ -28,14 +28,14 @@ namespace limber
 
   /**
    * Add to the nodes, with N_i at the points and B the strain operator of the
-   * body's projection (strain_operator.h),
+   * body's treatment (strain_operator.h),
    *
    *   m_i = sum m N_i,  p_i = sum m N_i (v + C (x_i - x)),
    *   f_i = - sum (m/rho_0) B_i^T (J sigma)
    *
    * (Mast et al. 2012, mass-specific form); forces in the initial frame come
    * from the StressUpdate of the body. @p sums may be null where nothing is
-   * projected; forces without the pressure are for Projection::cell. Returns
+   * projected; forces without the pressure are for Treatment::cell. Returns
    * the number of batches.
    */
   template <int dim>

@@ -28,11 +28,11 @@ namespace limber
 
     /**
      * Stress at the points of a body for forces on nodes: B^T of the
-     * projection (strain_operator.h). What a projection @p averages over a cell
+     * treatment (strain_operator.h). What a treatment @p averages over a cell
      * acts on the means of the gradients, and is summed up over a batch first.
      * What that is is asked once per pack, which is nothing beside the
      * functions of so many nodes: the sweeps, long to compile, are there once
-     * for all projections.
+     * for all treatments.
      */
     template <bool averages>
     struct StressForce
@@ -40,11 +40,11 @@ namespace limber
       static constexpr bool any       = true;
       static constexpr bool has_means = averages;
 
-      StressForce(const Projection kind, const bool has_deviator)
+      StressForce(const Treatment kind, const bool has_deviator)
         : has_deviator(has_deviator)
         , mean_pressure(averages_volume_in_cells(kind))
         , mean_shear(averages_shear_in_cells(kind))
-        , mean_normals(kind == Projection::cell_full)
+        , mean_normals(kind == Treatment::cell_full)
         , around_nodes(averages_around_nodes(kind))
       {}
 
@@ -77,9 +77,8 @@ namespace limber
           }
         Number p;
         if (around_nodes)
-          p =
-            V * NodalMean<dim, Projection::node>(what.projected_pressure, cell)
-                  .template value<Number>(xi);
+          p = V * NodalMean<dim, Treatment::node>(what.projected_pressure, cell)
+                    .template value<Number>(xi);
         else
           p = V * lanes.load(points.pressure);
         for (int d = 0; d < dim; ++d)
@@ -220,9 +219,9 @@ namespace limber
       return what.momentum ?
                choose_sums<Basis>(points, grid, what, sums, NoForce()) :
                0;
-    const Projection kind = what.projection.kind;
-    if (kind == Projection::automatic || kind == Projection::assumed_strain)
-      throw std::logic_error("no such projection with splines");
+    const Treatment kind = what.treatment.kind;
+    if (kind == Treatment::automatic || kind == Treatment::assumed_strain)
+      throw std::logic_error("no such treatment with splines");
     const bool has_deviator = points.deviator[0] != nullptr;
     return averages_volume_in_cells(kind) || averages_shear_in_cells(kind) ?
              choose_sums<Basis>(points,

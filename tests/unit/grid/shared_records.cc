@@ -360,8 +360,8 @@ namespace limber
         std::vector<double> result;
         for (const Point &point : points)
           result.push_back(
-            NodalMean<dim, Projection::node>(projection.data(),
-                                             grid.geometry[point.cell])
+            NodalMean<dim, Treatment::node>(projection.data(),
+                                            grid.geometry[point.cell])
               .template value<double>(point.xi));
         return result;
       };

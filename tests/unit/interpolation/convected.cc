@@ -377,12 +377,12 @@ TYPED_TEST(ConvectedDomains, GiveForcesThatAreTheTransposeOfTheStrain)
   pressure.finish(cells);
   const auto former       = own.fields;
   const auto before_nodes = this->grid.nodes;
-  for (const Projection kind : {Projection::none, Projection::cell})
+  for (const Treatment kind : {Treatment::none, Treatment::cell})
     {
       this->grid.nodes = before_nodes;
       GiveToGrid what;
       what.inverse_density    = 0.7;
-      what.projection.kind    = kind;
+      what.treatment.kind     = kind;
       what.projected_pressure = pressure.data();
       domains_to_grid<dim>(points, this->grid.view(), what);
       EXPECT_EQ(own.fields, former);
@@ -424,7 +424,7 @@ TYPED_TEST(ConvectedDomains, GiveForcesThatAreTheTransposeOfTheStrain)
           const typename TestFixture::Fields fields(domain, this->grid.view());
           const auto            t = kirchhoff_stress<dim>(points, p);
           const DomainMean<dim> mean_divergence(
-            Projection::cell,
+            Treatment::cell,
             divergence.data(),
             this->grid.cells[points.cell[p]],
             points.cell[p]);
@@ -438,7 +438,7 @@ TYPED_TEST(ConvectedDomains, GiveForcesThatAreTheTransposeOfTheStrain)
             for (int e = 0; e < dim; ++e)
               power += t[d][e] *
                        fields.slope(domain.inverse(), Layout::velocity + d, e);
-          if (kind == Projection::cell)
+          if (kind == Treatment::cell)
             power -= points.pressure[p] * (mean - own_divergence);
           work += 0.7 * points.mass[p] * power;
           scale += std::abs(0.7 * points.mass[p] * power);

@@ -4,8 +4,8 @@
 #include <limber/transfer/project_on_nodes.h>
 
 #include <gtest/gtest.h>
-#include <support/projections.h>
 #include <support/small_grid.h>
+#include <support/treatments.h>
 
 #include <cmath>
 
@@ -15,12 +15,12 @@ using namespace limber::testing_support;
 namespace
 {
   template <int        dimension,
-            Projection projection_kind,
+            Treatment  treatment_kind,
             KernelKind kernel_kind = KernelKind::linear>
   struct Case
   {
     static constexpr int        dim    = dimension;
-    static constexpr Projection kind   = projection_kind;
+    static constexpr Treatment  kind   = treatment_kind;
     static constexpr KernelKind kernel = kernel_kind;
   };
 
@@ -30,11 +30,11 @@ namespace
   class Strain : public testing::Test
   {
   public:
-    static constexpr int        dim  = Case::dim;
-    static constexpr Projection kind = Case::kind;
-    using Layout                     = NodeLayout<dim>;
-    using Grid                       = SmallGrid<dim, Case::kernel>;
-    using Basis                      = typename Grid::Basis;
+    static constexpr int       dim  = Case::dim;
+    static constexpr Treatment kind = Case::kind;
+    using Layout                    = NodeLayout<dim>;
+    using Grid                      = SmallGrid<dim, Case::kernel>;
+    using Basis                     = typename Grid::Basis;
 
     /** B v at every point, from the velocities in the records of the nodes. */
     std::vector<MotionIncrement<dim, double>>
@@ -58,7 +58,7 @@ namespace
             cell,
             CellMeans<Basis>(&sums, points.cell[p]),
             nodal,
-            projection_of(kind),
+            strain_treatment_of(kind),
             1.);
           const auto              x = own.position(p);
           std::array<double, dim> xi;
@@ -83,44 +83,44 @@ namespace
   constexpr KernelKind quadratic = KernelKind::quadratic;
   constexpr KernelKind cubic     = KernelKind::cubic;
 
-  using Cases = testing::Types<Case<2, Projection::none>,
-                               Case<2, Projection::cell>,
-                               Case<2, Projection::cell_shear>,
-                               Case<2, Projection::cell_full>,
-                               Case<2, Projection::assumed_strain>,
-                               Case<2, Projection::node>,
-                               Case<2, Projection::hybrid>,
-                               Case<3, Projection::none>,
-                               Case<3, Projection::cell>,
-                               Case<3, Projection::cell_shear>,
-                               Case<3, Projection::cell_full>,
-                               Case<3, Projection::assumed_strain>,
-                               Case<3, Projection::node>,
-                               Case<3, Projection::hybrid>,
-                               Case<2, Projection::none, quadratic>,
-                               Case<2, Projection::cell, quadratic>,
-                               Case<2, Projection::cell_shear, quadratic>,
-                               Case<2, Projection::cell_full, quadratic>,
-                               Case<2, Projection::node, quadratic>,
-                               Case<2, Projection::hybrid, quadratic>,
-                               Case<3, Projection::none, quadratic>,
-                               Case<3, Projection::cell, quadratic>,
-                               Case<3, Projection::cell_shear, quadratic>,
-                               Case<3, Projection::cell_full, quadratic>,
-                               Case<3, Projection::node, quadratic>,
-                               Case<3, Projection::hybrid, quadratic>,
-                               Case<2, Projection::none, cubic>,
-                               Case<2, Projection::cell, cubic>,
-                               Case<2, Projection::cell_shear, cubic>,
-                               Case<2, Projection::cell_full, cubic>,
-                               Case<2, Projection::node, cubic>,
-                               Case<2, Projection::hybrid, cubic>,
-                               Case<3, Projection::none, cubic>,
-                               Case<3, Projection::cell, cubic>,
-                               Case<3, Projection::cell_shear, cubic>,
-                               Case<3, Projection::cell_full, cubic>,
-                               Case<3, Projection::node, cubic>,
-                               Case<3, Projection::hybrid, cubic>>;
+  using Cases = testing::Types<Case<2, Treatment::none>,
+                               Case<2, Treatment::cell>,
+                               Case<2, Treatment::cell_shear>,
+                               Case<2, Treatment::cell_full>,
+                               Case<2, Treatment::assumed_strain>,
+                               Case<2, Treatment::node>,
+                               Case<2, Treatment::hybrid>,
+                               Case<3, Treatment::none>,
+                               Case<3, Treatment::cell>,
+                               Case<3, Treatment::cell_shear>,
+                               Case<3, Treatment::cell_full>,
+                               Case<3, Treatment::assumed_strain>,
+                               Case<3, Treatment::node>,
+                               Case<3, Treatment::hybrid>,
+                               Case<2, Treatment::none, quadratic>,
+                               Case<2, Treatment::cell, quadratic>,
+                               Case<2, Treatment::cell_shear, quadratic>,
+                               Case<2, Treatment::cell_full, quadratic>,
+                               Case<2, Treatment::node, quadratic>,
+                               Case<2, Treatment::hybrid, quadratic>,
+                               Case<3, Treatment::none, quadratic>,
+                               Case<3, Treatment::cell, quadratic>,
+                               Case<3, Treatment::cell_shear, quadratic>,
+                               Case<3, Treatment::cell_full, quadratic>,
+                               Case<3, Treatment::node, quadratic>,
+                               Case<3, Treatment::hybrid, quadratic>,
+                               Case<2, Treatment::none, cubic>,
+                               Case<2, Treatment::cell, cubic>,
+                               Case<2, Treatment::cell_shear, cubic>,
+                               Case<2, Treatment::cell_full, cubic>,
+                               Case<2, Treatment::node, cubic>,
+                               Case<2, Treatment::hybrid, cubic>,
+                               Case<3, Treatment::none, cubic>,
+                               Case<3, Treatment::cell, cubic>,
+                               Case<3, Treatment::cell_shear, cubic>,
+                               Case<3, Treatment::cell_full, cubic>,
+                               Case<3, Treatment::node, cubic>,
+                               Case<3, Treatment::hybrid, cubic>>;
   TYPED_TEST_SUITE(Strain, Cases);
 } // namespace
 
@@ -163,7 +163,7 @@ TYPED_TEST(Strain, StressActsThroughTheTransposeOfTheStrainOperator)
       GiveToGrid what;
       what.momentum        = variant & 4;
       what.inverse_density = 0.8;
-      what.projection      = projection_of(TestFixture::kind);
+      what.treatment       = strain_treatment_of(TestFixture::kind);
       this->grid.clear();
       what.projected_pressure =
         this->grid.nodal_means([&](double *const records) {
@@ -216,7 +216,7 @@ TYPED_TEST(Strain, LinearFieldsAreReproduced)
 
 
 // The mean of the strain over the points of a cell is that of the gradient,
-// whatever the projection does to its deviation from the mean. Averages around
+// whatever the treatment does to its deviation from the mean. Averages around
 // nodes keep that of the volumetric part over the whole body.
 TYPED_TEST(Strain, MeansAreThoseOfTheGradient)
 {
@@ -368,7 +368,7 @@ TYPED_TEST(Strain, MirrorImagesAreStrainedAlike)
             cell,
             CellMeans<Basis>(&view, 0),
             nodal,
-            projection_of(TestFixture::kind),
+            strain_treatment_of(TestFixture::kind),
             1.);
         MotionIncrement<dim, double> result;
         B.template evaluate<double>(xi, result);

@@ -79,7 +79,7 @@ namespace limber::test
 
   TEST(PointStress, AroundNodesIsTheMeanOfThePointsNearThem)
   {
-    for (const Projection kind : {Projection::node, Projection::hybrid})
+    for (const Treatment kind : {Treatment::node, Treatment::hybrid})
       {
         SampleRun<2>       run(kind);
         const PointView<2> points = run.points().view();
@@ -127,12 +127,12 @@ namespace limber::test
 
   TEST(PointStress, DeviatorIsAveragedAsFarAsTheTreatmentDoes)
   {
-    for (const Projection kind : {Projection::node,
-                                  Projection::cell,
-                                  Projection::assumed_strain,
-                                  Projection::hybrid,
-                                  Projection::cell_shear,
-                                  Projection::cell_full})
+    for (const Treatment kind : {Treatment::node,
+                                 Treatment::cell,
+                                 Treatment::assumed_strain,
+                                 Treatment::hybrid,
+                                 Treatment::cell_shear,
+                                 Treatment::cell_full})
       {
         SampleRun<2>       run(kind);
         const PointView<2> points = run.points().view();
@@ -151,7 +151,7 @@ namespace limber::test
               if (points.cell[q] == points.cell[p])
                 for (unsigned int k = 0; k < 3; ++k)
                   mean[k] += 0.25 * points.deviator[k][q];
-            const bool full  = kind == Projection::cell_full;
+            const bool full  = kind == Treatment::cell_full;
             const bool shear = averages_shear_in_cells(kind);
             const auto value = [&](const unsigned int k, const bool averaged) {
               return averaged ? mean[k] : points.deviator[k][p];

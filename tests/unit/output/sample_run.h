@@ -22,10 +22,10 @@ namespace limber::test
      * cell, of an elastic body with K = 1e6 / 1.2 Pa and rho = 1000 kg/m^3.
      */
     explicit SampleRun(const bool projected)
-      : SampleRun(projected ? Projection::cell : Projection::none)
+      : SampleRun(projected ? Treatment::cell : Treatment::none)
     {}
 
-    explicit SampleRun(const Projection treatment)
+    explicit SampleRun(const Treatment treatment)
       : problem(describe(treatment))
       , grid(problem.grid, MPI_COMM_WORLD)
       , nodes(grid)
@@ -73,7 +73,7 @@ namespace limber::test
 
   private:
     static Problem<dim>
-    describe(const Projection treatment)
+    describe(const Treatment treatment)
     {
       Problem<dim> problem;
       for (unsigned int d = 0; d < dim; ++d)

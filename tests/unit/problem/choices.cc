@@ -41,10 +41,10 @@ namespace
 
 TEST(Choices, EveryTreatmentHasOneRowAndItsOwnWord)
 {
-  using P = Projection;
+  using P = Treatment;
   std::set<P>           kinds;
   std::set<std::string> words;
-  for (const Treatment &treatment : treatments)
+  for (const TreatmentRow &treatment : treatments)
     {
       EXPECT_TRUE(kinds.insert(treatment.kind).second);
       EXPECT_TRUE(words.insert(treatment.word).second);
@@ -66,15 +66,15 @@ TEST(Choices, TreatmentsAverageWhatTheirWordsSay)
 {
   struct
   {
-    Projection kind;
-    bool       volume_around_nodes, volume_in_cells, shear_in_cells, means;
-  } const cases[] = {{Projection::none, false, false, false, false},
-                     {Projection::cell, false, true, false, true},
-                     {Projection::cell_shear, false, true, true, true},
-                     {Projection::cell_full, false, true, true, true},
-                     {Projection::assumed_strain, false, false, false, true},
-                     {Projection::node, true, false, false, false},
-                     {Projection::hybrid, true, false, true, true}};
+    Treatment kind;
+    bool      volume_around_nodes, volume_in_cells, shear_in_cells, means;
+  } const cases[] = {{Treatment::none, false, false, false, false},
+                     {Treatment::cell, false, true, false, true},
+                     {Treatment::cell_shear, false, true, true, true},
+                     {Treatment::cell_full, false, true, true, true},
+                     {Treatment::assumed_strain, false, false, false, true},
+                     {Treatment::node, true, false, false, false},
+                     {Treatment::hybrid, true, false, true, true}};
   for (const auto &expected : cases)
     {
       const char *const word = treatment_of(expected.kind).word;

@@ -52,7 +52,7 @@ TEST(Scenes, DamBreakReadsAsWritten)
   EXPECT_DOUBLE_EQ(water.density(), 997.5);
   EXPECT_DOUBLE_EQ(water.material.at(1), 2e9);
   EXPECT_DOUBLE_EQ(water.material.at(2), 1e-3);
-  EXPECT_EQ(water.treatment, Projection::cell);
+  EXPECT_EQ(water.treatment, Treatment::cell);
 
   EXPECT_EQ(problem.grid.upper, Point<2>(5, 3));
   EXPECT_EQ(problem.grid.cells[1], 24u);
@@ -95,7 +95,7 @@ TEST(Scenes, CantileverReadsAsWritten)
   const Body<2> &beam = problem.bodies[0];
   EXPECT_EQ(beam.law, "neo hookean");
   EXPECT_DOUBLE_EQ(beam.material.at(2), 0.49);
-  EXPECT_EQ(beam.treatment, Projection::cell);
+  EXPECT_EQ(beam.treatment, Treatment::cell);
 
   // The first mode has the amplitude v0 at the tip.
   EXPECT_NEAR(beam.initial_velocity.value(Point<2>(8, 2), 0., 1), 0.01, 1e-5);
@@ -457,11 +457,11 @@ TEST(Scenes, AutomaticChoicesFollowTheMaterial)
     read("dam_break.prm", {automatic, "Body water/Locking treatment=auto"});
 
   EXPECT_EQ(solid.method.order, StressUpdateOrder::usavg);
-  EXPECT_EQ(solid.bodies[0].treatment, Projection::assumed_strain);
+  EXPECT_EQ(solid.bodies[0].treatment, Treatment::assumed_strain);
   EXPECT_EQ(solid.bodies[0].hourglass_control, 0);
   EXPECT_EQ(solid.bodies[0].chequerboard_control, 0);
   EXPECT_EQ(liquid.method.order, StressUpdateOrder::musl);
-  EXPECT_EQ(liquid.bodies[0].treatment, Projection::cell);
+  EXPECT_EQ(liquid.bodies[0].treatment, Treatment::cell);
   EXPECT_EQ(liquid.bodies[0].hourglass_control, 0.2);
   EXPECT_EQ(liquid.bodies[0].chequerboard_control, 0.5);
   for (const auto *const problem : {&solid, &liquid})
@@ -500,18 +500,18 @@ TEST(Scenes, AutomaticFrameAndKernelKeepSolidsFromCreeping)
   EXPECT_EQ(held.bodies[0].frame, Frame::initial);
   EXPECT_EQ(held.grid.kernel, KernelKind::linear);
   EXPECT_EQ(held.bodies[0].points_per_cell_edge[0], 2u);
-  EXPECT_EQ(held.bodies[0].treatment, Projection::assumed_strain);
+  EXPECT_EQ(held.bodies[0].treatment, Treatment::assumed_strain);
 
   // Splines as well, which need no third point where nothing crosses cells.
   const auto splines = beam({"Method/Kernel=quadratic"});
   EXPECT_EQ(splines.bodies[0].frame, Frame::initial);
   EXPECT_EQ(splines.bodies[0].points_per_cell_edge[0], 2u);
-  EXPECT_EQ(splines.bodies[0].treatment, Projection::cell);
+  EXPECT_EQ(splines.bodies[0].treatment, Treatment::cell);
   EXPECT_EQ(beam({"Method/Kernel=quadratic",
                   "Body beam/Neo hookean/Poisson's ratio=0.3"})
               .bodies[0]
               .treatment,
-            Projection::none);
+            Treatment::none);
 
   // Held or not, it meets nothing.
   EXPECT_EQ(beam({"Boundaries/left=free"}).bodies[0].frame, Frame::initial);
@@ -572,10 +572,10 @@ TEST(Scenes, MetalsHaveSplinesAndWhatFlowsOnHasNot)
   const std::string bar   = "verification/pulled_bar.prm";
   const Problem<2>  metal = read(bar, {});
   EXPECT_EQ(metal.grid.kernel, KernelKind::quadratic);
-  EXPECT_EQ(metal.bodies[0].treatment, Projection::none);
+  EXPECT_EQ(metal.bodies[0].treatment, Treatment::none);
   EXPECT_EQ(metal.bodies[0].points_per_cell_edge[0], 3u);
   EXPECT_EQ(read(bar, {"Body bar/J2/Poisson's ratio=0.49"}).bodies[0].treatment,
-            Projection::node);
+            Treatment::node);
   EXPECT_EQ(read(bar, {"Body bar/J2/Viscosity=10"}).grid.kernel,
             KernelKind::linear);
   for (const std::string soil :

@@ -2,8 +2,8 @@
 #include <limber/stress/initial_frame_sweep.h>
 
 #include <gtest/gtest.h>
-#include <support/projections.h>
 #include <support/sample_laws.h>
+#include <support/treatments.h>
 
 #include <cmath>
 #include <functional>
@@ -15,13 +15,13 @@ namespace
 {
   template <class LawType,
             int        dimension,
-            Projection projection_kind,
+            Treatment  treatment_kind,
             KernelKind kernel_kind = KernelKind::linear>
   struct FrameCase
   {
     using Law                          = LawType;
     static constexpr int        dim    = dimension;
-    static constexpr Projection kind   = projection_kind;
+    static constexpr Treatment  kind   = treatment_kind;
     static constexpr KernelKind kernel = kernel_kind;
   };
 
@@ -142,16 +142,16 @@ namespace
 
   private:
     /** (e1, e2) of theory/treatments.md for a beam that bends. */
-    static StrainProjection
+    static StrainTreatment
     bending(const Law &law)
     {
-      const double     K = law.bulk_modulus, G = law.shear_modulus;
-      const double     nu     = (3 * K - 2 * G) / (2 * (3 * K + G));
-      StrainProjection result = projection_of(Case::kind);
-      result.own              = 1;
-      result.mate             = -nu / (1 - nu);
-      result.trilinear_own    = 1;
-      result.trilinear_mate   = -nu;
+      const double    K = law.bulk_modulus, G = law.shear_modulus;
+      const double    nu     = (3 * K - 2 * G) / (2 * (3 * K + G));
+      StrainTreatment result = strain_treatment_of(Case::kind);
+      result.own             = 1;
+      result.mate            = -nu / (1 - nu);
+      result.trilinear_own   = 1;
+      result.trilinear_mate  = -nu;
       return result;
     }
 
@@ -166,35 +166,35 @@ namespace
     }
   };
 
-  template <class Law, int dim, Projection kind>
+  template <class Law, int dim, Treatment kind>
   using OnSplines = FrameCase<Law, dim, kind, KernelKind::quadratic>;
 
-  template <class Law, int dim, Projection kind>
+  template <class Law, int dim, Treatment kind>
   using OnCubics = FrameCase<Law, dim, kind, KernelKind::cubic>;
 
   using Cases =
-    testing::Types<FrameCase<LinearElastic, 2, Projection::none>,
-                   FrameCase<LinearElastic, 2, Projection::cell>,
-                   FrameCase<LinearElastic, 2, Projection::assumed_strain>,
-                   FrameCase<LinearElastic, 3, Projection::none>,
-                   FrameCase<LinearElastic, 3, Projection::cell>,
-                   FrameCase<LinearElastic, 3, Projection::assumed_strain>,
-                   FrameCase<NeoHookean, 2, Projection::none>,
-                   FrameCase<NeoHookean, 2, Projection::cell>,
-                   FrameCase<NeoHookean, 2, Projection::assumed_strain>,
-                   FrameCase<NeoHookean, 3, Projection::none>,
-                   FrameCase<NeoHookean, 3, Projection::cell>,
-                   FrameCase<NeoHookean, 3, Projection::assumed_strain>,
-                   OnSplines<LinearElastic, 2, Projection::none>,
-                   OnSplines<LinearElastic, 3, Projection::cell>,
-                   OnSplines<NeoHookean, 2, Projection::none>,
-                   OnSplines<NeoHookean, 2, Projection::cell>,
-                   OnSplines<NeoHookean, 3, Projection::none>,
-                   OnSplines<NeoHookean, 3, Projection::cell>,
-                   OnCubics<LinearElastic, 2, Projection::cell>,
-                   OnCubics<NeoHookean, 2, Projection::none>,
-                   OnCubics<NeoHookean, 3, Projection::none>,
-                   OnCubics<NeoHookean, 3, Projection::cell>>;
+    testing::Types<FrameCase<LinearElastic, 2, Treatment::none>,
+                   FrameCase<LinearElastic, 2, Treatment::cell>,
+                   FrameCase<LinearElastic, 2, Treatment::assumed_strain>,
+                   FrameCase<LinearElastic, 3, Treatment::none>,
+                   FrameCase<LinearElastic, 3, Treatment::cell>,
+                   FrameCase<LinearElastic, 3, Treatment::assumed_strain>,
+                   FrameCase<NeoHookean, 2, Treatment::none>,
+                   FrameCase<NeoHookean, 2, Treatment::cell>,
+                   FrameCase<NeoHookean, 2, Treatment::assumed_strain>,
+                   FrameCase<NeoHookean, 3, Treatment::none>,
+                   FrameCase<NeoHookean, 3, Treatment::cell>,
+                   FrameCase<NeoHookean, 3, Treatment::assumed_strain>,
+                   OnSplines<LinearElastic, 2, Treatment::none>,
+                   OnSplines<LinearElastic, 3, Treatment::cell>,
+                   OnSplines<NeoHookean, 2, Treatment::none>,
+                   OnSplines<NeoHookean, 2, Treatment::cell>,
+                   OnSplines<NeoHookean, 3, Treatment::none>,
+                   OnSplines<NeoHookean, 3, Treatment::cell>,
+                   OnCubics<LinearElastic, 2, Treatment::cell>,
+                   OnCubics<NeoHookean, 2, Treatment::none>,
+                   OnCubics<NeoHookean, 3, Treatment::none>,
+                   OnCubics<NeoHookean, 3, Treatment::cell>>;
   TYPED_TEST_SUITE(InitialFrame, Cases);
 } // namespace
 

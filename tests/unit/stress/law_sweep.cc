@@ -151,8 +151,8 @@ TYPED_TEST(Sweep, UpdatesEveryPointAsTheLawSays)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
-  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
+  using Plain       = LawSweep<Linear<dim>, Law, Treatment::none>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Treatment::cell>;
   using Layout      = NodeLayout<dim>;
   for (const auto &law : samples<Law>())
     for (int variant = 0; variant < 16; ++variant)
@@ -209,7 +209,7 @@ TYPED_TEST(Sweep, UpdatesEveryPointAsTheLawSays)
         const auto    sums = this->grid.cell_sums();
         StressSummary summary;
         if (projected)
-          summary = Averaged(law, {Projection::cell})
+          summary = Averaged(law, {Treatment::cell})
                       .update(points, this->grid.view(), &sums, what);
         else
           summary =
@@ -241,7 +241,7 @@ TYPED_TEST(Sweep, WhatLiesBehindThePointsDoesNotMatter)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Treatment::cell>;
   for (const auto &law : samples<Law>())
     for (const double behind : {0., -7., 1e300})
       {
@@ -257,7 +257,7 @@ TYPED_TEST(Sweep, WhatLiesBehindThePointsDoesNotMatter)
         const auto sums = this->grid.cell_sums();
 
         std::feclearexcept(FE_ALL_EXCEPT);
-        const auto summary = Averaged(law, {Projection::cell})
+        const auto summary = Averaged(law, {Treatment::cell})
                                .update(points, this->grid.view(), &sums, what);
 #ifdef DEBUG
         EXPECT_FALSE(std::fetestexcept(FE_DIVBYZERO | FE_INVALID));
@@ -277,12 +277,12 @@ TYPED_TEST(Sweep, WhatLiesBehindThePointsDoesNotMatter)
 
 
 // Where strain is the same everywhere there is nothing to average.
-TYPED_TEST(Sweep, HomogeneousMotionIsNotAffectedByProjection)
+TYPED_TEST(Sweep, HomogeneousMotionIsNotAffectedByTreatment)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
-  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
+  using Plain       = LawSweep<Linear<dim>, Law, Treatment::none>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Treatment::cell>;
   for (const auto &law : samples<Law>())
     for (const double size : {0., 10.})
       {
@@ -294,7 +294,7 @@ TYPED_TEST(Sweep, HomogeneousMotionIsNotAffectedByProjection)
         what.step       = step;
         const auto sums = this->grid.cell_sums();
         Plain(law, {}).update(one.view(), this->grid.view(), nullptr, what);
-        Averaged(law, {Projection::cell})
+        Averaged(law, {Treatment::cell})
           .update(two.view(), this->grid.view(), &sums, what);
         this->expect_states(one.view(), two.view(), law, 1e-12);
         // rigid translation: not even the neo-Hookean state moves
@@ -322,7 +322,7 @@ TYPED_TEST(Sweep, RelaxationKeepsTheMean)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Treatment::cell>;
   for (const auto &law : samples<Law>())
     for (const double relaxation : {0., 0.25, 1.})
       {
@@ -357,7 +357,7 @@ TYPED_TEST(Sweep, RelaxationKeepsTheMean)
         what.step          = step;
         what.relaxation    = relaxation;
         const auto sums    = this->grid.cell_sums();
-        const auto summary = Averaged(law, {Projection::cell})
+        const auto summary = Averaged(law, {Treatment::cell})
                                .update(points, this->grid.view(), &sums, what);
 
         const double scale = Law::volumetric < 0 ? largest : 1;
@@ -385,8 +385,8 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
-  using Averaged    = LawSweep<Linear<dim>, Law, Projection::cell>;
+  using Plain       = LawSweep<Linear<dim>, Law, Treatment::none>;
+  using Averaged    = LawSweep<Linear<dim>, Law, Treatment::cell>;
   const auto law    = samples<Law>().front();
   this->random_motion();
   for (const bool projected : {false, true})
@@ -399,9 +399,9 @@ TYPED_TEST(Sweep, MovesPointsOnRequest)
       std::unique_ptr<StressUpdate<dim>> sweep;
       if (projected)
         sweep =
-          std::make_unique<Averaged>(law, StrainProjection{Projection::cell});
+          std::make_unique<Averaged>(law, StrainTreatment{Treatment::cell});
       else
-        sweep = std::make_unique<Plain>(law, StrainProjection());
+        sweep = std::make_unique<Plain>(law, StrainTreatment());
 
       sweep->update(still.view(), this->grid.view(), &sums, what);
       what.move = 0.07;
@@ -450,7 +450,7 @@ TYPED_TEST(Sweep, SummariesAreSumsOverPoints)
 {
   constexpr int dim = TestFixture::dim;
   using Law         = typename TestFixture::Law;
-  using Plain       = LawSweep<Linear<dim>, Law, Projection::none>;
+  using Plain       = LawSweep<Linear<dim>, Law, Treatment::none>;
   for (const auto &law : samples<Law>())
     {
       auto                own    = this->stressed_points(law);
@@ -506,28 +506,28 @@ TEST(StressUpdates, AreMadeByNameWithTheRightVariant)
       std::vector<double> values;
       for (const auto &parameter : law.parameters)
         values.push_back(parameter.standard);
-      for (const Projection kind : {Projection::none, Projection::cell})
+      for (const Treatment kind : {Treatment::none, Treatment::cell})
         {
           const auto update =
             make_stress_update<2>(law.name, values, kind, response);
           EXPECT_EQ(update->density(), values[0]);
-          EXPECT_EQ(update->projection().kind, kind);
+          EXPECT_EQ(update->treatment().kind, kind);
         }
     }
   EXPECT_FALSE(make_stress_update<3>("newtonian fluid",
                                      {1000, 1e5, 0, 0, 0, 7},
-                                     Projection::none,
+                                     Treatment::none,
                                      response)
                  ->has_deviator());
   EXPECT_TRUE(make_stress_update<3>("newtonian fluid",
                                     {1000, 1e5, 1, 0, 0, 7},
-                                    Projection::none,
+                                    Treatment::none,
                                     response)
                 ->has_deviator());
-  EXPECT_THROW(make_stress_update<2>("cheese", {}, Projection::none, response),
+  EXPECT_THROW(make_stress_update<2>("cheese", {}, Treatment::none, response),
                std::logic_error);
   EXPECT_THROW(
-    make_stress_update<2>("neo hookean", {}, Projection::none, response),
+    make_stress_update<2>("neo hookean", {}, Treatment::none, response),
     std::logic_error);
 }
 
@@ -593,18 +593,18 @@ TYPED_TEST(Sweep, DeviatoricHistoryTendsToTheMeanOfTheCell)
       for (const auto &law : samples<Law>())
         for (const double share : {0.3, 1.})
           {
-            expect(LawSweep<Linear<dim>, Law, Projection::cell_shear>(
-                     law, {Projection::cell_shear}),
+            expect(LawSweep<Linear<dim>, Law, Treatment::cell_shear>(
+                     law, {Treatment::cell_shear}),
                    law,
                    2,
                    share);
-            expect(LawSweep<Linear<dim>, Law, Projection::hybrid>(
-                     law, {Projection::hybrid}),
+            expect(LawSweep<Linear<dim>, Law, Treatment::hybrid>(
+                     law, {Treatment::hybrid}),
                    law,
                    2,
                    share);
-            expect(LawSweep<Linear<dim>, Law, Projection::cell_full>(
-                     law, {Projection::cell_full}),
+            expect(LawSweep<Linear<dim>, Law, Treatment::cell_full>(
+                     law, {Treatment::cell_full}),
                    law,
                    0,
                    share);

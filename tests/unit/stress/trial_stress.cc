@@ -16,16 +16,13 @@ using namespace limber::testing_support;
 
 namespace
 {
-  template <class LawType,
-            int        dimension,
-            Projection projection,
-            Frame      frame_kind>
+  template <class LawType, int dimension, Treatment treatment, Frame frame_kind>
   struct TrialCase
   {
-    using Law                         = LawType;
-    static constexpr int        dim   = dimension;
-    static constexpr Projection kind  = projection;
-    static constexpr Frame      frame = frame_kind;
+    using Law                        = LawType;
+    static constexpr int       dim   = dimension;
+    static constexpr Treatment kind  = treatment;
+    static constexpr Frame     frame = frame_kind;
   };
 
 
@@ -186,12 +183,12 @@ namespace
 
   template <class Law, int dim>
   using TrialCasesOf = testing::Types<
-    TrialCase<Law, dim, Projection::none, Frame::current>,
-    TrialCase<Law, dim, Projection::cell, Frame::current>,
-    TrialCase<Law, dim, Projection::assumed_strain, Frame::current>,
-    TrialCase<Law, dim, Projection::none, Frame::initial>,
-    TrialCase<Law, dim, Projection::cell, Frame::initial>,
-    TrialCase<Law, dim, Projection::assumed_strain, Frame::initial>>;
+    TrialCase<Law, dim, Treatment::none, Frame::current>,
+    TrialCase<Law, dim, Treatment::cell, Frame::current>,
+    TrialCase<Law, dim, Treatment::assumed_strain, Frame::current>,
+    TrialCase<Law, dim, Treatment::none, Frame::initial>,
+    TrialCase<Law, dim, Treatment::cell, Frame::initial>,
+    TrialCase<Law, dim, Treatment::assumed_strain, Frame::initial>>;
 
   TYPED_TEST_SUITE_P(TrialStresses);
 
@@ -406,9 +403,9 @@ namespace
 
   template <class Law, int dim>
   using PlasticCasesOf = testing::Types<
-    TrialCase<Law, dim, Projection::none, Frame::current>,
-    TrialCase<Law, dim, Projection::cell, Frame::current>,
-    TrialCase<Law, dim, Projection::assumed_strain, Frame::current>>;
+    TrialCase<Law, dim, Treatment::none, Frame::current>,
+    TrialCase<Law, dim, Treatment::cell, Frame::current>,
+    TrialCase<Law, dim, Treatment::assumed_strain, Frame::current>>;
   using J2Plane    = PlasticCasesOf<J2, 2>;
   using J2Space    = PlasticCasesOf<J2, 3>;
   using SandPlane  = PlasticCasesOf<DruckerPrager<false>, 2>;

@@ -125,11 +125,11 @@ TEST(PlasticFlow, GoesWithEveryKernel)
 TEST(PlasticFlow, AutoNeverResistsAsElasticBending)
 {
   SceneRun<2> run(impact<2>(""));
-  EXPECT_EQ(run.problem.bodies[0].treatment, Projection::assumed_strain);
+  EXPECT_EQ(run.problem.bodies[0].treatment, Treatment::assumed_strain);
   EXPECT_EQ(run.problem.bodies[0].hourglass, HourglassResponse::incompressible);
   SceneRun<2> splines(
     impact<2>("subsection Method\n set Kernel = quadratic\nend\n"));
-  EXPECT_EQ(splines.problem.bodies[0].treatment, Projection::none);
+  EXPECT_EQ(splines.problem.bodies[0].treatment, Treatment::none);
 }
 
 

@@ -168,7 +168,7 @@ namespace
     MotionRecorder<dim>
     strain(const PointView<dim> &points,
            const bool            remapped,
-           const Projection      kind = Projection::none,
+           const Treatment       kind = Treatment::none,
            const double *const   mean = nullptr)
     {
       MotionRecorder<dim> result(points.size);
@@ -205,12 +205,12 @@ namespace
     /** The means of a quantity of the points, by cells or around nodes. */
     template <class Sum>
     const double *
-    means(const Projection kind, const Sum &sum)
+    means(const Treatment kind, const Sum &sum)
     {
       mean.assign(std::max(grid.n_cells, grid.n_vertices) *
                     NodalMeanLayout::stride,
                   0.);
-      sum(kind == Projection::cell, mean.data());
+      sum(kind == Treatment::cell, mean.data());
       for (std::size_t k = 0; k < mean.size(); k += NodalMeanLayout::stride)
         if (mean[k + NodalMeanLayout::mass] > 0)
           mean[k + NodalMeanLayout::value] /= mean[k + NodalMeanLayout::mass];
@@ -365,8 +365,8 @@ TYPED_TEST(DualDomainTransfer, ForcesAreTheTransposeOfTheStrain)
 {
   constexpr int dim = TestFixture::dim;
   using Nodes       = NodeLayout<dim>;
-  for (const Projection kind :
-       {Projection::none, Projection::cell, Projection::node})
+  for (const Treatment kind :
+       {Treatment::none, Treatment::cell, Treatment::node})
     for (int variant = 0; variant < 8; ++variant)
       {
         const bool remapped = variant & 1;
@@ -378,7 +378,7 @@ TYPED_TEST(DualDomainTransfer, ForcesAreTheTransposeOfTheStrain)
         GiveToGrid what;
         what.momentum        = false;
         what.inverse_density = 0.8;
-        what.projection.kind = kind;
+        what.treatment.kind  = kind;
         what.projected_pressure =
           this->means(kind, [&](const bool by_cells, double *const records) {
             if (by_cells)

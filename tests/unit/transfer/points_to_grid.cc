@@ -5,8 +5,8 @@
 #include <limber/transfer/project_on_nodes.h>
 
 #include <gtest/gtest.h>
-#include <support/projections.h>
 #include <support/small_grid.h>
+#include <support/treatments.h>
 
 using namespace limber;
 using namespace limber::testing_support;
@@ -163,7 +163,7 @@ TYPED_TEST(PointsToGrid, ProjectedPressureActsThroughAllPointsOfItsCell)
       GiveToGrid what;
       what.momentum        = variant & 4;
       what.inverse_density = 0.8;
-      what.projection.kind = Projection::cell;
+      what.treatment.kind  = Treatment::cell;
       this->grid.clear();
       this->grid.gather(points);
       const auto sums = this->grid.cell_sums();
@@ -190,14 +190,14 @@ TYPED_TEST(PointsToGrid, TotalsAreKept)
   constexpr int dim = TestFixture::dim;
   using Layout      = NodeLayout<dim>;
   for (const bool affine : {false, true})
-    for (const Projection kind : projections_of<TypeParam::kernel>())
+    for (const Treatment kind : treatments_of<TypeParam::kernel>())
       {
         auto       own    = random_points<dim>(this->grid, this->random);
         const auto points = own.view();
         GiveToGrid what;
         what.inverse_density = 0.8;
         what.affine          = affine;
-        what.projection      = projection_of(kind);
+        what.treatment       = strain_treatment_of(kind);
         what.projected_pressure =
           this->grid.nodal_means([&](double *const records) {
             sum_pressure<dim>(points, this->grid.view(), records);

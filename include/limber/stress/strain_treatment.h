@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_stress_strain_projection_h
-#define limber_stress_strain_projection_h
+#ifndef limber_stress_strain_treatment_h
+#define limber_stress_strain_treatment_h
 
-#include <limber/materials/projection.h>
+#include <limber/materials/treatment.h>
 
 #include <stdexcept>
 
@@ -14,13 +14,13 @@ namespace limber
    * by nu each in the trilinear mode (doc/theory/treatments.md).
    */
   template <class Law>
-  inline StrainProjection
-  strain_projection(const Law              &law,
-                    const Projection        kind,
-                    const HourglassResponse response)
+  inline StrainTreatment
+  strain_treatment(const Law              &law,
+                   const Treatment         kind,
+                   const HourglassResponse response)
   {
-    const double     K = law.bulk_modulus, G = law.shear_modulus;
-    StrainProjection result;
+    const double    K = law.bulk_modulus, G = law.shear_modulus;
+    StrainTreatment result;
     result.kind = kind;
     switch (response)
       {

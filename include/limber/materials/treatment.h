@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_materials_projection_h
-#define limber_materials_projection_h
+#ifndef limber_materials_treatment_h
+#define limber_materials_treatment_h
 
 namespace limber
 {
@@ -9,7 +9,7 @@ namespace limber
    * (Hu-Washizu, Mast et al. 2012): in a cell (DGQ0 functions), or around each
    * node (Q1 functions, lumped).
    */
-  enum class Projection
+  enum class Treatment
   {
     automatic,      // to be chosen from the law when the scene is read
     none,           // nothing
@@ -34,9 +34,9 @@ namespace limber
 
 
   /** A treatment against locking: how the scene calls it and what it does. */
-  struct Treatment
+  struct TreatmentRow
   {
-    Projection  kind;
+    Treatment   kind;
     const char *word, *text;
     // Of the volumetric part, the shear components, the deviatoric rest
     Mean volume = Mean::none, shear = Mean::none, rest = Mean::none;
@@ -55,8 +55,8 @@ namespace limber
    * and what the averages_...() below say follow from it; the strain operator
    * of each is in interpolation/strain_operator.h.
    */
-  inline constexpr Treatment treatments[] = {
-    {Projection::automatic,
+  inline constexpr TreatmentRow treatments[] = {
+    {Treatment::automatic,
      "auto",
      "'cell' for liquids; for solids 'assumed strain' with linear functions, "
      "else 'none', 'node' or (initial frame) 'cell', by Poisson's ratio",
@@ -68,7 +68,7 @@ namespace limber
      false,
      true,
      true},
-    {Projection::none,
+    {Treatment::none,
      "none",
      "values of the points as they are",
      Mean::none,
@@ -79,7 +79,7 @@ namespace limber
      false,
      true,
      true},
-    {Projection::cell,
+    {Treatment::cell,
      "cell",
      "Hu-Washizu, volumetric strain and pressure constant in the cell",
      Mean::cell,
@@ -90,7 +90,7 @@ namespace limber
      false,
      true,
      true},
-    {Projection::cell_shear,
+    {Treatment::cell_shear,
      "cell shear",
      "volumetric strain, shear strain and their stresses constant",
      Mean::cell,
@@ -99,7 +99,7 @@ namespace limber
      false,
      false,
      true},
-    {Projection::cell_full,
+    {Treatment::cell_full,
      "cell full",
      "all strain and stress constant",
      Mean::cell,
@@ -108,7 +108,7 @@ namespace limber
      false,
      true,
      true},
-    {Projection::node,
+    {Treatment::node,
      "node",
      "volumetric strain and pressure averaged around nodes, linear between",
      Mean::node,
@@ -119,7 +119,7 @@ namespace limber
      false,
      false,
      true},
-    {Projection::hybrid,
+    {Treatment::hybrid,
      "hybrid",
      "as 'node', and shear strain and its stress constant in the cell",
      Mean::node,
@@ -128,7 +128,7 @@ namespace limber
      false,
      false,
      true},
-    {Projection::assumed_strain,
+    {Treatment::assumed_strain,
      "assumed strain",
      "constant but for what bends the cell, see 'Hourglass response'",
      Mean::none,
@@ -143,10 +143,10 @@ namespace limber
 
 
   /** The row of a treatment. */
-  constexpr const Treatment &
-  treatment_of(const Projection kind)
+  constexpr const TreatmentRow &
+  treatment_of(const Treatment kind)
   {
-    for (const Treatment &treatment : treatments)
+    for (const TreatmentRow &treatment : treatments)
       if (treatment.kind == kind)
         return treatment;
     return treatments[0]; // every kind has its row
@@ -156,7 +156,7 @@ namespace limber
 
   /** Whether the volumetric part is averaged around nodes. */
   constexpr bool
-  averages_around_nodes(const Projection kind)
+  averages_around_nodes(const Treatment kind)
   {
     return treatment_of(kind).volume == Mean::node;
   }
@@ -165,7 +165,7 @@ namespace limber
 
   /** Whether the volumetric part is constant in a cell. */
   constexpr bool
-  averages_volume_in_cells(const Projection kind)
+  averages_volume_in_cells(const Treatment kind)
   {
     return treatment_of(kind).volume == Mean::cell;
   }
@@ -174,7 +174,7 @@ namespace limber
 
   /** Whether the shear components are constant in a cell. */
   constexpr bool
-  averages_shear_in_cells(const Projection kind)
+  averages_shear_in_cells(const Treatment kind)
   {
     return treatment_of(kind).shear == Mean::cell;
   }
@@ -183,9 +183,9 @@ namespace limber
 
   /** Whether strain and stress are formed with means over a cell. */
   constexpr bool
-  needs_cell_means(const Projection kind)
+  needs_cell_means(const Treatment kind)
   {
-    const Treatment &treatment = treatment_of(kind);
+    const TreatmentRow &treatment = treatment_of(kind);
     return treatment.volume == Mean::cell || treatment.shear == Mean::cell ||
            treatment.needs_moments;
   }
@@ -204,18 +204,18 @@ namespace limber
 
 
   /**
-   * A projection and, for the assumed strain, the share of an hourglass mode
+   * A treatment and, for the assumed strain, the share of an hourglass mode
    * that goes to the normal strain of its own direction and of its mate's:
    * (e1, e2) of theory/treatments.md for modes bilinear in two coordinates,
    * and the same for the trilinear one.
    */
-  struct StrainProjection
+  struct StrainTreatment
   {
-    Projection kind           = Projection::none;
-    double     own            = 1;
-    double     mate           = 0;
-    double     trilinear_own  = 1;
-    double     trilinear_mate = 0;
+    Treatment kind           = Treatment::none;
+    double    own            = 1;
+    double    mate           = 0;
+    double    trilinear_own  = 1;
+    double    trilinear_mate = 0;
   };
 } // namespace limber
 
