@@ -26,7 +26,10 @@ namespace limber
     , boundaries(parts.problem.sides)
     , loads(parts.problem, parts.grid, parts.bodies)
     , sweeps(parts)
-    , liquid_means(parts)
+    , cut_cells(CutCells<dim>::may_be(parts) ?
+                  std::make_optional<CutCells<dim>>(parts) :
+                  std::nullopt)
+    , liquid_means(parts, cut_cells ? &*cut_cells : nullptr)
     , stabilization(parts)
     , relocation(parts, loads)
   {
@@ -36,7 +39,7 @@ namespace limber
         contact.emplace(parts);
       }
     if (!parts.problem.obstacles.empty())
-      obstacles.emplace(parts, leapfrogs());
+      obstacles.emplace(parts, cut_cells ? &*cut_cells : nullptr, leapfrogs());
     if (filters_velocity(parts.problem.method.transfer))
       full_mass.emplace(parts.grid, boundaries);
     find_speeds();
@@ -85,6 +88,8 @@ namespace limber
       full_mass->reinit();
     if (contact)
       contact->reinit();
+    if (cut_cells)
+      cut_cells->reinit(time);
     if (obstacles)
       obstacles->reinit();
     for (auto &body : parts.bodies)
@@ -105,6 +110,8 @@ namespace limber
     stopwatch.start();
 
     clear();
+    if (cut_cells)
+      cut_cells->find(time);
     liquid_means.find();
     loads.look_at_cells(parts.nodes.vertices());
     lap(Verb::stabilize);

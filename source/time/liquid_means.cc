@@ -22,8 +22,10 @@ namespace limber
 
 
   template <int dim>
-  LiquidMeans<dim>::LiquidMeans(const RunParts<dim> &parts)
+  LiquidMeans<dim>::LiquidMeans(const RunParts<dim> &parts,
+                                CutCells<dim> *const cut_cells)
     : parts(parts)
+    , cut_cells(cut_cells)
     , surroundings(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
@@ -43,6 +45,7 @@ namespace limber
           const MaterialBody &first = *group.liquids.front();
           group.fills_cells         = first.cell_sums->stride == n_nodes;
           group.is_implicit         = first.implicit.has_value();
+          group.field               = field;
           if (group.fills_cells || group.liquids.size() > 1)
             groups.push_back(std::move(group));
         }
@@ -77,9 +80,14 @@ namespace limber
     for (const Group &group : groups)
       {
         if (group.fills_cells)
-          surroundings.find(vertices, [&](const std::uint32_t cell) {
-            return holds(group.liquids, cell) || holds(group.solids, cell);
-          });
+          surroundings.find(
+            vertices,
+            [&](const std::uint32_t cell) {
+              return !is_covered(cell) && (holds(group.liquids, cell) ||
+                                           holds(group.solids, cell));
+            },
+            cut_cells ? cut_cells->covered_cells() :
+                        std::vector<std::uint32_t>());
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
           for (const std::uint32_t cell : *cells)
@@ -120,7 +128,12 @@ namespace limber
       mix();
     for (const Part &part : in_cell)
       part.body->volume_shares[cell] = group.is_implicit ? 1 : part.share;
-    if (group.fills_cells && !in_cell.empty() && !holds(group.solids, cell))
+    if (const auto *const cut = cut_cells ? cut_cells->cell(cell) : nullptr)
+      cut_cells->wets(cell, group.field) =
+        !in_cell.empty() &&
+        (surroundings.is_inside(cell) || reaches_surfaces(*cut));
+    if (group.fills_cells && !in_cell.empty() && !is_covered(cell) &&
+        !holds(group.solids, cell))
       fill(group, cell);
   }
 
@@ -158,18 +171,22 @@ namespace limber
   void
   LiquidMeans<dim>::fill(const Group &group, const std::uint32_t cell)
   {
-    const double filled = filling(cell);
-    const bool   inside = surroundings.is_inside(cell);
+    const auto *const cut    = cut_cells ? cut_cells->cell(cell) : nullptr;
+    const double      filled = filling(cell) / (cut ? cut->open : 1);
+    const bool        inside = surroundings.is_inside(cell);
     const double share =
       inside && !group.is_implicit ?
         1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
         1;
     unsigned int n_open = 0, open = 0; // directions that end at a surface
     bool         before = true, behind = true;
+    if (inside && cut)
+      fill_open_part(*cut, share);
+    else
     for (unsigned int d = 0; d < dim; ++d)
       if (inside || (surroundings.is_bounded(cell, d, 0) &&
                      surroundings.is_bounded(cell, d, 1)))
-        approach(d, 0.5, share);
+        approach(d, cut ? cut->monomials[1u << d] : 0.5, share);
       else
         {
           ++n_open;
@@ -205,6 +222,51 @@ namespace limber
       for (unsigned int k = bit; k < n_nodes - 1; ++k)
         if (k & bit)
           part.sums[k] += share * (mean * part.sums[k ^ bit] - part.sums[k]);
+  }
+
+
+
+  // The same of all monomials, to the means over the open part of a cell.
+  template <int dim>
+  void
+  LiquidMeans<dim>::fill_open_part(const typename CutCells<dim>::Cell &cut,
+                                   const double                        share)
+  {
+    for (const Part &part : in_cell)
+      for (unsigned int k = 1; k < n_nodes - 1; ++k)
+        part.sums[k] += share * (part.mass * cut.monomials[k] - part.sums[k]);
+  }
+
+
+
+  // Whether what is in a cell is as near to its surfaces as what would fill
+  // the open part, to a tenth of the edge.
+  template <int dim>
+  bool
+  LiquidMeans<dim>::reaches_surfaces(
+    const typename CutCells<dim>::Cell &cut) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cut.number];
+    double                   volume   = 0;
+    dealii::Tensor<1, dim>   away; // of the centroid from that of the part
+    for (const Part &part : in_cell)
+      {
+        volume += part.volume;
+        for (unsigned int d = 0; d < dim; ++d)
+          away[d] += part.volume * (part.sums[1u << d] / part.mass -
+                                    cut.monomials[1u << d]);
+      }
+    double smallest = 1e300;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        away[d] /= volume * geometry.inverse_edge[d];
+        smallest = std::min(smallest, 1 / geometry.inverse_edge[d]);
+      }
+    return std::any_of(cut.surfaces.begin(),
+                       cut.surfaces.end(),
+                       [&](const auto &surface) {
+                         return surface.normal * away <= 0.1 * smallest;
+                       });
   }
 
 

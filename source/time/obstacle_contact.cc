@@ -68,8 +68,10 @@ namespace limber
 
   template <int dim>
   ObstacleContact<dim>::ObstacleContact(const RunParts<dim> &parts,
+                                        CutCells<dim> *const cut_cells,
                                         const bool           leapfrogs)
     : parts(parts)
+    , cut_cells(cut_cells)
     , impulses(parts.nodes, leapfrogs)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
     , cell_distance(parts.problem.obstacles.size())
@@ -140,6 +142,8 @@ namespace limber
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
       find_points(b, ways, step);
     add_nodes(ways, step);
+    if (cut_cells)
+      add_cut_cells(ways, step);
     impulses.finish_adding();
   }
 
@@ -431,7 +435,8 @@ namespace limber
             const double mass   = parts.nodes.record(field, node)[Layout::mass];
             const Vector normal = vector_in<dim>(record + Sums::normal);
             if (!(record[Sums::own] > 0) ||
-                !(normal.norm() > 1e-6 * weight)) // met from all sides alike
+                !(normal.norm() > 1e-6 * weight) || // met from all sides alike
+                is_met_by_surface(field, node))
               continue;
             const bool is_held = weight >= least_share * mass;
             if (!is_held && !is_in(node, ways[obstacle].before))
@@ -456,6 +461,74 @@ namespace limber
                              (place.velocity * place.normal));
             impulses.add_share(field, node, 1);
             touches.push_back({obstacle, x - ways[obstacle].before.centre()});
+          }
+      }
+  }
+
+
+
+  // Nodes of cells that obstacles cut are held by the surfaces in these.
+  template <int dim>
+  bool
+  ObstacleContact<dim>::is_met_by_surface(const unsigned int  field,
+                                          const std::uint32_t node) const
+  {
+    return cut_cells != nullptr && cut_cells->knows(field) &&
+           cut_cells->is_cut(node);
+  }
+
+
+
+  // The mean flow through each surface, by the means of the functions over it.
+  // A surface in the face of a cell counts where it ends at one that is cut.
+  template <int dim>
+  void
+  ObstacleContact<dim>::add_cut_cells(const std::vector<Way> &ways,
+                                      const double            step)
+  {
+    for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
+      {
+        if (!cut_cells->knows(field))
+          continue;
+        double density = 0; // of the heaviest liquid, kg/m^3
+        for (const auto &body : parts.bodies)
+          if (body->description.is_liquid &&
+              body->description.nodal_field == field)
+            density = std::max(density, body->stress->density());
+        for (const auto &cell : cut_cells->all())
+          {
+            if (cell.number >= parts.grid.n_owned_cells() ||
+                !cut_cells->wets(cell.number, field))
+              continue;
+            const CellGeometry<dim> &geometry =
+              parts.grid.geometry[cell.number];
+            for (const auto &surface : cell.surfaces)
+              {
+                bool is_met = false;
+                for (unsigned int a = 0; a < 1u << dim; ++a)
+                  is_met = is_met ||
+                           (surface.functions[a] > 0 &&
+                            cut_cells->is_cut(geometry.node[a] /
+                                              Layout::stride));
+                if (!is_met)
+                  continue;
+                Place &place = impulses.add_place();
+                place.normal = surface.normal;
+                place.friction =
+                  parts.problem.obstacles[surface.obstacle].friction;
+                place.mass = density * surface.area * parts.grid.smallest_edge;
+                if (parts.problem.obstacles[surface.obstacle].moves())
+                  place.velocity =
+                    ways[surface.obstacle].velocity(surface.place, step);
+                for (unsigned int a = 0; a < 1u << dim; ++a)
+                  if (surface.functions[a] > 0)
+                    impulses.add_share(field,
+                                       geometry.node[a] / Layout::stride,
+                                       surface.functions[a]);
+                touches.push_back(
+                  {surface.obstacle,
+                   surface.place - ways[surface.obstacle].before.centre()});
+              }
           }
       }
   }

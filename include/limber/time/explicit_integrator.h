@@ -218,6 +218,8 @@ namespace limber
     BoundaryConditions<dim> boundaries;
     ExternalLoads<dim>      loads;
     BodySweeps<dim>         sweeps;
+    // Where obstacles may cut cells that hold a liquid
+    std::optional<CutCells<dim>> cut_cells;
     LiquidMeans<dim>        liquid_means;
     bool touched = false; // bodies or obstacles, in the step before
     std::optional<Contact<dim>>         contact;   // of bodies that may part

@@ -3,6 +3,7 @@
 #define limber_time_liquid_means_h
 
 #include <limber/time/integrator.h>
+#include <limber/time/cut_cells.h>
 #include <limber/time/surroundings.h>
 
 namespace limber
@@ -32,14 +33,16 @@ namespace limber
    * divergence, and water at rest would be unstable. In a layer at a surface
    * the cell counts as filled from within. Where points have clumped in
    * explicit steps, means over them push clumps apart and keep a share; an
-   * implicit pressure has the density control for that. Theory:
+   * implicit pressure has the density control for that. Where an obstacle cuts
+   * a cell (CutCells), its open part takes the place of the cell. Theory:
    * doc/theory/treatments.md.
    */
   template <int dim>
   class LiquidMeans
   {
   public:
-    explicit LiquidMeans(const RunParts<dim> &parts);
+    /** Cells that obstacles cut, or null. */
+    LiquidMeans(const RunParts<dim> &parts, CutCells<dim> *cut_cells);
 
     /** Adopt a mesh that has changed. */
     void
@@ -60,6 +63,7 @@ namespace limber
       std::vector<MaterialBody *> liquids, solids;
       bool fills_cells = false; // whether means over the cell are wanted
       bool is_implicit = false; // the pressure of the liquids
+      unsigned int field = 0;
     };
 
     /** One of the liquids in a cell. */
@@ -80,12 +84,22 @@ namespace limber
     fill(const Group &group, std::uint32_t cell);
     void
     approach(unsigned int direction, double mean, double share);
+    void
+    fill_open_part(const typename CutCells<dim>::Cell &cut, double share);
+    bool
+    reaches_surfaces(const typename CutCells<dim>::Cell &cut) const;
     double
     filling(std::uint32_t cell) const;
+    bool
+    is_covered(const std::uint32_t cell) const
+    {
+      return cut_cells != nullptr && cut_cells->is_covered(cell);
+    }
     bool
     holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
 
     const RunParts<dim> parts;
+    CutCells<dim> *const cut_cells; // or null
     std::vector<Group>  groups;
     std::vector<Part>   in_cell;
     Surroundings<dim>   surroundings;

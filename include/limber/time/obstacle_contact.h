@@ -4,6 +4,7 @@
 
 #include <limber/points/cell_batch.h>
 #include <limber/time/contact_impulses.h>
+#include <limber/time/cut_cells.h>
 #include <limber/time/integrator.h>
 
 #include <vector>
@@ -55,7 +56,9 @@ namespace limber
      * start. With @p leapfrogs (the initial frame) the velocity that points
      * give back in a step strains them in the next as well.
      */
-    ObstacleContact(const RunParts<dim> &parts, bool leapfrogs);
+    ObstacleContact(const RunParts<dim> &parts,
+                    CutCells<dim>       *cut_cells,
+                    bool                 leapfrogs);
 
     /** Adopt a changed mesh. */
     void
@@ -181,7 +184,13 @@ namespace limber
     clear_sums();
     void
                          add_nodes(const std::vector<Way> &ways, double step);
+    void
+    add_cut_cells(const std::vector<Way> &ways, double step);
+    bool
+    is_met_by_surface(unsigned int field, std::uint32_t node) const;
+
     const RunParts<dim>  parts;
+    CutCells<dim> *const cut_cells; // or null
     std::vector<double>  edge; // largest of the points of a body, m
     ContactImpulses<dim> impulses;
     std::vector<Sums>    sums;    // of an obstacle and a field

@@ -25,13 +25,21 @@ namespace limber
     reinit();
 
     /** Look which cells hold something, asked for each of those of this rank
-     * that may; collective. */
+     * that may; collective. The owned cells @p taken do in any case: what
+     * takes them is no surface of what others hold. */
     template <class Holds>
     void
-    find(const NodalFields<dim> &vertices, const Holds &holds)
+    find(const NodalFields<dim>           &vertices,
+         const Holds                      &holds,
+         const std::vector<std::uint32_t> &taken = {})
     {
       for (const std::uint32_t node : vertices.active_nodes())
         holding[node] = 0;
+      for (const std::uint32_t cell : taken)
+        for (unsigned int a = 0; a < n_corners; ++a)
+          holding[node_of(cell, a)] = 0;
+      for (const std::uint32_t cell : taken)
+        add(holding, cell);
       for (const std::uint32_t cell : vertices.owned_occupied_cells())
         if (holds(cell))
           add(holding, cell);

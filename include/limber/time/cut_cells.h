@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_cut_cells_h
+#define limber_time_cut_cells_h
+
+#include <limber/time/integrator.h>
+
+#include <array>
+#include <vector>
+
+namespace limber
+{
+  /**
+   * The cells that the surfaces of obstacles run across, for liquids with one
+   * mean divergence in a cell.
+   *
+   * Between the corners of a cell the distance phi from the obstacles is taken
+   * as linear on simplices, the same on either side of a face. What has phi > 0
+   * is open. Of it are known its share of the volume, the means of the
+   * monomials in natural coordinates, and the pieces of surface that bound it
+   * with the means of the functions of the nodes over them. As
+   *
+   *   sum over cells of (int_open grad N_i dV) = - int_surface N_i n dS
+   *
+   * with n out of the obstacle, a constant pressure in the open part is borne
+   * by the same pressure on the surface, at every node.
+   *
+   * A corner that is nearer to a surface than @p least_depth of the edge of its
+   * cell counts as in it: a thinner layer of liquid would be stiffer than the
+   * step allows for. Theory: doc/theory/obstacles.md.
+   */
+  template <int dim>
+  class CutCells
+  {
+  public:
+    static constexpr unsigned int n_nodes = 1 << dim;
+    using Vector                          = dealii::Tensor<1, dim>;
+
+    // Of the edge of a cell, to either side of a corner
+    static constexpr double least_depth = 0.1;
+
+    /** A piece of surface in a cell: nearly flat, of one obstacle. */
+    struct Surface
+    {
+      unsigned int       obstacle = 0;
+      Vector             normal; // out of the obstacle, of unit length
+      dealii::Point<dim> place;  // its centroid, m
+      double             area = 0; // m^(dim-1)
+      std::array<double, n_nodes> functions{}; // means of N_i over it
+    };
+
+    /** A cell with surfaces across it or in its faces. */
+    struct Cell
+    {
+      std::uint32_t number = 0;
+      double        open   = 1; // share of its volume
+      // Means of the monomials (CellMeans) over the open part
+      std::array<double, n_nodes> monomials{};
+      std::vector<Surface>        surfaces;
+
+      bool
+      is_cut() const
+      {
+        return open < 1;
+      }
+    };
+
+    explicit CutCells(const RunParts<dim> &parts);
+
+    /** Whether a scene may have any: liquids with obstacles on vertices. */
+    static bool
+    may_be(const RunParts<dim> &parts);
+
+    /** Whether the liquids of a field of nodes know of them. */
+    bool
+    knows(const unsigned int field) const
+    {
+      return knowing[field];
+    }
+
+    /** Adopt a mesh at a time; collective. */
+    void
+    reinit(double time);
+
+    /** Follow the obstacles to the beginning of a step; collective. */
+    void
+    find(double time);
+
+    const std::vector<Cell> &
+    all() const
+    {
+      return cells;
+    }
+
+    /** That of a cell of the grid; null where it has none. */
+    const Cell *
+    cell(const std::uint32_t number) const
+    {
+      const std::uint32_t kind = kinds[number];
+      return kind >= first_cut ? &cells[kind - first_cut] : nullptr;
+    }
+
+    /** Whether an obstacle takes all of a cell. */
+    bool
+    is_covered(const std::uint32_t number) const
+    {
+      return kinds[number] == covered;
+    }
+
+    /** Owned cells that obstacles take. */
+    const std::vector<std::uint32_t> &
+    covered_cells() const
+    {
+      return owned_covered;
+    }
+
+    /** Whether a node is a corner of a cell that is cut. */
+    bool
+    is_cut(const std::uint32_t node) const
+    {
+      return at_cut[node] > 0;
+    }
+
+    /** Whether the liquid of a field reaches the surfaces in a cell, a record
+     * that others keep here. */
+    char &
+    wets(const std::uint32_t cell, const unsigned int field)
+    {
+      return wet[(kinds[cell] - first_cut) * knowing.size() + field];
+    }
+
+  private:
+    enum Kind : std::uint32_t
+    {
+      open,
+      covered,
+      first_cut
+    };
+
+    struct Simplex
+    {
+      std::array<dealii::Point<dim>, dim + 1> corners; // natural coordinates
+      std::array<double, dim + 1>             distance; // m
+    };
+
+    using Places = std::vector<ObstaclePlace<dim>>;
+
+    void
+    find_cells(const Places &places);
+    void
+    look_at(std::uint32_t cell, const Places &places);
+    void
+    divide(const Simplex      &simplex,
+           const CellGeometry<dim> &geometry,
+           const Places       &places,
+           Cell               &cell) const;
+    void
+    add_volume(const Simplex &simplex, Cell &cell) const;
+    void
+    add_surface(const Simplex           &simplex,
+                unsigned int             opposite,
+                const CellGeometry<dim> &geometry,
+                const Places            &places,
+                Cell                    &cell) const;
+    double
+    way_since_found(const Places &places) const;
+
+    const RunParts<dim>        parts;
+    std::vector<char>          knowing; // by field
+    std::vector<Cell>          cells;
+    std::vector<std::uint32_t> kinds; // by cell
+    std::vector<std::uint32_t> owned_covered;
+    LazyArray<double>          at_cut; // by node
+    RecordExchange             exchange{1};
+    std::vector<char>          wet; // by cell, field
+    // Where obstacles move: the distances of the middles of cells, m, less
+    // what the obstacles have moved by since
+    std::vector<double> distance;
+    Places              former;
+    bool                moves = false;
+  };
+} // namespace limber
+
+#endif
