@@ -15,6 +15,11 @@ namespace limber
     // degrees.
     constexpr double least_cosine = 0.7;
 
+    // Parts of a cell along an edge, and what of a part is nothing
+    template <int dim>
+    constexpr unsigned int n_parts = dim == 2 ? 4 : 2;
+    constexpr double       nothing = 1e-3;
+
     /** The corners of the simplices of the unit cube: along each of the ways
      * from its first corner to its last. Seen across a face they meet. */
     template <int dim>
@@ -177,9 +182,11 @@ namespace limber
     for (std::uint32_t cell = 0; cell < n; ++cell)
       {
         look_at(cell, places);
-        if (kinds[cell] == covered && cell < parts.grid.n_owned_cells())
+        if (is_covered(cell) && cell < parts.grid.n_owned_cells())
           owned_covered.push_back(cell);
       }
+    for (Cell &cell : cells)
+      find_surfaces(cell, places);
     wet.assign(cells.size() * knowing.size(), 0);
 
     const NodeTable<dim> &table = parts.grid.vertices;
@@ -214,11 +221,10 @@ namespace limber
         result = std::min(result, place.distance(x).value);
       return result;
     };
-    double smallest = 1e300, diagonal = 0; // m
+    double diagonal = 0; // m
     for (unsigned int d = 0; d < dim; ++d)
       {
         const double edge = 1 / geometry.inverse_edge[d];
-        smallest          = std::min(smallest, edge);
         diagonal += edge * edge;
       }
     diagonal        = std::sqrt(diagonal);
@@ -236,41 +242,67 @@ namespace limber
         return;
       }
 
-    std::array<dealii::Point<dim>, n_nodes> corners;
-    std::array<double, n_nodes>             of_corners;
-    for (unsigned int a = 0; a < n_nodes; ++a)
-      {
-        for (unsigned int d = 0; d < dim; ++d)
-          corners[a][d] = a >> d & 1;
-        of_corners[a] = least(place_at(corners[a]));
-        if (std::abs(of_corners[a]) < least_depth * smallest)
-          of_corners[a] = 0;
-      }
-    static const auto simplices = simplices_of_cube<dim>();
-    Cell              cell;
+    Cell cell;
     cell.number = number;
     cell.open   = 0;
-    for (const auto &one : simplices)
+    for_each_open_simplex(number, places, [&](const Simplex &simplex) {
+      add_volume(simplex, cell);
+    });
+    if (cell.open < least_open)
       {
-        Simplex simplex;
-        for (unsigned int k = 0; k <= dim; ++k)
-          {
-            simplex.corners[k]  = corners[one[k]];
-            simplex.distance[k] = of_corners[one[k]];
-          }
-        divide(simplex, geometry, places, cell);
-      }
-    if (!(cell.open > 0))
-      {
-        kinds[number] = covered;
+        kinds[number] = cell.open > 0 ? closed : covered;
         return;
       }
-    if (cell.surfaces.empty())
-      return;
     for (double &mean : cell.monomials)
       mean /= cell.open;
     if (cell.open > 1 - 1e-12)
       cell.open = 1;
+    kinds[number] = first_cut + static_cast<std::uint32_t>(cells.size());
+    cells.push_back(std::move(cell));
+  }
+
+
+
+  // Where the obstacles begin, and in faces behind which there is only a rest.
+  template <int dim>
+  void
+  CutCells<dim>::find_surfaces(Cell &cell, const Places &places) const
+  {
+    const auto is_shut = [&](const unsigned int direction,
+                             const unsigned int end) {
+      const std::uint32_t next = neighbour(cell.number, direction, end);
+      return next != invalid_cell && is_closed(next);
+    };
+    std::array<std::array<bool, 2>, dim> shut;
+    for (unsigned int d = 0; d < dim; ++d)
+      for (const unsigned int end : {0, 1})
+        shut[d][end] = is_shut(d, end);
+    const auto is_bound = [&](const Simplex     &simplex,
+                              const unsigned int opposite) {
+      bool                                 in_obstacle = true;
+      std::array<std::array<bool, 2>, dim> in_face;
+      for (auto &ends : in_face)
+        ends = {true, true};
+      for (unsigned int k = 0; k <= dim; ++k)
+        if (k != opposite)
+          {
+            in_obstacle = in_obstacle && simplex.distance[k] == 0;
+            for (unsigned int d = 0; d < dim; ++d)
+              for (const unsigned int end : {0, 1})
+                in_face[d][end] =
+                  in_face[d][end] && simplex.corners[k][d] == end;
+          }
+      bool result = in_obstacle;
+      for (unsigned int d = 0; d < dim; ++d)
+        for (const unsigned int end : {0, 1})
+          result = result || (in_face[d][end] && shut[d][end]);
+      return result;
+    };
+    for_each_open_simplex(cell.number, places, [&](const Simplex &simplex) {
+      for (unsigned int k = 0; k <= dim; ++k)
+        if (is_bound(simplex, k))
+          add_surface(simplex, k, places, cell);
+    });
     for (Surface &surface : cell.surfaces)
       {
         for (double &mean : surface.functions)
@@ -278,19 +310,81 @@ namespace limber
         surface.place /= surface.area;
         surface.normal /= surface.normal.norm();
       }
-    kinds[number] = first_cut + static_cast<std::uint32_t>(cells.size());
-    cells.push_back(std::move(cell));
+  }
+
+
+
+  template <int dim>
+  std::uint32_t
+  CutCells<dim>::neighbour(const std::uint32_t cell,
+                           const unsigned int  direction,
+                           const unsigned int  end) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
+    std::array<double, dim>  x;
+    for (unsigned int d = 0; d < dim; ++d)
+      x[d] = geometry.origin[d] +
+             (d != direction ? 0.5 : end == 0 ? -0.25 : 1.25) /
+               geometry.inverse_edge[d];
+    return parts.grid.bins.cell_at(x);
+  }
+
+
+
+  // Of all parts of the cell: those that are open, work(simplex).
+  template <int dim>
+  template <class Work>
+  void
+  CutCells<dim>::for_each_open_simplex(const std::uint32_t number,
+                                       const Places       &places,
+                                       const Work         &work) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[number];
+    constexpr unsigned int   n        = n_parts<dim>;
+    double                   smallest = 1e300;
+    for (unsigned int d = 0; d < dim; ++d)
+      smallest = std::min(smallest, 1 / (n * geometry.inverse_edge[d]));
+
+    static const auto simplices = simplices_of_cube<dim>();
+    for (unsigned int part = 0; part < (dim == 2 ? n * n : n * n * n); ++part)
+      {
+        std::array<dealii::Point<dim>, n_nodes> corners;
+        std::array<double, n_nodes>             distances;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          {
+            dealii::Point<dim> x;
+            for (unsigned int d = 0, rest = part; d < dim; ++d, rest /= n)
+              {
+                corners[a][d] = double(rest % n + (a >> d & 1)) / n;
+                x[d]          = geometry.origin[d] +
+                       corners[a][d] / geometry.inverse_edge[d];
+              }
+            double &least = distances[a] = 1e300;
+            for (const ObstaclePlace<dim> &place : places)
+              least = std::min(least, place.distance(x).value);
+            if (std::abs(least) < nothing * smallest)
+              least = 0;
+          }
+        for (const auto &one : simplices)
+          {
+            Simplex simplex;
+            for (unsigned int k = 0; k <= dim; ++k)
+              {
+                simplex.corners[k]  = corners[one[k]];
+                simplex.distance[k] = distances[one[k]];
+              }
+            divide(simplex, work);
+          }
+      }
   }
 
 
 
   // In two where an edge runs from one side to the other, until none does.
   template <int dim>
+  template <class Work>
   void
-  CutCells<dim>::divide(const Simplex           &simplex,
-                        const CellGeometry<dim> &geometry,
-                        const Places            &places,
-                        Cell                    &cell) const
+  CutCells<dim>::divide(const Simplex &simplex, const Work &work) const
   {
     for (unsigned int i = 0; i <= dim; ++i)
       for (unsigned int j = 0; j <= dim; ++j)
@@ -306,23 +400,14 @@ namespace limber
                 Simplex part            = simplex;
                 part.corners[replaced]  = between;
                 part.distance[replaced] = 0;
-                divide(part, geometry, places, cell);
+                divide(part, work);
               }
             return;
           }
-    const auto &of = simplex.distance;
-    if (std::none_of(of.begin(), of.end(), [](double x) { return x > 0; }))
-      return;
-    add_volume(simplex, cell);
-    if (std::count(of.begin(), of.end(), 0.) == dim)
-      add_surface(simplex,
-                  std::find_if(of.begin(),
-                               of.end(),
-                               [](double x) { return x > 0; }) -
-                    of.begin(),
-                  geometry,
-                  places,
-                  cell);
+    if (std::any_of(simplex.distance.begin(),
+                    simplex.distance.end(),
+                    [](const double x) { return x > 0; }))
+      work(simplex);
   }
 
 
@@ -354,12 +439,12 @@ namespace limber
   // The facet opposite to a corner that is open.
   template <int dim>
   void
-  CutCells<dim>::add_surface(const Simplex           &simplex,
-                             const unsigned int       opposite,
-                             const CellGeometry<dim> &geometry,
-                             const Places            &places,
-                             Cell                    &cell) const
+  CutCells<dim>::add_surface(const Simplex     &simplex,
+                             const unsigned int opposite,
+                             const Places      &places,
+                             Cell              &cell) const
   {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cell.number];
     std::array<dealii::Point<dim>, dim> facet; // natural coordinates
     for (unsigned int k = 0, n = 0; k <= dim; ++k)
       if (k != opposite)

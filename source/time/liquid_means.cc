@@ -127,7 +127,10 @@ namespace limber
     if (in_cell.size() > 1)
       mix();
     for (const Part &part : in_cell)
-      part.body->volume_shares[cell] = group.is_implicit ? 1 : part.share;
+      part.body->volume_shares[cell] =
+        group.is_implicit                           ? 1 :
+        cut_cells && cut_cells->is_closed(cell) ? 0 :
+                                                      part.share;
     if (const auto *const cut = cut_cells ? cut_cells->cell(cell) : nullptr)
       cut_cells->wets(cell, group.field) =
         !in_cell.empty() &&

@@ -13,9 +13,9 @@ namespace limber
    * The cells that the surfaces of obstacles run across, for liquids with one
    * mean divergence in a cell.
    *
-   * Between the corners of a cell the distance phi from the obstacles is taken
-   * as linear on simplices, the same on either side of a face. What has phi > 0
-   * is open. Of it are known its share of the volume, the means of the
+   * Between the corners of parts of a cell the distance phi from the obstacles is
+   * taken as linear on simplices, the same on either side of a face. What has
+   * phi > 0 is open. Of it are known its share of the volume, the means of the
    * monomials in natural coordinates, and the pieces of surface that bound it
    * with the means of the functions of the nodes over them. As
    *
@@ -24,9 +24,10 @@ namespace limber
    * with n out of the obstacle, a constant pressure in the open part is borne
    * by the same pressure on the surface, at every node.
    *
-   * A corner that is nearer to a surface than @p least_depth of the edge of its
-   * cell counts as in it: a thinner layer of liquid would be stiffer than the
-   * step allows for. Theory: doc/theory/obstacles.md.
+   * A cell that is open by less than a tenth counts as closed, and its faces
+   * towards others as surfaces: what is in there moves along, but has no
+   * pressure. A thinner layer of liquid would be stiffer than the step allows
+   * for. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells
@@ -35,8 +36,8 @@ namespace limber
     static constexpr unsigned int n_nodes = 1 << dim;
     using Vector                          = dealii::Tensor<1, dim>;
 
-    // Of the edge of a cell, to either side of a corner
-    static constexpr double least_depth = 0.1;
+    // Of a cell: where less is open it counts as closed
+    static constexpr double least_open = 0.1;
 
     /** A piece of surface in a cell: nearly flat, of one obstacle. */
     struct Surface
@@ -99,11 +100,18 @@ namespace limber
       return kind >= first_cut ? &cells[kind - first_cut] : nullptr;
     }
 
-    /** Whether an obstacle takes all of a cell. */
+    /** Whether obstacles take all of a cell, or all but a rest. */
     bool
     is_covered(const std::uint32_t number) const
     {
-      return kinds[number] == covered;
+      return kinds[number] == covered || kinds[number] == closed;
+    }
+
+    /** Whether they leave a rest that counts as closed. */
+    bool
+    is_closed(const std::uint32_t number) const
+    {
+      return kinds[number] == closed;
     }
 
     /** Owned cells that obstacles take. */
@@ -133,6 +141,7 @@ namespace limber
     {
       open,
       covered,
+      closed, // but for a rest
       first_cut
     };
 
@@ -149,18 +158,24 @@ namespace limber
     void
     look_at(std::uint32_t cell, const Places &places);
     void
-    divide(const Simplex      &simplex,
-           const CellGeometry<dim> &geometry,
-           const Places       &places,
-           Cell               &cell) const;
+    find_surfaces(Cell &cell, const Places &places) const;
+    template <class Work>
+    void
+    for_each_open_simplex(std::uint32_t cell,
+                          const Places &places,
+                          const Work   &work) const;
+    template <class Work>
+    void
+    divide(const Simplex &simplex, const Work &work) const;
     void
     add_volume(const Simplex &simplex, Cell &cell) const;
     void
-    add_surface(const Simplex           &simplex,
-                unsigned int             opposite,
-                const CellGeometry<dim> &geometry,
-                const Places            &places,
-                Cell                    &cell) const;
+    add_surface(const Simplex &simplex,
+                unsigned int   opposite,
+                const Places  &places,
+                Cell          &cell) const;
+    std::uint32_t
+    neighbour(std::uint32_t cell, unsigned int direction, unsigned int end) const;
     double
     way_since_found(const Places &places) const;
 
