@@ -13,7 +13,7 @@ namespace limber
   {
     // Pieces of surface in a cell are one where their normals are within 45
     // degrees.
-    constexpr double least_cosine = 0.7;
+    constexpr double least_cosine = 0.995;
 
     // Parts of a cell along an edge, and what of a part is nothing
     template <int dim>
