@@ -157,7 +157,8 @@ namespace limber
             x[d] = corner >> d & 1 ? parts.problem.grid.upper[d] :
                                      parts.problem.grid.lower[d];
           result =
-            std::max(result, places[o].place_of(former[o].start_of(x)).distance(x));
+            std::max(result,
+                     places[o].place_of(former[o].start_of(x)).distance(x));
         }
     return result;
   }
@@ -323,9 +324,10 @@ namespace limber
     const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
     std::array<double, dim>  x;
     for (unsigned int d = 0; d < dim; ++d)
-      x[d] = geometry.origin[d] +
-             (d != direction ? 0.5 : end == 0 ? -0.25 : 1.25) /
-               geometry.inverse_edge[d];
+      x[d] = geometry.origin[d] + (d != direction ? 0.5 :
+                                   end == 0       ? -0.25 :
+                                                    1.25) /
+                                    geometry.inverse_edge[d];
     return parts.grid.bins.cell_at(x);
   }
 
@@ -356,8 +358,8 @@ namespace limber
             for (unsigned int d = 0, rest = part; d < dim; ++d, rest /= n)
               {
                 corners[a][d] = double(rest % n + (a >> d & 1)) / n;
-                x[d]          = geometry.origin[d] +
-                       corners[a][d] / geometry.inverse_edge[d];
+                x[d] =
+                  geometry.origin[d] + corners[a][d] / geometry.inverse_edge[d];
               }
             double &least = distances[a] = 1e300;
             for (const ObstaclePlace<dim> &place : places)
@@ -429,8 +431,8 @@ namespace limber
         for (unsigned int k = 0; k < dim; ++k)
           xi += rule.point(q)[k] * edges[k];
         for (unsigned int k = 0; k < n_nodes; ++k)
-          cell.monomials[k] += rule.weight(q) * factorial(dim) * volume *
-                               monomial<dim>(k, xi);
+          cell.monomials[k] +=
+            rule.weight(q) * factorial(dim) * volume * monomial<dim>(k, xi);
       }
   }
 
@@ -481,8 +483,8 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           functions[a] += weight * function_of_corner<dim>(a, xi);
         for (unsigned int d = 0; d < dim; ++d)
-          middle[d] += weight * (geometry.origin[d] +
-                                 xi[d] / geometry.inverse_edge[d]);
+          middle[d] +=
+            weight * (geometry.origin[d] + xi[d] / geometry.inverse_edge[d]);
       }
     unsigned int obstacle = 0;
     for (unsigned int o = 1; o < places.size(); ++o)

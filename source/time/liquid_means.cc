@@ -83,8 +83,8 @@ namespace limber
           surroundings.find(
             vertices,
             [&](const std::uint32_t cell) {
-              return !is_covered(cell) && (holds(group.liquids, cell) ||
-                                           holds(group.solids, cell));
+              return !is_covered(cell) &&
+                     (holds(group.liquids, cell) || holds(group.solids, cell));
             },
             cut_cells ? cut_cells->covered_cells() :
                         std::vector<std::uint32_t>());
@@ -127,10 +127,7 @@ namespace limber
     if (in_cell.size() > 1)
       mix();
     for (const Part &part : in_cell)
-      part.body->volume_shares[cell] =
-        group.is_implicit                           ? 1 :
-        cut_cells && cut_cells->is_closed(cell) ? 0 :
-                                                      part.share;
+      part.body->volume_shares[cell] = group.is_implicit ? 1 : part.share;
     if (const auto *const cut = cut_cells ? cut_cells->cell(cell) : nullptr)
       cut_cells->wets(cell, group.field) =
         !in_cell.empty() &&
@@ -177,26 +174,26 @@ namespace limber
     const auto *const cut    = cut_cells ? cut_cells->cell(cell) : nullptr;
     const double      filled = filling(cell) / (cut ? cut->open : 1);
     const bool        inside = surroundings.is_inside(cell);
-    const double share =
+    const double      share =
       inside && !group.is_implicit ?
-        1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
-        1;
+             1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
+             1;
     unsigned int n_open = 0, open = 0; // directions that end at a surface
     bool         before = true, behind = true;
     if (inside && cut)
       fill_open_part(*cut, share);
     else
-    for (unsigned int d = 0; d < dim; ++d)
-      if (inside || (surroundings.is_bounded(cell, d, 0) &&
-                     surroundings.is_bounded(cell, d, 1)))
-        approach(d, cut ? cut->monomials[1u << d] : 0.5, share);
-      else
-        {
-          ++n_open;
-          open   = d;
-          before = surroundings.is_bounded(cell, d, 0);
-          behind = surroundings.is_bounded(cell, d, 1);
-        }
+      for (unsigned int d = 0; d < dim; ++d)
+        if (inside || (surroundings.is_bounded(cell, d, 0) &&
+                       surroundings.is_bounded(cell, d, 1)))
+          approach(d, cut ? cut->monomials[1u << d] : 0.5, share);
+        else
+          {
+            ++n_open;
+            open   = d;
+            before = surroundings.is_bounded(cell, d, 0);
+            behind = surroundings.is_bounded(cell, d, 1);
+          }
     if (n_open == 1 && (before || behind))
       {
         const double half = 0.5 * std::min(1., filled);
@@ -256,8 +253,8 @@ namespace limber
       {
         volume += part.volume;
         for (unsigned int d = 0; d < dim; ++d)
-          away[d] += part.volume * (part.sums[1u << d] / part.mass -
-                                    cut.monomials[1u << d]);
+          away[d] += part.volume *
+                     (part.sums[1u << d] / part.mass - cut.monomials[1u << d]);
       }
     double smallest = 1e300;
     for (unsigned int d = 0; d < dim; ++d)

@@ -506,10 +506,10 @@ namespace limber
               {
                 bool is_met = false;
                 for (unsigned int a = 0; a < 1u << dim; ++a)
-                  is_met = is_met ||
-                           (surface.functions[a] > 0 &&
-                            cut_cells->is_cut(geometry.node[a] /
-                                              Layout::stride));
+                  is_met =
+                    is_met ||
+                    (surface.functions[a] > 0 &&
+                     cut_cells->is_cut(geometry.node[a] / Layout::stride));
                 if (!is_met)
                   continue;
                 Place &place = impulses.add_place();

@@ -13,21 +13,21 @@ namespace limber
    * The cells that the surfaces of obstacles run across, for liquids with one
    * mean divergence in a cell.
    *
-   * Between the corners of parts of a cell the distance phi from the obstacles is
-   * taken as linear on simplices, the same on either side of a face. What has
-   * phi > 0 is open. Of it are known its share of the volume, the means of the
-   * monomials in natural coordinates, and the pieces of surface that bound it
-   * with the means of the functions of the nodes over them. As
+   * Between the corners of parts of a cell the distance phi from the obstacles
+   * is taken as linear on simplices, the same on either side of a face. What
+   * has phi > 0 is open. Of it are known its share of the volume, the means of
+   * the monomials in natural coordinates, and the pieces of surface that bound
+   * it with the means of the functions of the nodes over them. As
    *
    *   sum over cells of (int_open grad N_i dV) = - int_surface N_i n dS
    *
    * with n out of the obstacle, a constant pressure in the open part is borne
    * by the same pressure on the surface, at every node.
    *
-   * A cell that is open by less than a tenth counts as closed, and its faces
-   * towards others as surfaces: what is in there moves along, but has no
-   * pressure. A thinner layer of liquid would be stiffer than the step allows
-   * for. Theory: doc/theory/obstacles.md.
+   * A cell that is open by less than .15 counts as closed, as a thinner layer
+   * of liquid would be stiffer than the step allows for. Faces towards such
+   * cells are surfaces of others that are cut; else their nodes are held by the
+   * points that touch. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells
@@ -37,15 +37,15 @@ namespace limber
     using Vector                          = dealii::Tensor<1, dim>;
 
     // Of a cell: where less is open it counts as closed
-    static constexpr double least_open = 0.1;
+    static constexpr double least_open = 0.15;
 
     /** A piece of surface in a cell: nearly flat, of one obstacle. */
     struct Surface
     {
-      unsigned int       obstacle = 0;
-      Vector             normal; // out of the obstacle, of unit length
-      dealii::Point<dim> place;  // its centroid, m
-      double             area = 0; // m^(dim-1)
+      unsigned int                obstacle = 0;
+      Vector                      normal; // out of the obstacle, of unit length
+      dealii::Point<dim>          place;  // its centroid, m
+      double                      area = 0;    // m^(dim-1)
       std::array<double, n_nodes> functions{}; // means of N_i over it
     };
 
@@ -147,7 +147,7 @@ namespace limber
 
     struct Simplex
     {
-      std::array<dealii::Point<dim>, dim + 1> corners; // natural coordinates
+      std::array<dealii::Point<dim>, dim + 1> corners;  // natural coordinates
       std::array<double, dim + 1>             distance; // m
     };
 
@@ -175,7 +175,9 @@ namespace limber
                 const Places  &places,
                 Cell          &cell) const;
     std::uint32_t
-    neighbour(std::uint32_t cell, unsigned int direction, unsigned int end) const;
+    neighbour(std::uint32_t cell,
+              unsigned int  direction,
+              unsigned int  end) const;
     double
     way_since_found(const Places &places) const;
 

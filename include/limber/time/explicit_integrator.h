@@ -220,7 +220,7 @@ namespace limber
     BodySweeps<dim>         sweeps;
     // Where obstacles may cut cells that hold a liquid
     std::optional<CutCells<dim>> cut_cells;
-    LiquidMeans<dim>        liquid_means;
+    LiquidMeans<dim>             liquid_means;
     bool touched = false; // bodies or obstacles, in the step before
     std::optional<Contact<dim>>         contact;   // of bodies that may part
     std::optional<ObstacleContact<dim>> obstacles; // where the scene has any

@@ -2,8 +2,8 @@
 #ifndef limber_time_liquid_means_h
 #define limber_time_liquid_means_h
 
-#include <limber/time/integrator.h>
 #include <limber/time/cut_cells.h>
+#include <limber/time/integrator.h>
 #include <limber/time/surroundings.h>
 
 namespace limber
@@ -61,8 +61,8 @@ namespace limber
     struct Group
     {
       std::vector<MaterialBody *> liquids, solids;
-      bool fills_cells = false; // whether means over the cell are wanted
-      bool is_implicit = false; // the pressure of the liquids
+      bool fills_cells   = false; // whether means over the cell are wanted
+      bool is_implicit   = false; // the pressure of the liquids
       unsigned int field = 0;
     };
 
@@ -98,11 +98,11 @@ namespace limber
     bool
     holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
 
-    const RunParts<dim> parts;
+    const RunParts<dim>  parts;
     CutCells<dim> *const cut_cells; // or null
-    std::vector<Group>  groups;
-    std::vector<Part>   in_cell;
-    Surroundings<dim>   surroundings;
+    std::vector<Group>   groups;
+    std::vector<Part>    in_cell;
+    Surroundings<dim>    surroundings;
   };
 } // namespace limber
 

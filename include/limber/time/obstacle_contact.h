@@ -183,7 +183,7 @@ namespace limber
     void
     clear_sums();
     void
-                         add_nodes(const std::vector<Way> &ways, double step);
+    add_nodes(const std::vector<Way> &ways, double step);
     void
     add_cut_cells(const std::vector<Way> &ways, double step);
     bool
@@ -191,7 +191,7 @@ namespace limber
 
     const RunParts<dim>  parts;
     CutCells<dim> *const cut_cells; // or null
-    std::vector<double>  edge; // largest of the points of a body, m
+    std::vector<double>  edge;      // largest of the points of a body, m
     ContactImpulses<dim> impulses;
     std::vector<Sums>    sums;    // of an obstacle and a field
     std::vector<Touch>   touches; // of each impulse
