@@ -15,6 +15,10 @@ namespace limber
     constexpr unsigned int passes_of_places = 4;
 
     constexpr int tag_of_places = 4711;
+
+    // Of the normal of a place, what sides have to leave of it at a node, or
+    // the node does not count. Flatter wedges would take impulses without end.
+    constexpr double least_free = 0.1;
   } // namespace
 
 
@@ -79,6 +83,9 @@ namespace limber
     seen.clear();
     after_share.clear();
     peers.clear();
+    heeded.clear();
+    held.clear();
+    held_components.clear();
     any_place = holds_before = false;
   }
 
@@ -134,13 +141,17 @@ namespace limber
   void
   ContactImpulses<dim>::find_relaxation()
   {
+    find_held();
     bears.assign(seen.size(), 0.);
     for (std::size_t p = 0; p < places.size(); ++p)
       for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
         bears[shares.all[k].node] +=
-          std::abs(shares.all[k].value) * places[p].mass;
+          free_share(places[p], shares.all[k]) * places[p].mass;
     if (!at_nodes && shares_nodes())
-      see_those_of_others();
+      {
+        see_those_of_others();
+        find_held();
+      }
 
     inverse_mass.resize(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i)
@@ -164,13 +175,67 @@ namespace limber
             // node no mass.
             if (inverse_mass[share.node] == 0)
               share.value = 0;
-            sum += std::abs(share.value) * bears[share.node] *
+            sum += free_share(places[p], share) * bears[share.node] *
                    inverse_mass[share.node];
           }
       }
     complete();
     for (std::size_t p = 0; p < places.size(); ++p)
-      places[p].relaxation = places[p].mass / relative[p * lanes];
+      places[p].relaxation = relative[p * lanes] > 0 ?
+                               places[p].mass / relative[p * lanes] :
+                               0;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::heed_sides(const unsigned int             field,
+                                   const std::vector<Constraint> &constraints)
+  {
+    if (!constraints.empty())
+      heeded.emplace_back(field, &constraints);
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_held()
+  {
+    if (heeded.empty())
+      return;
+    held.clear();
+    held_components.assign(seen.size(), 0);
+    for (const auto &[field, constraints] : heeded)
+      for (const Constraint &constraint : *constraints)
+        if (const std::uint32_t as = seen_as[field][constraint.node]; as != 0)
+          {
+            held.push_back({as - 1, &constraint});
+            if (!constraint.one_sided)
+              held_components[as - 1] |= 1u << constraint.component;
+          }
+  }
+
+
+
+  // What rubs moves nodes along the surface as well.
+  template <int dim>
+  double
+  ContactImpulses<dim>::free_share(const Place      &place,
+                                   const PlaceShare &share) const
+  {
+    const double value = std::abs(share.value);
+    if (held_components.empty() || held_components[share.node] == 0)
+      return value;
+    Vector free = place.normal;
+    for (int d = 0; d < dim; ++d)
+      if (held_components[share.node] >> d & 1)
+        free[d] = 0;
+    const double norm = free.norm();
+    if (norm < least_free)
+      return 0;
+    return value * (place.friction > 0 ? 1 : norm);
   }
 
 
@@ -307,11 +372,29 @@ namespace limber
   // The others are not asked for it.
   template <int dim>
   void
-  ContactImpulses<dim>::find_relative(const bool only_of_pressing)
+  ContactImpulses<dim>::find_relative(const bool only_of_pressing,
+                                      const bool heeds_sides)
   {
     for (std::size_t p = 0; p < places.size(); ++p)
       takes_part[p] = !only_of_pressing || places[p].presses();
-    sum_at_places<dim>(shares, takes_part, velocity.data(), relative.data());
+    const double *seen_velocity = velocity.data();
+    if (heeds_sides && !held.empty())
+      {
+        left_velocity = velocity;
+        for (const HeldOfNode &of_node : held)
+          {
+            const Constraint &side = *of_node.constraint;
+            double           &left =
+              left_velocity[of_node.node * lanes + side.component];
+            if (!side.one_sided)
+              left = side.value;
+            else
+              left = side.side % 2 == 0 ? std::max(left, 0.) :
+                                          std::min(left, 0.);
+          }
+        seen_velocity = left_velocity.data();
+      }
+    sum_at_places<dim>(shares, takes_part, seen_velocity, relative.data());
     for (std::size_t p = 0; p < places.size(); ++p)
       if (places[p].is_own)
         for (int d = 0; d < dim; ++d)
@@ -358,7 +441,7 @@ namespace limber
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
         if (!std::exchange(relative_is_known, false))
-          find_relative(false);
+          find_relative(false, true);
         for (std::size_t p = 0; p < places.size(); ++p)
           {
             Place       &place = places[p];
@@ -429,11 +512,11 @@ namespace limber
     if (!any())
       return loss;
     load(Layout::increment);
-    find_relative(false);
+    find_relative(false, false);
     for (std::size_t p = 0; p < places.size(); ++p)
       places[p].increase = vector_at(relative, p) + places[p].velocity;
     load(Layout::velocity);
-    find_relative(false);
+    find_relative(false, false);
     for (std::size_t p = 0; p < places.size(); ++p)
       places[p].brought = vector_at(relative, p) - places[p].increase;
     if (holds_before)
@@ -445,7 +528,7 @@ namespace limber
           }
         give_impulses();
       }
-    press(!holds_before);
+    press(!holds_before && held.empty());
     for (std::size_t i = 0; i < seen.size(); ++i)
       {
         double *const        new_velocity = seen[i].record + Layout::velocity,
@@ -456,7 +539,7 @@ namespace limber
             new_velocity[d] = velocity[i * lanes + d];
           }
       }
-    find_relative(true);
+    find_relative(true, false);
     for (std::size_t p = 0; p < places.size(); ++p)
       {
         Place &place = places[p];
@@ -536,7 +619,7 @@ namespace limber
     load(slot);
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
-        find_relative(true);
+        find_relative(true, true);
         for (std::size_t p = 0; p < places.size(); ++p)
           {
             Place &place = places[p];

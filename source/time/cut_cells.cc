@@ -120,6 +120,7 @@ namespace limber
   {
     distance.clear();
     at_cut.reinit(parts.grid.vertices.n());
+    at_covered.reinit(parts.grid.vertices.n());
     former.clear();
     Places places;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
@@ -133,6 +134,7 @@ namespace limber
   void
   CutCells<dim>::find(const double time)
   {
+    std::fill(wet.begin(), wet.end(), 0);
     if (!moves)
       return;
     Places places;
@@ -178,14 +180,9 @@ namespace limber
                                  std::max(-2 * way, of_cell);
     former = places;
     cells.clear();
-    owned_covered.clear();
     kinds.assign(n, open);
     for (std::uint32_t cell = 0; cell < n; ++cell)
-      {
-        look_at(cell, places);
-        if (is_covered(cell) && cell < parts.grid.n_owned_cells())
-          owned_covered.push_back(cell);
-      }
+      look_at(cell, places);
     for (Cell &cell : cells)
       find_surfaces(cell, places);
     wet.assign(cells.size() * knowing.size(), 0);
@@ -196,9 +193,18 @@ namespace limber
       if (cell.number < parts.grid.n_owned_cells() && cell.is_cut())
         for (const std::uint32_t offset : parts.grid.geometry[cell.number].node)
           at_cut[offset / NodeLayout<dim>::stride] = 1;
+    std::fill_n(at_covered.data(), table.n(), 0.);
+    for (std::uint32_t cell = 0; cell < parts.grid.n_owned_cells(); ++cell)
+      if (is_covered(cell))
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          at_covered[parts.grid.geometry[cell].node[a] /
+                     NodeLayout<dim>::stride] += 1u << a;
     const ExchangePlan all(table.shared);
-    exchange.start(all, at_cut.data(), 0, 1);
-    exchange.finish(at_cut.data());
+    for (LazyArray<double> *const of_nodes : {&at_cut, &at_covered})
+      {
+        exchange.start(all, of_nodes->data(), 0, 1);
+        exchange.finish(of_nodes->data());
+      }
   }
 
 
@@ -283,7 +289,7 @@ namespace limber
       bool                                 in_obstacle = true;
       std::array<std::array<bool, 2>, dim> in_face;
       for (auto &ends : in_face)
-        ends = {true, true};
+        ends.fill(true);
       for (unsigned int k = 0; k <= dim; ++k)
         if (k != opposite)
           {

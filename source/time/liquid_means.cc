@@ -86,8 +86,7 @@ namespace limber
               return !is_covered(cell) &&
                      (holds(group.liquids, cell) || holds(group.solids, cell));
             },
-            cut_cells ? cut_cells->covered_cells() :
-                        std::vector<std::uint32_t>());
+            cut_cells ? cut_cells->covered_corners() : nullptr);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
           for (const std::uint32_t cell : *cells)

@@ -72,6 +72,7 @@ namespace limber
                                         const bool           leapfrogs)
     : parts(parts)
     , cut_cells(cut_cells)
+    , sides(parts.problem.sides)
     , impulses(parts.nodes, leapfrogs)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
     , cell_distance(parts.problem.obstacles.size())
@@ -143,7 +144,12 @@ namespace limber
       find_points(b, ways, step);
     add_nodes(ways, step);
     if (cut_cells)
-      add_cut_cells(ways, step);
+      {
+        add_cut_cells(ways, step);
+        for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
+          if (cut_cells->knows(field))
+            impulses.heed_sides(field, sides.at(parts.nodes, time + step));
+      }
     impulses.finish_adding();
   }
 

@@ -3,9 +3,11 @@
 #define limber_time_contact_impulses_h
 
 #include <limber/grid/nodal_fields.h>
+#include <limber/grid/side_constraints.h>
 #include <limber/state/ledger.h>
 #include <limber/transfer/place_sums.h>
 
+#include <utility>
 #include <vector>
 
 namespace limber
@@ -174,6 +176,17 @@ namespace limber
     }
 
     /**
+     * What sides of the box are going to hold of the nodes of a field, after
+     * all impulses: places see there what the sides leave, and do not wait for
+     * what they do not let happen. Of a place without friction a node counts
+     * with the part of its normal n that the sides leave, |P n|; where that is
+     * less than .1, not at all. The impulses of places go to all components: it
+     * is the side that takes away what it holds. To be told before these end.
+     */
+    void
+    heed_sides(unsigned int field, const std::vector<Constraint> &constraints);
+
+    /**
      * After all of these; masses of nodes are known. Collective. Places of a
      * rank are its own, apart from those with parts elsewhere, which @p peers
      * names by rank.
@@ -239,6 +252,12 @@ namespace limber
     {
       double      *record;
       unsigned int field, number;
+    };
+
+    struct HeldOfNode
+    {
+      std::uint32_t     node; // place in those seen
+      const Constraint *constraint;
     };
 
     // What ranks tell each other of the nodes of a field: momentum that places
@@ -307,7 +326,11 @@ namespace limber
     void
     expect(double step, const Vector &gravity);
     void
-    find_relative(bool only_of_pressing);
+    find_relative(bool only_of_pressing, bool heeds_sides);
+    void
+    find_held();
+    double
+    free_share(const Place &place, const PlaceShare &share) const;
     void
     find_relaxation();
     void
@@ -350,6 +373,14 @@ namespace limber
     std::vector<double>        inverse_mass, bears, velocity, momentum;
     std::vector<double>        relative, given_by_place;
     std::vector<char>          takes_part;
+    // What sides hold of nodes that are seen, empty where nobody heeds any:
+    // fields with their constraints; of nodes, the components always held
+    // (bits), and the velocity that sides leave
+    std::vector<std::pair<unsigned int, const std::vector<Constraint> *>>
+                               heeded;
+    std::vector<HeldOfNode>    held;
+    std::vector<unsigned char> held_components;
+    std::vector<double>        left_velocity;
     std::vector<Given>         given;   // per field
     std::vector<std::uint32_t> hanging; // 1 + place in the table, or 0
     std::vector<Peer>          peers;

@@ -114,11 +114,12 @@ namespace limber
       return kinds[number] == closed;
     }
 
-    /** Owned cells that obstacles take. */
-    const std::vector<std::uint32_t> &
-    covered_cells() const
+    /** By vertex, of which cells that obstacles take it is a corner: the sum
+     * of 2^k, it being their corner k. */
+    const double *
+    covered_corners() const
     {
-      return owned_covered;
+      return at_covered.data();
     }
 
     /** Whether a node is a corner of a cell that is cut. */
@@ -185,8 +186,7 @@ namespace limber
     std::vector<char>          knowing; // by field
     std::vector<Cell>          cells;
     std::vector<std::uint32_t> kinds; // by cell
-    std::vector<std::uint32_t> owned_covered;
-    LazyArray<double>          at_cut; // by node
+    LazyArray<double>          at_cut, at_covered; // by node
     RecordExchange             exchange{1};
     std::vector<char>          wet; // by cell, field
     // Where obstacles move: the distances of the middles of cells, m, less

@@ -25,26 +25,25 @@ namespace limber
     reinit();
 
     /** Look which cells hold something, asked for each of those of this rank
-     * that may; collective. The owned cells @p taken do in any case: what
-     * takes them is no surface of what others hold. */
+     * that may; collective. Others of which @p taken tells by vertex, in the
+     * same way as this class, do in any case: what takes them is no surface of
+     * what others hold. */
     template <class Holds>
     void
-    find(const NodalFields<dim>           &vertices,
-         const Holds                      &holds,
-         const std::vector<std::uint32_t> &taken = {})
+    find(const NodalFields<dim> &vertices,
+         const Holds            &holds,
+         const double *const     taken = nullptr)
     {
       for (const std::uint32_t node : vertices.active_nodes())
         holding[node] = 0;
-      for (const std::uint32_t cell : taken)
-        for (unsigned int a = 0; a < n_corners; ++a)
-          holding[node_of(cell, a)] = 0;
-      for (const std::uint32_t cell : taken)
-        add(holding, cell);
       for (const std::uint32_t cell : vertices.owned_occupied_cells())
         if (holds(cell))
           add(holding, cell);
       exchange.start(vertices.node_plan(), holding.data(), 0, 1);
       exchange.finish(holding.data());
+      if (taken != nullptr)
+        for (const std::uint32_t node : vertices.active_nodes())
+          holding[node] += taken[node];
     }
 
     /** Whether all cells around a vertex do. */
