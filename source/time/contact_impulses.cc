@@ -456,7 +456,7 @@ namespace limber
                 Vector       along   = along_surface(wanted, place.normal);
                 const double rubbing = along.norm();
                 const double most    = place.friction * pressing;
-                place.sticks         = rubbing <= most;
+                place.sticks = place.friction > 0 && rubbing <= most;
                 if (rubbing > most)
                   along *= most / rubbing;
                 impulse = pressing * place.normal + along;
