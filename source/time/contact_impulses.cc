@@ -207,13 +207,18 @@ namespace limber
       return;
     held.clear();
     held_components.assign(seen.size(), 0);
+    holding_side.assign(seen.size() * dim, 0);
     for (const auto &[field, constraints] : heeded)
       for (const Constraint &constraint : *constraints)
         if (const std::uint32_t as = seen_as[field][constraint.node]; as != 0)
           {
             held.push_back({as - 1, &constraint});
             if (!constraint.one_sided)
-              held_components[as - 1] |= 1u << constraint.component;
+              {
+                held_components[as - 1] |= 1u << constraint.component;
+                holding_side[(as - 1) * dim + constraint.component] =
+                  constraint.side;
+              }
           }
   }
 
@@ -373,33 +378,41 @@ namespace limber
   template <int dim>
   void
   ContactImpulses<dim>::find_relative(const bool only_of_pressing,
-                                      const bool heeds_sides)
+                                      const Seen seen_as)
   {
     for (std::size_t p = 0; p < places.size(); ++p)
       takes_part[p] = !only_of_pressing || places[p].presses();
-    const double *seen_velocity = velocity.data();
-    if (heeds_sides && !held.empty())
-      {
-        left_velocity = velocity;
-        for (const HeldOfNode &of_node : held)
-          {
-            const Constraint &side = *of_node.constraint;
-            double           &left =
-              left_velocity[of_node.node * lanes + side.component];
-            if (!side.one_sided)
-              left = side.value;
-            else
-              left = side.side % 2 == 0 ? std::max(left, 0.) :
-                                          std::min(left, 0.);
-          }
-        seen_velocity = left_velocity.data();
-      }
-    sum_at_places<dim>(shares, takes_part, seen_velocity, relative.data());
+    if (!held.empty())
+      see_what_sides_leave(seen_as);
+    sum_at_places<dim>(shares,
+                       takes_part,
+                       held.empty() ? velocity.data() : left_velocity.data(),
+                       relative.data());
     for (std::size_t p = 0; p < places.size(); ++p)
       if (places[p].is_own)
         for (int d = 0; d < dim; ++d)
           relative[p * lanes + d] -= places[p].velocity[d];
     complete();
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::see_what_sides_leave(const Seen seen_as)
+  {
+    left_velocity = velocity;
+    for (const HeldOfNode &of_node : held)
+      {
+        const Constraint &side = *of_node.constraint;
+        double           &left =
+          left_velocity[of_node.node * lanes + side.component];
+        if (!side.one_sided)
+          left = seen_as == Seen::increment ? 0 : side.value;
+        else if (seen_as == Seen::pressing)
+          left =
+            side.side % 2 == 0 ? std::max(left, 0.) : std::min(left, 0.);
+      }
   }
 
 
@@ -441,7 +454,7 @@ namespace limber
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
         if (!std::exchange(relative_is_known, false))
-          find_relative(false, true);
+          find_relative(false, Seen::pressing);
         for (std::size_t p = 0; p < places.size(); ++p)
           {
             Place       &place = places[p];
@@ -512,11 +525,11 @@ namespace limber
     if (!any())
       return loss;
     load(Layout::increment);
-    find_relative(false, false);
+    find_relative(false, Seen::increment);
     for (std::size_t p = 0; p < places.size(); ++p)
       places[p].increase = vector_at(relative, p) + places[p].velocity;
     load(Layout::velocity);
-    find_relative(false, false);
+    find_relative(false, Seen::velocity);
     for (std::size_t p = 0; p < places.size(); ++p)
       places[p].brought = vector_at(relative, p) - places[p].increase;
     if (holds_before)
@@ -534,12 +547,13 @@ namespace limber
         double *const        new_velocity = seen[i].record + Layout::velocity,
                       *const increment    = seen[i].record + Layout::increment;
         for (int d = 0; d < dim; ++d)
-          {
-            increment[d] += velocity[i * lanes + d] - new_velocity[d];
-            new_velocity[d] = velocity[i * lanes + d];
-          }
+          if (!is_held(i, d))
+            {
+              increment[d] += velocity[i * lanes + d] - new_velocity[d];
+              new_velocity[d] = velocity[i * lanes + d];
+            }
       }
-    find_relative(true, false);
+    find_relative(true, Seen::velocity);
     for (std::size_t p = 0; p < places.size(); ++p)
       {
         Place &place = places[p];
@@ -619,7 +633,7 @@ namespace limber
     load(slot);
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
-        find_relative(true, true);
+        find_relative(true, Seen::pressing);
         for (std::size_t p = 0; p < places.size(); ++p)
           {
             Place &place = places[p];

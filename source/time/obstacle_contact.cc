@@ -575,6 +575,11 @@ namespace limber
         action.moment += moment_of<dim>(touch.arm, place.impulse);
         parts.ledger.boundary_work += place.impulse * place.velocity;
       }
+    impulses.for_each_given_to_side([this](const unsigned int side,
+                                           const int          component,
+                                           const double       impulse) {
+      parts.ledger.side_impulse[side][component] -= impulse;
+    });
   }
 
 

@@ -180,8 +180,9 @@ namespace limber
      * all impulses: places see there what the sides leave, and do not wait for
      * what they do not let happen. Of a place without friction a node counts
      * with the part of its normal n that the sides leave, |P n|; where that is
-     * less than .1, not at all. The impulses of places go to all components: it
-     * is the side that takes away what it holds. To be told before these end.
+     * less than .1, not at all. What they give to components that a side always
+     * holds goes to the side, see for_each_given_to_side(). To be told before
+     * these end.
      */
     void
     heed_sides(unsigned int field, const std::vector<Constraint> &constraints);
@@ -227,6 +228,23 @@ namespace limber
      */
     ContactLoss
     exchange();
+
+    /** Of the impulses of places, what has gone to sides instead of nodes:
+     * work(side, component, impulse, kg m/s). */
+    template <class Work>
+    void
+    for_each_given_to_side(const Work &work) const
+    {
+      if (held.empty())
+        return;
+      for (std::size_t p = 0; p < places.size(); ++p)
+        for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
+          for (int d = 0; d < dim; ++d)
+            if (is_held(shares.all[k].node, d))
+              work(holding_side[shares.all[k].node * dim + d],
+                   d,
+                   shares.all[k].value * places[p].impulse[d]);
+    }
 
     /**
      * Hold the velocity that points have given back, at a slot of the records.
@@ -325,8 +343,27 @@ namespace limber
     load(unsigned int slot);
     void
     expect(double step, const Vector &gravity);
+    bool
+    is_held(const std::size_t node, const int component) const
+    {
+      return !held_components.empty() &&
+             (held_components[node] >> component & 1);
+    }
+
+    // What of the velocities of nodes the sides have left already, or are going
+    // to leave: of components that they always hold theirs, or their increment,
+    // which is zero; pressing, what they let go
+    enum class Seen
+    {
+      increment,
+      velocity,
+      pressing
+    };
+
     void
-    find_relative(bool only_of_pressing, bool heeds_sides);
+    find_relative(bool only_of_pressing, Seen seen_as);
+    void
+    see_what_sides_leave(Seen seen_as);
     void
     find_held();
     double
@@ -375,11 +412,11 @@ namespace limber
     std::vector<char>          takes_part;
     // What sides hold of nodes that are seen, empty where nobody heeds any:
     // fields with their constraints; of nodes, the components always held
-    // (bits), and the velocity that sides leave
+    // (bits), by which sides, and the velocity that sides leave
     std::vector<std::pair<unsigned int, const std::vector<Constraint> *>>
                                heeded;
     std::vector<HeldOfNode>    held;
-    std::vector<unsigned char> held_components;
+    std::vector<unsigned char> held_components, holding_side;
     std::vector<double>        left_velocity;
     std::vector<Given>         given;   // per field
     std::vector<std::uint32_t> hanging; // 1 + place in the table, or 0
