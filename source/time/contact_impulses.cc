@@ -181,9 +181,8 @@ namespace limber
       }
     complete();
     for (std::size_t p = 0; p < places.size(); ++p)
-      places[p].relaxation = relative[p * lanes] > 0 ?
-                               places[p].mass / relative[p * lanes] :
-                               0;
+      places[p].relaxation =
+        relative[p * lanes] > 0 ? places[p].mass / relative[p * lanes] : 0;
   }
 
 
@@ -405,13 +404,11 @@ namespace limber
     for (const HeldOfNode &of_node : held)
       {
         const Constraint &side = *of_node.constraint;
-        double           &left =
-          left_velocity[of_node.node * lanes + side.component];
+        double &left = left_velocity[of_node.node * lanes + side.component];
         if (!side.one_sided)
           left = seen_as == Seen::increment ? 0 : side.value;
         else if (seen_as == Seen::pressing)
-          left =
-            side.side % 2 == 0 ? std::max(left, 0.) : std::min(left, 0.);
+          left = side.side % 2 == 0 ? std::max(left, 0.) : std::min(left, 0.);
       }
   }
 
@@ -469,7 +466,7 @@ namespace limber
                 Vector       along   = along_surface(wanted, place.normal);
                 const double rubbing = along.norm();
                 const double most    = place.friction * pressing;
-                place.sticks = place.friction > 0 && rubbing <= most;
+                place.sticks         = place.friction > 0 && rubbing <= most;
                 if (rubbing > most)
                   along *= most / rubbing;
                 impulse = pressing * place.normal + along;

@@ -11,7 +11,7 @@ namespace limber
 {
   namespace
   {
-    // Pieces of surface in a cell are one where their normals are within 45
+    // Pieces of surface in a cell are one where their normals are within some 6
     // degrees.
     constexpr double least_cosine = 0.995;
 
@@ -90,6 +90,19 @@ namespace limber
                                 body->stress->projection().kind ==
                                   Projection::cell;
                        });
+  }
+
+
+
+  // The layer is stiffer than a whole cell by the inverse of its share. Of a
+  // step that is given the Courant number is not known: as if it were .75.
+  template <int dim>
+  double
+  CutCells<dim>::least_open() const
+  {
+    const Method &method = parts.problem.method;
+    return method.time_step > 0 ? 0.15 :
+                                  std::min(0.2 * method.courant_number, 0.5);
   }
 
 
@@ -255,7 +268,7 @@ namespace limber
     for_each_open_simplex(number, places, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    if (cell.open < least_open)
+    if (cell.open < least_open())
       {
         kinds[number] = cell.open > 0 ? closed : covered;
         return;

@@ -407,9 +407,9 @@ namespace limber
     // Of those seen: 1 / m_i; M_i; the velocity that is dealt with; the
     // momentum that places give in a pass. Of places: w_p; what
     // they give; whether they are asked, or give any
-    std::vector<double>        inverse_mass, bears, velocity, momentum;
-    std::vector<double>        relative, given_by_place;
-    std::vector<char>          takes_part;
+    std::vector<double> inverse_mass, bears, velocity, momentum;
+    std::vector<double> relative, given_by_place;
+    std::vector<char>   takes_part;
     // What sides hold of nodes that are seen, empty where nobody heeds any:
     // fields with their constraints; of nodes, the components always held
     // (bits), by which sides, and the velocity that sides leave

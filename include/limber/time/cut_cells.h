@@ -24,10 +24,10 @@ namespace limber
    * with n out of the obstacle, a constant pressure in the open part is borne
    * by the same pressure on the surface, at every node.
    *
-   * A cell that is open by less than .15 counts as closed, as a thinner layer
-   * of liquid would be stiffer than the step allows for. Faces towards such
-   * cells are surfaces of others that are cut; else their nodes are held by the
-   * points that touch. Theory: doc/theory/obstacles.md.
+   * A cell that is open by less than .2 of the Courant number counts as closed,
+   * as a thinner layer of liquid would be stiffer than the step allows for.
+   * Faces towards such cells are surfaces of others that are cut; else their
+   * nodes are held by the points that touch. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells
@@ -36,8 +36,9 @@ namespace limber
     static constexpr unsigned int n_nodes = 1 << dim;
     using Vector                          = dealii::Tensor<1, dim>;
 
-    // Of a cell: where less is open it counts as closed
-    static constexpr double least_open = 0.15;
+    /** Of a cell: where less is open it counts as closed. */
+    double
+    least_open() const;
 
     /** A piece of surface in a cell: nearly flat, of one obstacle. */
     struct Surface
@@ -185,7 +186,7 @@ namespace limber
     const RunParts<dim>        parts;
     std::vector<char>          knowing; // by field
     std::vector<Cell>          cells;
-    std::vector<std::uint32_t> kinds; // by cell
+    std::vector<std::uint32_t> kinds;              // by cell
     LazyArray<double>          at_cut, at_covered; // by node
     RecordExchange             exchange{1};
     std::vector<char>          wet; // by cell, field

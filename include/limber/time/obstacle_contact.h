@@ -192,7 +192,7 @@ namespace limber
     const RunParts<dim>  parts;
     CutCells<dim> *const cut_cells; // or null
     SideConstraints<dim> sides;
-    std::vector<double>  edge;      // largest of the points of a body, m
+    std::vector<double>  edge; // largest of the points of a body, m
     ContactImpulses<dim> impulses;
     std::vector<Sums>    sums;    // of an obstacle and a field
     std::vector<Touch>   touches; // of each impulse
