@@ -94,19 +94,6 @@ namespace limber
 
 
 
-  // The layer is stiffer than a whole cell by the inverse of its share. Of a
-  // step that is given the Courant number is not known: as if it were .75.
-  template <int dim>
-  double
-  CutCells<dim>::least_open() const
-  {
-    const Method &method = parts.problem.method;
-    return method.time_step > 0 ? 0.15 :
-                                  std::min(0.2 * method.courant_number, 0.5);
-  }
-
-
-
   template <int dim>
   CutCells<dim>::CutCells(const RunParts<dim> &parts)
     : parts(parts)
@@ -268,7 +255,7 @@ namespace limber
     for_each_open_simplex(number, places, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    if (cell.open < least_open())
+    if (cell.open < least_open)
       {
         kinds[number] = cell.open > 0 ? closed : covered;
         return;
@@ -490,7 +477,7 @@ namespace limber
       return;
 
     // of the third degree, as are the functions
-    static const dealii::QGaussSimplex<dim - 1> rule(2);
+    static const dealii::QGaussSimplex<dim - 1> rule(dim);
     std::array<double, n_nodes>                 functions{};
     dealii::Point<dim>                          middle; // times the area
     for (unsigned int q = 0; q < rule.size(); ++q)

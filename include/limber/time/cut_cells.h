@@ -24,7 +24,7 @@ namespace limber
    * with n out of the obstacle, a constant pressure in the open part is borne
    * by the same pressure on the surface, at every node.
    *
-   * A cell that is open by less than .2 of the Courant number counts as closed,
+   * A cell that is open by less than .15 counts as closed,
    * as a thinner layer of liquid would be stiffer than the step allows for.
    * Faces towards such cells are surfaces of others that are cut; else their
    * nodes are held by the points that touch. Theory: doc/theory/obstacles.md.
@@ -36,9 +36,8 @@ namespace limber
     static constexpr unsigned int n_nodes = 1 << dim;
     using Vector                          = dealii::Tensor<1, dim>;
 
-    /** Of a cell: where less is open it counts as closed. */
-    double
-    least_open() const;
+    // Of a cell: where less is open it counts as closed
+    static constexpr double least_open = 0.15;
 
     /** A piece of surface in a cell: nearly flat, of one obstacle. */
     struct Surface
