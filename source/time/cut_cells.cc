@@ -87,8 +87,8 @@ namespace limber
                        parts.bodies.end(),
                        [](const auto &body) {
                          return body->description.is_liquid &&
-                                body->stress->projection().kind ==
-                                  Projection::cell;
+                                body->stress->treatment().kind ==
+                                  Treatment::cell;
                        });
   }
 
@@ -107,7 +107,7 @@ namespace limber
         knowing[body->description.nodal_field] = true;
     for (const auto &body : parts.bodies)
       if (body->description.is_liquid &&
-          body->stress->projection().kind != Projection::cell)
+          body->stress->treatment().kind != Treatment::cell)
         knowing[body->description.nodal_field] = false;
     reinit(0);
   }
