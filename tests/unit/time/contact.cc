@@ -510,7 +510,7 @@ namespace
     };
     const double along = 9.81 * std::sin(slope), down = 9.81 * std::cos(slope);
     for (const std::string &more :
-         {"Method/Kernel=quadratic",
+         {std::string("Method/Kernel=quadratic"),
           "Body plate/Block/Corners=" + block(0, 0, 4, 0.5),
           "Body block/Block/Corners=" + block(0.5, 0.5, 1, 0.5),
           "Body block/Ball/Centre=" +
