@@ -447,8 +447,8 @@ namespace limber
     for (auto &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);
-        read_placement(section, touches, body, problem);
         read_treatment(section, body, problem);
+        read_placement(section, touches, body, problem);
       }
     warn_of_unbounded_gradients(problem);
   }

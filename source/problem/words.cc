@@ -170,7 +170,8 @@ namespace limber
       {"auto",
        Placement::automatic,
        "'regular', but 'gauss' for boxes, blocks, balls, cylinders and "
-       "formulas in their initial frame; for boxes and blocks of solids on "
+       "formulas in their initial frame (except linear functions with the "
+       "treatment 'none'); for boxes and blocks of solids on "
        "cells of one size 'cut' if their faces run across the cells, or "
        "'regular' would miss the volume by more than 2 % (with several "
        "bodies, the faces); 'fitted' with domains, or linear functions and "

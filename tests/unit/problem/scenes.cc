@@ -361,6 +361,12 @@ TEST(Scenes, PlacementFollowsTheFaces)
   EXPECT_EQ(placement({initial, "Body block/Shape=block", tilted}),
             Placement::gauss);
   EXPECT_EQ(placement({"Body block/Shape=ball", initial}), Placement::gauss);
+  const std::string untreated = "Body block/Locking treatment=none";
+  EXPECT_EQ(placement({initial, untreated}), Placement::regular);
+  EXPECT_EQ(placement({"Body block/Shape=ball", initial, untreated}),
+            Placement::cut);
+  EXPECT_EQ(placement({initial, untreated, "Method/Kernel=quadratic"}),
+            Placement::gauss);
   EXPECT_EQ(placement({initial, "Body block/Points along edges=20, 20"}),
             Placement::fitted);
   EXPECT_EQ(placement({initial, "Body block/Placement=regular"}),
