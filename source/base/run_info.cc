@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/config.h>
-#include <deal.II/base/mpi.h>
 
 #include <limber/base/run_info.h>
+
+#include <mpi.h>
 
 // Given on the command line of the compiler, see CMakeLists.txt.
 #ifndef LIMBER_VERSION
@@ -36,15 +37,18 @@ namespace limber
 #ifdef DEBUG
     info.debug = true;
 #endif
-    info.deal_ii  = DEAL_II_PACKAGE_VERSION;
-    info.trilinos = version_text(DEAL_II_TRILINOS_VERSION_MAJOR,
+    info.deal_ii    = DEAL_II_PACKAGE_VERSION;
+    info.trilinos   = version_text(DEAL_II_TRILINOS_VERSION_MAJOR,
                                  DEAL_II_TRILINOS_VERSION_MINOR,
                                  DEAL_II_TRILINOS_VERSION_SUBMINOR);
-    info.p4est    = version_text(DEAL_II_P4EST_VERSION_MAJOR,
+    info.p4est      = version_text(DEAL_II_P4EST_VERSION_MAJOR,
                               DEAL_II_P4EST_VERSION_MINOR,
                               DEAL_II_P4EST_VERSION_SUBMINOR);
-    if (dealii::Utilities::MPI::job_supports_mpi())
-      info.ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    int initialized = 0, ranks = 1;
+    MPI_Initialized(&initialized);
+    if (initialized)
+      MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    info.ranks = ranks;
     return info;
   }
 

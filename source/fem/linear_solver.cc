@@ -10,8 +10,8 @@ namespace limber
 {
   namespace
   {
-    constexpr unsigned int most_iterations = 2000;
-    constexpr double       accuracy        = 1e-10; // relative residual
+    constexpr unsigned int most_cg_iterations = 2000;
+    constexpr double       cg_accuracy        = 1e-10; // relative residual
 
 
 
@@ -99,7 +99,7 @@ namespace limber
         return 0;
       }
     const double          size = right_side.l2_norm();
-    dealii::SolverControl control(most_iterations, accuracy * size);
+    dealii::SolverControl control(most_cg_iterations, cg_accuracy * size);
     solution = 0;
     if (size == 0)
       return 0;

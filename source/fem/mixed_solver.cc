@@ -12,9 +12,9 @@ namespace limber
 {
   namespace
   {
-    constexpr unsigned int most_iterations = 500;
+    constexpr unsigned int most_minres_iterations = 500;
     // of the residual, in the norm of the preconditioner
-    constexpr double       accuracy         = 1e-8;
+    constexpr double       minres_accuracy  = 1e-8;
     constexpr unsigned int chebyshev_degree = 20;
     // largest over smallest eigenvalue that the polynomial cares for
     constexpr double chebyshev_range = 300;
@@ -141,7 +141,8 @@ namespace limber
     solution          = 0;
     if (size == 0)
       return 0;
-    dealii::SolverControl control(most_iterations, accuracy * size);
+    dealii::SolverControl control(most_minres_iterations,
+                                  minres_accuracy * size);
     try
       {
         dealii::SolverMinRes<Vector>(control).solve(matrix,
