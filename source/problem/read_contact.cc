@@ -207,24 +207,6 @@ namespace limber
 
 
     template <int dim>
-    void
-    check_bodies(const Section &root, const Problem<dim> &problem)
-    {
-      for (const Body<dim> &body : problem.bodies)
-        {
-          const Section section = root.subsection("Body " + body.name);
-          if (body.hourglass_control > 0)
-            refuse(section, "Hourglass control", "'Hourglass control = 0'");
-          if (body.chequerboard_control > 0)
-            refuse(section,
-                   "Chequerboard control",
-                   "'Chequerboard control = 0'");
-        }
-    }
-
-
-
-    template <int dim>
     bool
     any_solids_part(const Problem<dim> &problem)
     {
@@ -267,7 +249,6 @@ namespace limber
                     [](const auto &body) { return body.nodal_field == 0; }))
       return;
     check_method(root, problem);
-    check_bodies(root, problem);
     if (problem.grid.kernel == KernelKind::linear && any_solids_part(problem))
       problem.notes.push_back(
         "Solids touch with linear functions: what slides across the grid may "

@@ -41,6 +41,8 @@ namespace limber
         const double strength = body->description.chequerboard_control;
         if (!(strength > 0) || body->implicit)
           continue;
+        if (vertices.n_fields() > 1) // clear() looks at nodes of the field only
+          vertices.select(body->description.nodal_field);
         gather_chequerboards<dim>(vertices.owned_occupied_cells(),
                                   vertices.view(),
                                   body->cell_sums->view());
@@ -72,18 +74,31 @@ namespace limber
   Stabilization<dim>::resist_hourglass(const double step,
                                        const double wave_speed)
   {
+    parts.nodes.for_each_field([&]() {
+      resisting.clear();
+      for (auto &body : parts.bodies)
+        if (body->description.hourglass_control > 0 &&
+            body->description.nodal_field == parts.nodes.selected_field())
+          resisting.push_back(
+            {body->cell_sums->view(),
+             body->description.hourglass_control *
+               (body->implicit ? speed_of_resistance(*body, step) :
+                                 wave_speed)});
+      if (!resisting.empty())
+        resist_hourglass_of_field(step);
+    });
+  }
+
+
+
+  // Bodies that may part from each other, which have fields of their own, do
+  // not resist each other's motion.
+  template <int dim>
+  void
+  Stabilization<dim>::resist_hourglass_of_field(const double step)
+  {
     using Layout            = NodeLayout<dim>;
     NodalFields<dim> &nodes = parts.nodes;
-
-    resisting.clear();
-    for (auto &body : parts.bodies)
-      if (body->description.hourglass_control > 0)
-        resisting.push_back(
-          {body->cell_sums->view(),
-           body->description.hourglass_control *
-             (body->implicit ? speed_of_resistance(*body, step) : wave_speed)});
-    if (resisting.empty())
-      return;
 
     for (const std::uint32_t node : nodes.active_nodes())
       std::fill_n(nodes.record(node) + Layout::hourglass_force, dim, 0.);

@@ -40,6 +40,8 @@ namespace limber
     double
     speed_of_resistance(const MaterialBody<dim> &body, double step) const;
     void
+    resist_hourglass_of_field(double step);
+    void
     find_twists(double step);
     void
     lend_to_hanging_nodes();

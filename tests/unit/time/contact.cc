@@ -271,6 +271,82 @@ TEST(Contact, WhatSticksAcrossFieldsIsOneField)
 
 
 
+// A liquid keeps its controls of hourglass motion and chequerboards in a field
+// of its own: it moves as without the pair while the other body is far away.
+TEST(Contact, ControlsOfALiquidActInItsOwnField)
+{
+  const std::string stirred_water_and_bar = R"(
+    subsection Body water
+      set Material = newtonian fluid
+      set Initial velocity = 0.1*sin(29*x+13*y*y); 0.1*cos(31*x*y-9*y)
+      subsection Box
+        set Lower corner = 0, 0
+        set Upper corner = 1, 1
+      end
+      subsection Newtonian fluid
+        set Density = 1000
+        set Bulk modulus = 1e6
+      end
+    end
+    subsection Body bar
+      subsection Box
+        set Lower corner = 1.75, 0.25
+        set Upper corner = 2, 0.5
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Contact
+      set Pairs = sides
+      subsection Pair sides
+        set Bodies = water, bar
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 1.5
+      set Cells = 16, 12
+    end
+    subsection Method
+      set Kernel = linear
+    end)";
+  for (const std::string bodies : {"water, bar", "bar, water"})
+    {
+      SCOPED_TRACE(bodies);
+      const auto run_with = [&](const std::string              &law,
+                                const std::vector<std::string> &changes) {
+        std::vector<std::string> all = {"Bodies=" + bodies,
+                                        "Contact/Pair sides/Law=" + law};
+        all.insert(all.end(), changes.begin(), changes.end());
+        auto run = std::make_unique<SceneRun<2>>(stirred_water_and_bar, all);
+        run->advance(1e-3, 300);
+        return run;
+      };
+      const auto together = run_with("stick", {}), apart = run_with("slip", {}),
+                 hourglass =
+                   run_with("slip", {"Body water/Chequerboard control=0"}),
+                 chequerboard =
+                   run_with("slip", {"Body water/Hourglass control=0"});
+      EXPECT_EQ(apart->nodes.n_fields(), 2u);
+      const unsigned int water    = bodies[0] == 'w' ? 0 : 1;
+      const auto         distance = [&](SceneRun<2> &one, SceneRun<2> &other) {
+        const auto p = one.positions(water), q = other.positions(water);
+        double     result = 0;
+        for (std::size_t k = 0; k < p.size(); ++k)
+          result = std::max(result, (p[k] - q[k]).norm());
+        return result;
+      };
+      EXPECT_LT(distance(*together, *apart), 1e-12);
+      // and each of the controls does something
+      EXPECT_GT(distance(*apart, *hourglass), 1e-6);
+      EXPECT_GT(distance(*apart, *chequerboard), 1e-6);
+    }
+}
+
+
+
 // a = g (sin - mu cos) on a plate that yields, wherever its face lies in a
 // cell; while the block swings up and down, mu m g cos is mu (m g cos + dp_y /
 // dt).
