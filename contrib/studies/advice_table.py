@@ -24,7 +24,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 LINE = re.compile(r"^(Advised|A trade|Not advised): ([^.]+)\. .*?Set ('.*')\. "
                   r"Saves: a factor of (\S+) in CPU time.*?\. "
-                  r"Changes: (.*)\. Ground: (.*)\.$")
+                  r"Changes: (.*)\. Reason: (.*)\.$")
 MEASURED = re.compile(r"measured until (\S+) s, (.*) by (\S+) %$")
 
 

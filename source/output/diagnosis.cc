@@ -46,10 +46,32 @@ namespace limber
 
 
 
+    /**
+     * The affine part of the motion of a point has next to no inertia near the
+     * edge of its cell (doc/theory/transfers.md). What else is seen then, a
+     * chequerboard or a crushed point, follows from it.
+     */
+    template <int dim>
+    Diagnosis
+    find_affine_velocity(const Problem<dim> &problem)
+    {
+      if (!is_affine(problem.method.transfer) ||
+          problem.grid.kernel != KernelKind::linear)
+        return {};
+      return {"affine velocity",
+              "with linear functions the transfers 'apic' and 'aflip' are "
+              "unstable where points come near the edges of cells. Set "
+              "'Method/Kernel = quadratic', or 'Method/Transfer = flip'."};
+    }
+
+
+
     template <int dim>
     Diagnosis
     diagnose_unstable(const Symptoms &symptoms, const Problem<dim> &problem)
     {
+      if (const auto found = find_affine_velocity(problem); !found.mode.empty())
+        return found;
       for (const BodySymptoms &body : symptoms.bodies)
         {
           const auto found = find_cut_cell(symptoms, body, problem.method);

@@ -78,7 +78,7 @@ namespace limber
       line.value = figures.kinetic > 0 ? all / figures.kinetic : all;
       line.text  = brief(all) + " J of " + brief(figures.kinetic) +
                   " J kinetic energy are motion of points against each other "
-                  "that no node sees";
+                  "that the nodes do not see (null space)";
       line.entry = "Method/Blend time";
       if (all <= negligible * figures.energy_scale)
         return line;
@@ -179,6 +179,34 @@ namespace limber
 
 
 
+    struct Remedy
+    {
+      std::string entry, text;
+    };
+
+
+
+    Remedy
+    remedy_for_creep(const BodyFigures &body)
+    {
+      const std::string frame =
+        body.is_plastic ? "" :
+                          "; 'Frame = initial' does not, for a body that is "
+                          "alone";
+      if (body.kernel == KernelKind::linear)
+        return {body.is_plastic ? "Method/Kernel" : of_body(body, "Frame"),
+                "'Method/Kernel = quadratic' with three points per cell edge "
+                "creeps less by far" +
+                  frame};
+      if (body.points_per_edge >= 3 && body.kernel == KernelKind::quadratic)
+        return {"Method/Kernel", "'Method/Kernel = cubic' creeps less" + frame};
+      return {of_body(body, "Points per cell edge"),
+              (body.points_per_edge < 3 ? "Three" : "More") +
+                std::string(" points per cell edge creep less")};
+    }
+
+
+
     // A body that is hardly strained has nothing to creep. Of one that flows
     // plastically most energy is gone.
     bool
@@ -218,25 +246,16 @@ namespace limber
           std::abs(figures.drift) <= balance_holds &&
           figures.contact <= balance_holds * figures.energy_scale)
         line.verdict = Verdict::look;
-      const bool smooth = body.kernel != KernelKind::linear;
-      line.entry        = smooth ? of_body(body, "Points per cell edge") :
-                          body.is_plastic ? "Method/Kernel" :
-                                            of_body(body, "Frame");
-      line.text         = "a point of body '" + body.name + "' has entered " +
+      const Remedy remedy = remedy_for_creep(body);
+      line.entry          = remedy.entry;
+      line.text           = "a point of body '" + body.name + "' has entered " +
                   brief(body.crossings) + " cells on average, " +
                   brief(body.crossings_under_strain) +
                   " where it is strained, at most " +
                   brief(body.most_crossings);
       if (line.verdict != Verdict::good)
-        line.text +=
-          "; each makes about " + percent(creep_per_crossing(body)) +
-          " of the strain permanent. " +
-          (smooth ? "Such kernels want three points per cell edge" :
-                    std::string("'Method/Kernel = quadratic' with three "
-                                "points per cell edge creeps less by far") +
-                      (body.is_plastic ? "" :
-                                         "; 'Frame = initial' does not, for "
-                                         "a body that is alone"));
+        line.text += "; each makes about " + percent(creep_per_crossing(body)) +
+                     " of the strain permanent. " + remedy.text;
       return line;
     }
 

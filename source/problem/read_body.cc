@@ -21,7 +21,7 @@ namespace limber
         admissible::positive_integers(dim, true, "2").or_word("auto"),
         "Number of points along the edge of a cell, for all "
         "directions or for each; auto: 2, but 3 of solids "
-        "with splines.");
+        "with splines in the current frame.");
       declare_word(parameters,
                    "Placement",
                    "auto",
@@ -412,7 +412,7 @@ namespace limber
      * velocity, as with USL. It has no bound where a point comes so close to
      * the edge of its cell that nodes beyond have next to no mass, and what
      * points give back has it in it. Points that the lattice of the grid places
-     * keep away from edges until they move.
+     * keep away from edges until they move, in the initial frame for ever.
      */
     template <int dim>
     void
@@ -422,12 +422,13 @@ namespace limber
           problem.grid.kernel != KernelKind::linear)
         return;
       for (const Body<dim> &body : problem.bodies)
-        if (body.placement == Placement::fitted ||
+        if (body.frame == Frame::current ||
+            body.placement == Placement::fitted ||
             body.placement == Placement::cut ||
             body.placement == Placement::gauss)
           problem.notes.push_back(
             "Warning: an affine 'Transfer' with linear functions is unstable "
-            "where points lie near the edges of cells, as those of body " +
+            "where points come near the edges of cells, as those of body " +
             in_quotes(body.name) +
             " may. Set 'Method/Kernel = quadratic' or 'Transfer = flip'.");
     }

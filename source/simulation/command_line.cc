@@ -220,7 +220,7 @@ namespace limber
   {
     return R"(limber [options] scene.prm             run a scene
 mpirun -np 4 limber [options] scene.prm
-limber COMMAND --help                  what is behind a command:
+limber COMMAND --help                  options of a command:
 
   reference   the scene of a solid in finite elements
   compare     fields and observables of a run against a reference, a run or
@@ -228,7 +228,7 @@ limber COMMAND --help                  what is behind a command:
   study       error against cost: all variants of a scene
   stability   the largest stable step, or another entry, of all variants
   inf-sup     numerical inf-sup test of the pressures
-  advise      what a scene could do without
+  advise      settings that save time, and what each of them changes
   plot        pictures of runs, references and studies
   animate     a film of a run, or of several side by side
 

@@ -171,7 +171,7 @@ stopped by signal n.
                 << advice.text << ". Set " << join(settings, ", ")
                 << ". Saves: " << gain_in_words(advice, factor)
                 << ". Changes: " << changes_in_words(advice, effect)
-                << ". Ground: " << judged.ground << ".\n";
+                << ". Reason: " << judged.ground << ".\n";
     }
 
 

@@ -45,6 +45,26 @@ namespace limber::test
 
 
 
+  // Whatever else an unstable run shows.
+  TEST(Diagnosis, AffineVelocitiesWithLinearFunctionsAreNamedFirst)
+  {
+    SampleRun<2> run(/*projected=*/true);
+    set_pressure(run, [](double x, double y) {
+      return std::lround(8 * x + 8 * y) % 2 == 0 ? 1e3 : -1e3;
+    });
+    const Symptoms seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    run.problem.method.transfer = Transfer::apic;
+    const Diagnosis found       = diagnose(seen, run.problem, true);
+    EXPECT_EQ(found.mode, "affine velocity");
+    EXPECT_NE(found.text.find("'Method/Transfer = flip'"), std::string::npos);
+    run.problem.grid.kernel = KernelKind::quadratic;
+    EXPECT_NE(diagnose(seen, run.problem, true).mode, "affine velocity");
+  }
+
+
+
   TEST(Diagnosis, LinearPressureIsNoChequerboardAndDoesNotLock)
   {
     SampleRun<2> run(/*projected=*/false);

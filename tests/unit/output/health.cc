@@ -166,6 +166,26 @@ namespace limber::test
 
 
 
+  TEST(Health, RemedyForCreepIsNotWhatTheSceneHas)
+  {
+    HealthFigures figures       = sound();
+    BodyFigures  &body          = figures.bodies[0];
+    body.kernel                 = KernelKind::quadratic;
+    body.crossings_under_strain = 400;
+    body.points_per_edge        = 2;
+    EXPECT_EQ(line("crossings", figures).entry,
+              "Body beam/Points per cell edge");
+    body.points_per_edge        = 3;
+    body.crossings_under_strain = 4000;
+    EXPECT_EQ(line("crossings", figures).entry, "Method/Kernel");
+    body.kernel                 = KernelKind::cubic;
+    body.crossings_under_strain = 4e6;
+    EXPECT_EQ(line("crossings", figures).entry,
+              "Body beam/Points per cell edge");
+  }
+
+
+
   // Of the same crossings linear functions make much permanent, smooth ones
   // little, and convected domains nothing.
   TEST(Health, CreepIsThatOfTheKernel)
