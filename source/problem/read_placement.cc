@@ -191,11 +191,14 @@ namespace limber
     // fills the cells unevenly: what is under stress is not at rest, and
     // softer. Cut, none but those at the surface are; but linear functions take
     // the edges of points for where bodies touch, and thin parts then touch
-    // from afar. Where the body stays in its initial frame and meets nothing,
-    // points take the places of Gauss and Legendre in what they fill of cells:
-    // rows at the middle of parts have less of a second moment, and bend too
-    // easily. (Linear functions without a treatment lock in bending, which such
-    // rows make up for in part: a disk that swirls errs by a third less.)
+    // from afar. So are round bodies with splines that nothing touches: a ball
+    // of ten cells has its mass instead of 1.4 % more, and when it bounces off
+    // a side, a tenth of the error of its energy. Where the body stays in its
+    // initial frame and meets nothing, points take the places of Gauss and
+    // Legendre in what they fill of cells: rows at the middle of parts have
+    // less of a second moment, and bend too easily. (Linear functions without a
+    // treatment lock in bending, which such rows make up for in part: a disk
+    // that swirls errs by a third less.)
     template <int dim>
     void
     choose_placement(const Section &section,
@@ -229,7 +232,7 @@ namespace limber
         return choose(Placement::gauss,
                       "gauss",
                       "points in the initial frame keep their places in cells");
-      if (stays && is_round)
+      if (is_round && !touches && (stays || is_spline(problem.grid.kernel)))
         choose(Placement::cut, "cut", "its surface runs across the cells");
       if (block == nullptr)
         return;

@@ -171,8 +171,9 @@ namespace limber
        Placement::automatic,
        "'regular', but 'gauss' for boxes, blocks, balls, cylinders and "
        "formulas in their initial frame (except linear functions with the "
-       "treatment 'none'); for boxes and blocks of solids on "
-       "cells of one size 'cut' if their faces run across the cells, or "
+       "treatment 'none'); 'cut' for balls, cylinders and formulas of "
+       "solids with splines that nothing may touch; for boxes and blocks of "
+       "solids on cells of one size 'cut' if their faces run across the cells, or "
        "'regular' would miss the volume by more than 2 % (with several "
        "bodies, the faces); 'fitted' with domains, or linear functions and "
        "contact"},
