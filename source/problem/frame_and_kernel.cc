@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/symmetric_tensor.h>
+
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
@@ -6,11 +8,18 @@
 #include <limber/problem/words.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace limber
 {
   namespace
   {
+    // A bar n cells thick vibrates in torsion slower by this over n^2
+    // (doc/theory/initial_frame.md).
+    constexpr double torsion_of_linear = 1.5, torsion_of_splines = 3.3;
+
+
+
     /** An entry that a choice does not go with. */
     struct Hindrance
     {
@@ -358,6 +367,19 @@ namespace limber
 
 
     template <int dim>
+    bool
+    any_in_current_frame(const Problem<dim> &problem)
+    {
+      return std::any_of(problem.bodies.begin(),
+                         problem.bodies.end(),
+                         [](const auto &body) {
+                           return body.frame == Frame::current;
+                         });
+    }
+
+
+
+    template <int dim>
     void
     choose_kernel(const Section &root, Problem<dim> &problem)
     {
@@ -365,8 +387,12 @@ namespace limber
         problem.notes.push_back("Kernel 'auto' is " + choice + ".");
       };
       problem.grid.kernel = KernelKind::linear;
-      if (problem.method.integration != TimeIntegration::explicit_steps)
+      if (problem.method.integration == TimeIntegration::semi_implicit)
         return say("'linear', which the time integration is made for");
+      if (is_solved_by_newton(problem.method.integration) &&
+          any_in_current_frame(problem))
+        return say("'linear', as the time integration knows splines in the "
+                   "initial frame alone");
       if (problem.grid.levels > 0)
         return say("'linear', as splines need cells of one size "
                    "('Grid/Levels')");
@@ -428,8 +454,85 @@ namespace limber
             "Body " + in_quotes(body.name) +
             ": where it bends across the cells, linear functions store too "
             "little energy, 20 % two cells deep, 6 % four, 2 % eight. Set " +
-            (is_newton ? "more" : "'Method/Kernel = quadratic', or more") +
+            (body.frame == Frame::current ?
+               "more" :
+               "'Method/Kernel = quadratic', or more") +
             " 'Grid/Cells', if it is thin.");
+    }
+    /**
+     * Variances of the places inside a shape along its principal axes, the
+     * largest first, m^2: L^2 / 12 of an edge L. From places on a lattice.
+     */
+    std::array<double, 3>
+    principal_variances(const Shape<3> &shape)
+    {
+      constexpr unsigned int        n   = 24;
+      const Corners<3>              box = shape.bounding_box();
+      dealii::Tensor<1, 3>          sum;
+      dealii::SymmetricTensor<2, 3> squares;
+      double                        count = 0;
+      for (unsigned int i = 0; i < n * n * n; ++i)
+        {
+          dealii::Point<3> place;
+          for (unsigned int d = 0, rest = i; d < 3; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (!shape.contains(place))
+            continue;
+          const dealii::Tensor<1, 3> x = place - box.first;
+          sum += x;
+          squares += symmetrize(outer_product(x, x));
+          ++count;
+        }
+      if (count == 0)
+        return {};
+      return eigenvalues(squares / count -
+                         symmetrize(outer_product(sum, sum)) / (count * count));
+    }
+
+
+
+    /**
+     * Nodes carry the mass of points h^2/6 further out (mean square, with
+     * linear functions; h^2/4 with splines), which slows what turns: in torsion
+     * a bar that is n cells thick by about twice that share of its polar moment
+     * (doc/theory/initial_frame.md).
+     */
+    template <int dim>
+    void
+    warn_of_torsion(Problem<dim> &problem)
+    {
+      if constexpr (dim == 3)
+        {
+          const bool linear = problem.grid.kernel == KernelKind::linear;
+          if (problem.method.integration == TimeIntegration::quasi_static ||
+              !(linear || problem.grid.kernel == KernelKind::quadratic))
+            return;
+          double edge = 0; // mean square
+          for (unsigned int d = 0; d < dim; ++d)
+            edge += problem.grid.edge(d) * problem.grid.edge(d) / dim;
+          edge = std::sqrt(edge) / (1 << problem.grid.levels);
+          for (const auto &body : problem.bodies)
+            {
+              if (body.is_liquid || !is_held(body, problem))
+                continue;
+              const auto   spread = principal_variances(*body.shape);
+              const double across = spread[1] + spread[2];
+              // of a square section; bars alone, twice as long as thick
+              const double n = std::sqrt(6 * across) / edge;
+              const double slowness =
+                (linear ? torsion_of_linear : torsion_of_splines) / (n * n);
+              if (spread[0] > 2 * across && slowness > 0.05)
+                problem.notes.push_back(
+                  "Body " + in_quotes(body.name) + ": about " +
+                  brief(std::round(10 * n) / 10) +
+                  " cells across, it vibrates in torsion some " +
+                  std::to_string(std::lround(100 * slowness)) +
+                  " % too slowly, as nodes carry the mass further out than "
+                  "points. If it twists, set more 'Grid/Cells'; the error "
+                  "falls with their square.");
+            }
+        }
     }
   } // namespace
 
@@ -459,6 +562,7 @@ namespace limber
             ", or 'Kernel = linear'.");
       }
     warn_of_bending_across_cells(problem);
+    warn_of_torsion(problem);
     if (has_domains(problem.grid.kernel) &&
         is_affine(read_word(method, "Transfer", transfer_words())))
       throw InputError("The transfer " + in_quotes(method.text("Transfer")) +

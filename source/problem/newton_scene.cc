@@ -142,13 +142,23 @@ namespace limber
     const Section method = root.subsection("Method");
     const Refusal refuse(method);
     check_method(method, problem.method, refuse);
-    if (problem.grid.kernel != KernelKind::linear)
+    if (problem.grid.kernel != KernelKind::linear &&
+        problem.grid.kernel != KernelKind::quadratic)
       refuse(method,
              "Kernel",
-             "whose tangent is that of linear functions",
-             "'Kernel = linear'");
+             "whose tangent knows linear functions and quadratic splines",
+             "'Kernel = auto'");
     for (Body<dim> &body : problem.bodies)
-      check_body(root.subsection("Body " + body.name), problem, body, refuse);
+      {
+        if (problem.grid.kernel == KernelKind::quadratic &&
+            body.frame == Frame::current)
+          refuse(method,
+                 "Kernel",
+                 "which knows splines in the initial frame alone ('Body " +
+                   body.name + "/Frame')",
+                 "'Kernel = linear'");
+        check_body(root.subsection("Body " + body.name), problem, body, refuse);
+      }
 
     const Section boundaries = root.subsection("Boundaries");
     for (unsigned int side = 0; side < 2 * dim; ++side)

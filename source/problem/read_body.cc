@@ -227,7 +227,7 @@ namespace limber
         fluid ?
           Choice{Treatment::cell,
                  "'cell', as a liquid resists volume changes only."} :
-        !soft && is_solved_by_newton(problem.method.integration) ?
+        !soft && linear && is_solved_by_newton(problem.method.integration) ?
           Choice{Treatment::cell,
                  "'cell', which does not lock in volume, and whose pressures "
                  "are solved for as well where the system is large."} :

@@ -76,9 +76,9 @@ namespace limber
                        "0.03",
                        admissible::non_negative_number("0.03"),
                        "Stiffness of quasi-static steps against "
-                       "jumps of the strain next to a free surface, over "
-                       "Young's modulus, no unit: holds the nodes of cells "
-                       "that are hardly filled.");
+                       "jumps of the strain (with splines: of its derivative) "
+                       "next to a free surface, over Young's modulus, no unit: "
+                       "holds the nodes of cells that are hardly filled.");
     parameters.declare("Lost points limit",
                        "0",
                        admissible::number_from_to(0, 1, "0.01"),

@@ -60,7 +60,8 @@ namespace limber
       {"auto",
        KernelKind::automatic,
        "'quadratic' if points of a solid may cross cells, or a body that a "
-       "side holds may bend across them, else 'linear'"},
+       "side holds may bend across them, where the time integration knows "
+       "splines; else 'linear'"},
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
       {"quadratic",
        KernelKind::quadratic,

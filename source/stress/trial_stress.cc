@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/interpolation/linear_functions.h>
+#include <limber/interpolation/basis_functions.h>
 #include <limber/materials/law_list.h>
 #include <limber/points/locate.h>
 #include <limber/stress/trial_strain.h>
@@ -13,15 +13,17 @@ namespace limber
 {
   namespace
   {
-    template <int dim, class Law>
-    class LawTrialStress final : public TrialStress<dim>
+    template <class Basis, class Law>
+    class LawTrialStress final : public TrialStress<Basis::dim>
     {
-      static constexpr int  n_nodes = 1 << dim;
+      static constexpr int  dim     = Basis::dim;
+      static constexpr int  n_nodes = Basis::n_nodes;
       static constexpr bool finite  = Law::finite_strain;
       static constexpr bool flows   = Law::is_plastic;
       using Matrix                  = SquareMatrix<dim>;
-      using Motion                  = TrialMotion<dim, Law>;
-      using Trial                   = CellTrial<dim, Law>;
+      using Motion                  = TrialMotion<Basis, Law>;
+      using Trial                   = CellTrial<Basis, Law>;
+      using Strain                  = TrialStrain<Basis, Law>;
       using Work                    = typename TrialStress<dim>::Work;
 
     public:
@@ -40,16 +42,16 @@ namespace limber
               const bool            with_tangent,
               const Work           &work) const override
       {
-        bool              admissible = true;
-        CellResponse<dim> response;
-        Trial             trial, trial_before;
+        bool         admissible = true;
+        CellResponse response(dim * n_nodes);
+        Trial        trial, trial_before;
         for_each_batch(points, [&](const CellBatch &batch) {
           if (!admissible)
             return;
           admissible = strain(points, grid, displacement, batch, trial);
           if (!admissible)
             return;
-          response = {};
+          response.clear();
           resist(trial, response);
           if (with_tangent)
             {
@@ -80,9 +82,7 @@ namespace limber
               const Motion &motion = trial.motions[p - batch.begin];
               keep(motion, points, p);
               if (strain.initial)
-                keep_deformation(strain.assumes ?
-                                   trial.assumed.points[p - batch.begin].F :
-                                   motion.f,
+                keep_deformation(own_deformation(trial, p - batch.begin),
                                  points,
                                  p);
               result.plastic_work += motion.volume * motion.plastic_work;
@@ -176,18 +176,19 @@ namespace limber
       // The first derivative of the energy. Where volumes are averaged, it goes
       // by the mean growth, whose derivative is the mean of growth * gradient.
       void
-      resist(Trial &trial, CellResponse<dim> &response) const
+      resist(Trial &trial, CellResponse &response) const
       {
         for (const Motion &motion : trial.motions)
           response.energy +=
             motion.volume *
             (strain.law.template strain_energy<dim>(motion.state) +
              motion.plastic_work);
-        if (strain.assumes)
-          {
-            trial.assumed.add_force(trial.piola(), response.force);
-            return;
-          }
+        if constexpr (has_bending_modes<Basis>)
+          if (strain.assumes)
+            {
+              trial.assumed.add_force(trial.piola(), response.force.data());
+              return;
+            }
         for (const Motion &motion : trial.motions)
           {
             const Matrix &s    = motion.stress;
@@ -203,7 +204,15 @@ namespace limber
           }
       }
 
-
+      /** As the nodes deform the point, whatever its cell assumes. */
+      const Matrix &
+      own_deformation(const Trial &trial, const std::size_t k) const
+      {
+        if constexpr (has_bending_modes<Basis>)
+          if (strain.assumes)
+            return trial.assumed.points[k].F;
+        return trial.motions[k].f;
+      }
 
       void
       keep(const Motion         &motion,
@@ -233,20 +242,19 @@ namespace limber
            const std::array<std::array<double, dim>, n_nodes> &u,
            const CellBatch                                    &batch) const
       {
-        const CellGeometry<dim> &cell    = grid.cells[batch.cell];
-        double                   longest = 0;
+        const auto &inverse_edge = grid.cells[batch.cell].inverse_edge;
+        double      longest      = 0;
         for (std::size_t p = batch.begin; p < batch.end; ++p)
           {
-            const LinearFunctions<dim> functions(natural_place(points, cell, p),
-                                                 cell);
+            const BasisFunctions<Basis> functions =
+              Strain::functions_at(points, grid, batch.cell, p);
             for (int d = 0; d < dim; ++d)
               {
                 double way = 0;
                 for (int i = 0; i < n_nodes; ++i)
                   way += functions.value[i] * u[i][d];
                 points.position[d][p] += way;
-                longest =
-                  std::max(longest, std::abs(way) * cell.inverse_edge[d]);
+                longest = std::max(longest, std::abs(way) * inverse_edge[d]);
               }
           }
         if (!strain.initial)
@@ -254,8 +262,8 @@ namespace limber
         return longest;
       }
 
-      const TrialStrain<dim, Law>  strain;
-      const TrialTangent<dim, Law> tangent;
+      const Strain                   strain;
+      const TrialTangent<Basis, Law> tangent;
     };
   } // namespace
 
@@ -267,11 +275,15 @@ namespace limber
                     const std::vector<double> &values,
                     const Treatment            kind,
                     const HourglassResponse    response,
-                    const Frame                frame)
+                    const Frame                frame,
+                    const KernelKind           kernel)
   {
+    const bool on_splines = kernel == KernelKind::quadratic;
     if (kind != Treatment::none && kind != Treatment::cell &&
-        kind != Treatment::assumed_strain)
+        (kind != Treatment::assumed_strain || on_splines))
       throw std::logic_error("no tangent of this treatment");
+    if (on_splines ? frame != Frame::initial : kernel != KernelKind::linear)
+      throw std::logic_error("no tangent with these functions");
     std::unique_ptr<const TrialStress<dim>> result;
     for_each_law([&](auto *const candidate) {
       using Law = std::remove_pointer_t<decltype(candidate)>;
@@ -283,16 +295,23 @@ namespace limber
           if (values.size() != own.size())
             throw std::logic_error("wrong number of parameters for " + name);
           std::copy(values.begin(), values.end(), own.begin());
-          if (Law::accepts(own))
-            {
-              if (Law::is_plastic && frame == Frame::initial)
-                throw std::logic_error("no flow in the initial frame");
-              const Law candidate_law(own);
-              result = std::make_unique<LawTrialStress<dim, Law>>(
-                candidate_law,
-                strain_treatment(candidate_law, kind, response),
-                frame);
-            }
+          if (!Law::accepts(own))
+            return;
+          if (Law::is_plastic && frame == Frame::initial)
+            throw std::logic_error("no flow in the initial frame");
+          const Law             law(own);
+          const StrainTreatment treatment =
+            strain_treatment(law, kind, response);
+          if constexpr (!Law::is_plastic)
+            if (on_splines)
+              {
+                result = std::make_unique<LawTrialStress<Quadratic<dim>, Law>>(
+                  law, treatment, frame);
+                return;
+              }
+          result = std::make_unique<LawTrialStress<Linear<dim>, Law>>(law,
+                                                                      treatment,
+                                                                      frame);
         }
     });
     if (!result)
@@ -307,11 +326,13 @@ namespace limber
                     const std::vector<double> &,
                     Treatment,
                     HourglassResponse,
-                    Frame);
+                    Frame,
+                    KernelKind);
   template std::unique_ptr<const TrialStress<3>>
   make_trial_stress(const std::string &,
                     const std::vector<double> &,
                     Treatment,
                     HourglassResponse,
-                    Frame);
+                    Frame,
+                    KernelKind);
 } // namespace limber

@@ -40,9 +40,12 @@ namespace limber
                                                    body->description.material,
                                                    body->description.treatment,
                                                    body->description.hourglass,
-                                                   body->description.frame));
+                                                   body->description.frame,
+                                                   parts.problem.grid.kernel));
         factorises_all |= !responses.back()->has_symmetric_tangent();
-        mixed |= responses.back()->bulk_over_shear() > mixed_beyond;
+        // what preconditions the pressures is for linear functions
+        mixed |= parts.problem.grid.kernel == KernelKind::linear &&
+                 responses.back()->bulk_over_shear() > mixed_beyond;
       }
   }
 
@@ -130,8 +133,9 @@ namespace limber
         i = root[i] = root[root[i]];
       return i;
     };
-    for (const auto &numbers : nodes.cells())
+    for (std::size_t c = 0; c < nodes.n_cells(); ++c)
       {
+        const auto numbers = nodes.of_cell(c);
         for (const std::uint32_t number : numbers)
           root[find(number)] = find(numbers[0]);
       }
@@ -179,7 +183,6 @@ namespace limber
                                  const std::vector<double> *const inertia,
                                  const std::vector<double> *const former)
   {
-    constexpr unsigned int n = 1 << dim;
     spread(displacement, by_node);
     if (former != nullptr)
       spread(*former, former_by_node);
@@ -199,17 +202,19 @@ namespace limber
             by_node.data(),
             former != nullptr ? former_by_node.data() : nullptr,
             inertia != nullptr,
-            [&](const std::uint32_t cell, CellResponse<dim> &response) {
+            [&](const std::uint32_t cell, CellResponse &response) {
               const auto numbers = nodes.numbers_in(cell);
               total_energy += response.energy;
-              for (unsigned int i = 0; i < n; ++i)
+              for (unsigned int i = 0; i < numbers.size(); ++i)
                 for (int d = 0; d < dim; ++d)
                   total_forces[std::size_t(numbers[i]) * dim + d] +=
                     response.force[i * dim + d];
               if (inertia == nullptr)
                 return;
               add_volume(b, numbers, response);
-              tangent->add(numbers.data(), n, response.tangent.data());
+              tangent->add(numbers.data(),
+                           numbers.size(),
+                           response.tangent.data());
             }))
         admissible = 0;
     if (nodes.is_parallel())
@@ -247,8 +252,8 @@ namespace limber
   void
   NewtonEquations<dim>::add_volume(
     const std::size_t                          body,
-    const std::array<std::uint32_t, 1 << dim> &numbers,
-    CellResponse<dim>                         &response)
+    const typename NumberedNodes<dim>::Numbers numbers,
+    CellResponse                              &response)
   {
     const double bulk_over_shear = responses[body]->bulk_over_shear();
     double       kept            = response.volume_stiffness;
@@ -257,12 +262,16 @@ namespace limber
       {
         const double shear = response.volume_stiffness / bulk_over_shear;
         kept               = kept_bulk * shear;
-        volumes->add({body,
-                      numbers,
-                      response.volume_row,
-                      response.volume_stiffness - kept,
-                      kept,
-                      shear});
+        typename AveragedVolumes<dim>::Volume volume;
+        volume.body = body;
+        std::copy(numbers.begin(), numbers.end(), volume.numbers.begin());
+        std::copy(response.volume_row.begin(),
+                  response.volume_row.end(),
+                  volume.row.begin());
+        volume.stiffness = response.volume_stiffness - kept;
+        volume.kept      = kept;
+        volume.shear     = shear;
+        volumes->add(volume);
       }
     response.add_volume_stiffness(kept);
   }
@@ -274,11 +283,13 @@ namespace limber
   void
   NewtonEquations<dim>::condense_volumes()
   {
-    CellResponse<dim> response;
+    CellResponse response(dim << dim);
     for (const auto &volume : volumes->all())
       {
-        response.tangent.fill(0);
-        response.volume_row = volume.row;
+        response.clear();
+        std::copy(volume.row.begin(),
+                  volume.row.end(),
+                  response.volume_row.begin());
         response.add_volume_stiffness(volume.stiffness);
         tangent->add(volume.numbers.data(),
                      volume.numbers.size(),

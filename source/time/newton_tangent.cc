@@ -35,15 +35,10 @@ namespace limber
       for (const auto row : of_block)
         pattern.add_entries(row, of_block.begin(), of_block.end(), true);
     };
-    for (const auto &numbers : nodes.cells())
-      add(numbers);
+    for (std::size_t c = 0; c < nodes.n_cells(); ++c)
+      add(nodes.of_cell(c));
     for (const auto &face : ghost.faces())
-      {
-        std::vector<std::uint32_t> numbers;
-        for (const auto &line : face.lines)
-          numbers.insert(numbers.end(), line.begin(), line.end());
-        add(numbers);
-      }
+      add(face.nodes);
     matrix.reinit(pattern);
   }
 
@@ -67,10 +62,9 @@ namespace limber
                           const unsigned int         n_nodes,
                           const double *const        block)
   {
-    constexpr unsigned int most = 3 * dim << dim; // of a cell or two
-    std::array<dealii::types::global_dof_index, most> places;
-    std::array<double, most>                          values;
-    const unsigned int                                n = n_nodes * dim;
+    const unsigned int n = n_nodes * dim;
+    row_places.resize(n);
+    row_values.resize(n);
     for (unsigned int k = 0; k < n; ++k)
       {
         const std::size_t row = std::size_t(numbers[k / dim]) * dim + k % dim;
@@ -88,10 +82,11 @@ namespace limber
                 of_columns.push_back(block[k * n + l]);
                 continue;
               }
-            places[found]   = column;
-            values[found++] = block[k * n + l];
+            row_places[found]   = column;
+            row_values[found++] = block[k * n + l];
           }
-        matrix.add(row, found, places.data(), values.data(), false, false);
+        matrix.add(
+          row, found, row_places.data(), row_values.data(), false, false);
       }
   }
 

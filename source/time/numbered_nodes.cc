@@ -2,6 +2,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <limber/base/records_of_ranks.h>
+#include <limber/interpolation/basis.h>
 #include <limber/points/cell_batch.h>
 #include <limber/time/numbered_nodes.h>
 
@@ -16,46 +17,56 @@ namespace limber
     : parts(parts)
     , parallel(
         dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
+    , along(parts.problem.grid.kernel == KernelKind::quadratic ? 3 : 2)
+    , in_cell(dealii::Utilities::pow(along, dim))
   {
     const auto &lattice = parts.grid.description;
-    Key         stride  = 1;
     for (int d = 0; d < dim; ++d)
       {
-        edges[d]   = (lattice.upper[d] - lattice.lower[d]) / lattice.cells[d];
-        strides[d] = stride;
-        stride *= Key(lattice.cells[d]) + 1;
+        edges[d] = (lattice.upper[d] - lattice.lower[d]) / lattice.cells[d];
+        n_cells_along[d] = lattice.cells[d];
+        // a cell begins with the node of its own number
+        n_nodes[d] = lattice.cells[d] + along - 1;
       }
   }
 
 
 
   template <int dim>
-  typename NumberedNodes<dim>::Key
-  NumberedNodes<dim>::key_of(const std::uint32_t cell,
-                             const unsigned int  corner) const
+  typename NumberedNodes<dim>::Place
+  NumberedNodes<dim>::cell_at(const std::uint32_t cell) const
   {
     const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
-    Key                      result   = 0;
+    Place                    result;
     for (int d = 0; d < dim; ++d)
-      result +=
-        strides[d] *
-        Key(std::lround((geometry.origin[d] - parts.grid.description.lower[d]) /
-                        edges[d]) +
-            (corner >> d & 1));
+      result[d] = std::lround(
+        (geometry.origin[d] - parts.grid.description.lower[d]) / edges[d]);
     return result;
   }
 
 
 
   template <int dim>
-  std::array<unsigned int, dim>
-  NumberedNodes<dim>::place_in_lattice(Key key) const
+  typename NumberedNodes<dim>::Key
+  NumberedNodes<dim>::key_of(const Place &place, const Place &extent)
   {
-    std::array<unsigned int, dim> result;
+    Key result = 0;
     for (int d = dim - 1; d >= 0; --d)
+      result = result * extent[d] + place[d];
+    return result;
+  }
+
+
+
+  template <int dim>
+  typename NumberedNodes<dim>::Place
+  NumberedNodes<dim>::place_of(Key key, const Place &extent)
+  {
+    Place result;
+    for (int d = 0; d < dim; ++d)
       {
-        result[d] = key / strides[d];
-        key %= strides[d];
+        result[d] = key % extent[d];
+        key /= extent[d];
       }
     return result;
   }
@@ -77,77 +88,105 @@ namespace limber
 
 
   template <int dim>
-  std::uint32_t
-  NumberedNodes<dim>::number_of(const Key key) const
+  void
+  NumberedNodes<dim>::update()
   {
-    const auto found = std::lower_bound(keys.begin(), keys.end(), key);
-    return found != keys.end() && *found == key ? found - keys.begin() :
-                                                  invalid_cell;
+    std::vector<std::uint32_t> own_cells;
+    std::vector<Key>           own;
+    for (const auto &body : parts.bodies)
+      for_each_batch(body->points.view(), [&](const CellBatch &batch) {
+        own_cells.push_back(batch.cell);
+        own.push_back(key_of(cell_at(batch.cell), n_cells_along));
+      });
+    cell_keys = united(std::move(own));
+    number_nodes();
+    find_places();
+    find_on_grid(own_cells);
   }
 
 
 
   template <int dim>
   void
-  NumberedNodes<dim>::update()
+  NumberedNodes<dim>::number_nodes()
   {
-    constexpr unsigned int     n = 1 << dim;
-    std::vector<std::uint32_t> own_cells;
-    std::vector<Key>           own;
-    for (const auto &body : parts.bodies)
-      for_each_batch(body->points.view(), [&](const CellBatch &batch) {
-        own_cells.push_back(batch.cell);
-        own.push_back(key_of(batch.cell, 0));
-      });
-    cell_keys = united(std::move(own));
-
-    std::vector<Key> of_corners;
-    const auto       corner_of = [&](const Key cell, const unsigned int i) {
-      Key result = cell;
-      for (int d = 0; d < dim; ++d)
-        result += (i >> d & 1) * strides[d];
-      return result;
-    };
+    std::vector<Key> of_cells;
+    of_cells.reserve(cell_keys.size() * in_cell);
     for (const Key cell : cell_keys)
-      for (unsigned int i = 0; i < n; ++i)
-        of_corners.push_back(corner_of(cell, i));
-    std::sort(of_corners.begin(), of_corners.end());
-    of_corners.erase(std::unique(of_corners.begin(), of_corners.end()),
-                     of_corners.end());
-    keys = std::move(of_corners);
+      {
+        const Place first = place_of(cell, n_cells_along);
+        for (unsigned int i = 0; i < in_cell; ++i)
+          {
+            Place        place = first;
+            unsigned int rest  = i;
+            for (int d = 0; d < dim; ++d, rest /= along)
+              place[d] += rest % along;
+            of_cells.push_back(key_of(place, n_nodes));
+          }
+      }
+    keys = of_cells;
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    numbers.clear();
+    numbers.reserve(of_cells.size());
+    for (const Key key : of_cells)
+      numbers.push_back(std::lower_bound(keys.begin(), keys.end(), key) -
+                        keys.begin());
+  }
 
-    corners.resize(cell_keys.size());
-    for (std::size_t c = 0; c < cell_keys.size(); ++c)
-      for (unsigned int i = 0; i < n; ++i)
-        corners[c][i] = number_of(corner_of(cell_keys[c], i));
 
+
+  template <int dim>
+  void
+  NumberedNodes<dim>::find_places()
+  {
     of_lattice.resize(keys.size());
     for (std::size_t i = 0; i < keys.size(); ++i)
       {
-        const auto place = place_in_lattice(keys[i]);
+        const Place place = place_of(keys[i], n_nodes);
         for (int d = 0; d < dim; ++d)
-          of_lattice[i][d] =
-            parts.grid.description.lower[d] + place[d] * edges[d];
+          {
+            double steps = place[d];
+            if (along == 3) // in a side or in the middle of a cell
+              steps = place[d] == 0              ? 0. :
+                      place[d] + 1 == n_nodes[d] ? n_cells_along[d] :
+                                                   place[d] - 0.5;
+            of_lattice[i][d] =
+              parts.grid.description.lower[d] + steps * edges[d];
+          }
       }
+  }
 
+
+
+  // What this rank's grid knows of them
+  template <int dim>
+  void
+  NumberedNodes<dim>::find_on_grid(const std::vector<std::uint32_t> &own_cells)
+  {
     local.assign(keys.size(), invalid_cell);
-    number_of_local.assign(parts.nodes.table.n(), invalid_cell);
-    for (const std::uint32_t cell : own_cells)
-      for (unsigned int i = 0; i < n; ++i)
+    index_of_local.assign(parts.grid.n_cells(), invalid_cell);
+    with_basis(parts.nodes.view(), [&](const auto basis) {
+      using Basis = std::decay_t<decltype(basis)>;
+      for (const std::uint32_t cell : own_cells)
         {
-          const std::uint32_t number = number_of(key_of(cell, i));
-          const std::uint32_t node =
-            parts.grid.geometry[cell].node[i] / NodeLayout<dim>::stride;
-          local[number]         = node;
-          number_of_local[node] = number;
+          const Key key = key_of(cell_at(cell), n_cells_along);
+          index_of_local[cell] =
+            std::lower_bound(cell_keys.begin(), cell_keys.end(), key) -
+            cell_keys.begin();
+          const Numbers of_this = numbers_in(cell);
+          const auto   &node = Basis::nodes_of(parts.nodes.view(), cell).node;
+          for (unsigned int i = 0; i < in_cell; ++i)
+            local[of_this[i]] = node[i] / NodeLayout<dim>::stride;
         }
+    });
 
-    const int rank =
+    this_rank =
       dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator);
     speakers.assign(keys.size(), std::numeric_limits<int>::max());
     for (std::size_t i = 0; i < keys.size(); ++i)
       if (local[i] != invalid_cell)
-        speakers[i] = rank;
+        speakers[i] = this_rank;
     if (parallel)
       MPI_Allreduce(MPI_IN_PLACE,
                     speakers.data(),
@@ -155,7 +194,6 @@ namespace limber
                     MPI_INT,
                     MPI_MIN,
                     parts.grid.communicator);
-    this_rank = rank;
   }
 
 
@@ -164,13 +202,13 @@ namespace limber
   std::uint8_t
   NumberedNodes<dim>::sides(const std::size_t number) const
   {
-    const auto   place  = place_in_lattice(keys[number]);
+    const Place  place  = place_of(keys[number], n_nodes);
     std::uint8_t result = 0;
     for (int d = 0; d < dim; ++d)
       {
         if (place[d] == 0)
           result |= 1 << (2 * d);
-        if (place[d] == parts.grid.description.cells[d])
+        if (place[d] + 1 == n_nodes[d])
           result |= 1 << (2 * d + 1);
       }
     return result;
@@ -179,14 +217,13 @@ namespace limber
 
 
   template <int dim>
-  typename NumberedNodes<dim>::Corners
-  NumberedNodes<dim>::numbers_in(const std::uint32_t cell) const
+  std::array<bool, 2>
+  NumberedNodes<dim>::at_sides(const std::size_t  cell,
+                               const unsigned int direction) const
   {
-    Corners result;
-    for (unsigned int i = 0; i < result.size(); ++i)
-      result[i] = number_of_local[parts.grid.geometry[cell].node[i] /
-                                  NodeLayout<dim>::stride];
-    return result;
+    const unsigned int place =
+      place_of(cell_keys[cell], n_cells_along)[direction];
+    return {{place == 0, place + 1 == n_cells_along[direction]}};
   }
 
 
@@ -197,10 +234,11 @@ namespace limber
                                 const unsigned int direction,
                                 const int          step) const
   {
-    const int place = int(place_in_lattice(cell_keys[cell])[direction]) + step;
-    if (place < 0 || place >= int(parts.grid.description.cells[direction]))
+    if (at_sides(cell, direction)[step > 0])
       return {false, {}};
-    const Key  key = cell_keys[cell] + step * std::int64_t(strides[direction]);
+    Place place = place_of(cell_keys[cell], n_cells_along);
+    place[direction] += step;
+    const Key  key = key_of(place, n_cells_along);
     const auto found =
       std::lower_bound(cell_keys.begin(), cell_keys.end(), key);
     if (found == cell_keys.end() || *found != key)

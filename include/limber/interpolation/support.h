@@ -2,9 +2,7 @@
 #ifndef limber_interpolation_support_h
 #define limber_interpolation_support_h
 
-#include <limber/interpolation/basis.h>
-
-#include <algorithm>
+#include <limber/interpolation/basis_functions.h>
 
 namespace limber
 {
@@ -23,39 +21,6 @@ namespace limber
     std::array<double, most>                  value;    // N_i
     std::array<std::array<double, dim>, most> gradient; // of N_i, 1/m
   };
-
-
-
-  namespace internal
-  {
-    /** One-dimensional values and slopes of the functions of a cell. */
-    template <int dim>
-    struct Factors
-    {
-      std::array<double, 4> value, slope;
-    };
-
-    template <int dim>
-    Factors<dim>
-    factors(const Linear<dim>, const CellGeometry<dim> &, int, const double xi)
-    {
-      return {{{1 - xi, xi}}, {{-1, 1}}};
-    }
-
-    template <int dim, int degree>
-    Factors<dim>
-    factors(const Spline<dim, degree>,
-            const SplineCell<dim, degree> &nodes,
-            const int                      d,
-            const double                   xi)
-    {
-      const auto   w = Spline<dim, degree>::weights(nodes, d, xi);
-      Factors<dim> result{};
-      std::copy(w.value.begin(), w.value.end(), result.value.begin());
-      std::copy(w.slope.begin(), w.slope.end(), result.slope.begin());
-      return result;
-    }
-  } // namespace internal
 
 
 

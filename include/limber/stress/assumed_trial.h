@@ -76,8 +76,7 @@ namespace limber
 
     /** Of the stress P = dW/dF_a of the points (Pa): the force on nodes, N. */
     void
-    add_force(const std::vector<Matrix>  &stress,
-              std::array<double, n_dofs> &force)
+    add_force(const std::vector<Matrix> &stress, double *const force)
     {
       meet(stress);
       for (std::size_t p = 0; p < points.size(); ++p)
@@ -93,13 +92,14 @@ namespace limber
      * What resists against the motion of the displacements k and l of nodes:
      * @p moduli (p, d, e, f, g) is what the Kirchhoff stress along d and e,
      * with which gradients work, grows by with the displacement along f by the
-     * gradient along g, in the present configuration of the point.
+     * gradient along g, in the present configuration of the point. Adds to the
+     * n_dofs rows of @p tangent.
      */
     template <class Moduli>
     void
-    add_tangent(const std::vector<Matrix>           &stress,
-                const Moduli                        &moduli,
-                std::array<double, n_dofs * n_dofs> &tangent)
+    add_tangent(const std::vector<Matrix> &stress,
+                const Moduli              &moduli,
+                double *const              tangent)
     {
       meet(stress);
       vary();
@@ -317,9 +317,9 @@ namespace limber
 
     template <class Moduli>
     void
-    add_material(const std::size_t                    p,
-                 const Moduli                        &moduli,
-                 std::array<double, n_dofs * n_dofs> &tangent) const
+    add_material(const std::size_t p,
+                 const Moduli     &moduli,
+                 double *const     tangent) const
     {
       // the change of F_a as a gradient in the present configuration
       std::array<Matrix, n_dofs> gradient;
@@ -361,7 +361,7 @@ namespace limber
     //   H dw' = axis(-T <g>) - dH' w,   dH' = tr(dU') 1 - dU',
     //   dU' = <g'> - T U.
     void
-    add_turning(std::array<double, n_dofs * n_dofs> &tangent) const
+    add_turning(double *const tangent) const
     {
       std::array<Axis, n_dofs> by_spin{};
       std::array<Axis, 3>      by_spins{};

@@ -2,6 +2,7 @@
 #ifndef limber_stress_cell_trial_h
 #define limber_stress_cell_trial_h
 
+#include <limber/interpolation/basis.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/further_deformation.h>
 #include <limber/stress/assumed_trial.h>
@@ -12,14 +13,15 @@
 namespace limber
 {
   /** How a point is strained in a trial, and how it resists. */
-  template <int dim, class Law>
+  template <class Basis, class Law>
   struct TrialMotion
   {
+    static constexpr int  dim    = Basis::dim;
     static constexpr bool finite = Law::finite_strain;
     using State                  = typename Law::template State<dim, double>;
 
     // of the functions where forces act, 1/m
-    std::array<std::array<double, dim>, std::size_t(1) << dim> gradient;
+    std::array<std::array<double, dim>, Basis::n_nodes> gradient;
     // of the step, or F in the initial frame; as it is assumed where it is
     SquareMatrix<dim> f;
     double            growth;       // of the volume by it, the point's own
@@ -63,13 +65,24 @@ namespace limber
 
 
 
+  /** Stands for AssumedTrial where the functions have no bending modes. */
+  struct NoAssumedTrial
+  {};
+
+
+
   /** Of the points of a cell. */
-  template <int dim, class Law>
+  template <class Basis, class Law>
   struct CellTrial
   {
-    std::array<std::array<double, dim>, std::size_t(1) << dim> u; // of nodes, m
-    std::vector<TrialMotion<dim, Law>>                         motions;
-    AssumedTrial<dim, Law::finite_strain>                      assumed;
+    static constexpr int dim = Basis::dim;
+
+    std::array<std::array<double, dim>, Basis::n_nodes> u; // of nodes, m
+    std::vector<TrialMotion<Basis, Law>>                motions;
+    std::conditional_t<has_bending_modes<Basis>,
+                       AssumedTrial<dim, Law::finite_strain>,
+                       NoAssumedTrial>
+           assumed;
     double volume = 0;               // of all at the start, m^dim
     double slope = 0, curvature = 0; // of the energy, by mean growth, J
 

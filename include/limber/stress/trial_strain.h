@@ -2,7 +2,7 @@
 #ifndef limber_stress_trial_strain_h
 #define limber_stress_trial_strain_h
 
-#include <limber/interpolation/linear_functions.h>
+#include <limber/interpolation/basis_functions.h>
 #include <limber/points/cell_batch.h>
 #include <limber/stress/cell_trial.h>
 #include <limber/stress/strain_treatment.h>
@@ -16,15 +16,16 @@ namespace limber
    * their states, those of points left as they are (TrialStress). What is by
    * growth is by that of the mean volume where this acts, else by the own.
    */
-  template <int dim, class Law>
+  template <class Basis, class Law>
   class TrialStrain
   {
-    static constexpr int  n_nodes = 1 << dim;
+    static constexpr int  dim     = Basis::dim;
+    static constexpr int  n_nodes = Basis::n_nodes;
     static constexpr bool finite  = Law::finite_strain;
     static constexpr bool flows   = Law::is_plastic;
     using Matrix                  = SquareMatrix<dim>;
-    using Motion                  = TrialMotion<dim, Law>;
-    using Trial                   = CellTrial<dim, Law>;
+    using Motion                  = TrialMotion<Basis, Law>;
+    using Trial                   = CellTrial<Basis, Law>;
 
   public:
     TrialStrain(const Law             &law,
@@ -45,10 +46,10 @@ namespace limber
                const CellBatch      &batch,
                Trial                &trial) const
     {
-      const CellGeometry<dim> &cell = grid.cells[batch.cell];
+      const auto &nodes = Basis::nodes_of(grid, batch.cell).node;
       for (int i = 0; i < n_nodes; ++i)
         std::copy_n(displacement +
-                      std::size_t(cell.node[i]) / NodeLayout<dim>::stride * dim,
+                      std::size_t(nodes[i]) / NodeLayout<dim>::stride * dim,
                     dim,
                     trial.u[i].begin());
 
@@ -58,14 +59,15 @@ namespace limber
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           Motion &motion = trial.motions[p - batch.begin];
-          if (!deform(points, cell, p, trial.u, motion))
+          if (!deform(points, grid, batch.cell, p, trial.u, motion))
             return false;
           trial.volume += motion.volume;
           mean_growth += motion.volume * motion.growth;
         }
       mean_growth /= trial.volume;
-      if (assumes && !assume(points, cell, batch, trial))
-        return false;
+      if constexpr (has_bending_modes<Basis>)
+        if (assumes && !assume(points, grid, batch, trial))
+          return false;
 
       trial.slope = trial.curvature = 0;
       for (std::size_t p = batch.begin; p < batch.end; ++p)
@@ -111,23 +113,33 @@ namespace limber
         }
     }
 
+    /** Of the nodes of its cell, where the forces of a point act. */
+    static BasisFunctions<Basis>
+    functions_at(const PointView<dim> &points,
+                 const GridView<dim>  &grid,
+                 const std::uint32_t   cell,
+                 const std::size_t     p)
+    {
+      return {natural_place(points, grid.cells[cell], p), grid, cell};
+    }
+
     const FurtherDeformation<Law> law;
     const bool                    mean_volume, assumes, initial;
 
   private:
     // Each point is deformed as its cell lets it; false as above.
     bool
-    assume(const PointView<dim>    &points,
-           const CellGeometry<dim> &cell,
-           const CellBatch         &batch,
-           Trial                   &trial) const
+    assume(const PointView<dim> &points,
+           const GridView<dim>  &grid,
+           const CellBatch      &batch,
+           Trial                &trial) const
     {
       auto &assumed = trial.assumed;
       assumed.points.resize(trial.motions.size());
       for (std::size_t k = 0; k < trial.motions.size(); ++k)
         {
-          const LinearFunctions<dim> functions(
-            natural_place(points, cell, batch.begin + k), cell);
+          const BasisFunctions<Basis> functions =
+            functions_at(points, grid, batch.cell, batch.begin + k);
           assumed.points[k] = {trial.motions[k].f,
                                functions.xi,
                                trial.motions[k].volume,
@@ -159,13 +171,14 @@ namespace limber
 
     bool
     deform(const PointView<dim>                               &points,
-           const CellGeometry<dim>                            &cell,
+           const GridView<dim>                                &grid,
+           const std::uint32_t                                 cell,
            const std::size_t                                   p,
            const std::array<std::array<double, dim>, n_nodes> &u,
            Motion                                             &motion) const
     {
-      const LinearFunctions<dim> functions(natural_place(points, cell, p),
-                                           cell);
+      const BasisFunctions<Basis> functions =
+        functions_at(points, grid, cell, p);
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           {

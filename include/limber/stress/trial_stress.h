@@ -3,10 +3,11 @@
 #define limber_stress_trial_stress_h
 
 #include <limber/materials/frame.h>
+#include <limber/materials/kernel.h>
 #include <limber/materials/treatment.h>
 #include <limber/points/point_view.h>
 
-#include <array>
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,33 +17,47 @@ namespace limber
 {
   /**
    * How the points of a body in a cell resist a displacement of its nodes.
-   * Degrees of freedom node by node: component d of node i is i * dim + d.
-   * Where volumes are averaged, the tangent is that at a given mean growth, and
-   * the derivative of the force has the term of rank one besides
+   * Degrees of freedom node by node, in the order of the basis: component d of
+   * node i is i * dim + d. Where volumes are averaged, the tangent is that at a
+   * given mean growth, and the derivative of the force has the term of rank one
+   * besides
    *
    *   volume_stiffness * volume_row volume_row^T,
    *
    * which grows without bound towards incompressibility.
    */
-  template <int dim>
   struct CellResponse
   {
-    static constexpr int n = dim << dim;
+    explicit CellResponse(const unsigned int n)
+      : n(n)
+      , force(n)
+      , tangent(std::size_t(n) * n)
+      , volume_row(n)
+    {}
 
-    double                    energy = 0;   // of strain, J
-    std::array<double, n>     force{};      // derivative of the energy, N
-    std::array<double, n * n> tangent{};    // derivative of the force, N/m
-    std::array<double, n>     volume_row{}; // of the mean growth, 1/m
-    double                    volume_stiffness = 0; // J
+    void
+    clear()
+    {
+      energy = volume_stiffness = 0;
+      for (auto *const values : {&force, &tangent, &volume_row})
+        std::fill(values->begin(), values->end(), 0.);
+    }
 
     /** Put that much of the volume stiffness into the tangent. */
     void
     add_volume_stiffness(const double stiffness)
     {
-      for (int k = 0; k < n; ++k)
-        for (int l = 0; l < n; ++l)
+      for (unsigned int k = 0; k < n; ++k)
+        for (unsigned int l = 0; l < n; ++l)
           tangent[k * n + l] += stiffness * volume_row[k] * volume_row[l];
     }
+
+    const unsigned int  n;                    // degrees of freedom
+    double              energy = 0;           // of strain, J
+    std::vector<double> force;                // derivative of the energy, N
+    std::vector<double> tangent;              // of the force, row by row, N/m
+    std::vector<double> volume_row;           // of the mean growth, 1/m
+    double              volume_stiffness = 0; // J
   };
 
 
@@ -58,10 +73,11 @@ namespace limber
 
   /**
    * The stress at the end of a step as a function of the displacements of the
-   * nodes in it, for solids and linear functions. Trials leave the points as
-   * they are; one of them is then accepted. Laws that flow (current frame
-   * alone) return to their yield surface in each trial, and count plastic work
-   * as energy.
+   * nodes in it, for solids; in the frame of the initial configuration with
+   * linear functions or quadratic splines, in the current one with linear
+   * functions. Trials leave the points as they are; one of them is then
+   * accepted. Laws that flow (current frame alone) return to their yield
+   * surface in each trial, and count plastic work as energy.
    *
    * In the frame of the initial configuration the functions are those of the
    * initial places and F grows by the gradient of the displacement; in the
@@ -79,7 +95,7 @@ namespace limber
   public:
     virtual ~TrialStress() = default;
 
-    using Work = std::function<void(std::uint32_t cell, CellResponse<dim> &)>;
+    using Work = std::function<void(std::uint32_t cell, CellResponse &)>;
 
     /**
      * Call @p work for each occupied cell, with the tangent on request. All
@@ -127,7 +143,8 @@ namespace limber
   /**
    * For the law of that name, of a solid; @p values in the order of its
    * entries, the treatment 'none', 'cell' or 'assumed_strain'; @p response
-   * counts with the last.
+   * counts with the last, which is for linear functions alone. The grid has to
+   * have the functions of @p kernel, 'linear' or 'quadratic'.
    */
   template <int dim>
   std::unique_ptr<const TrialStress<dim>>
@@ -135,7 +152,8 @@ namespace limber
                     const std::vector<double> &values,
                     Treatment                  kind,
                     HourglassResponse          response,
-                    Frame                      frame);
+                    Frame                      frame,
+                    KernelKind                 kernel);
 } // namespace limber
 
 #endif

@@ -17,38 +17,39 @@ namespace limber
    * flow couples pressure and shear, the deviator follows the mean volume, and
    * the pressure of the cell the strains of its points.
    */
-  template <int dim, class Law>
+  template <class Basis, class Law>
   class TrialTangent
   {
-    static constexpr int  n_nodes = 1 << dim;
+    static constexpr int  dim     = Basis::dim;
+    static constexpr int  n_nodes = Basis::n_nodes;
     static constexpr int  n_dofs  = dim * n_nodes;
     static constexpr bool finite  = Law::finite_strain;
     static constexpr bool flows   = Law::is_plastic;
-    using Motion                  = TrialMotion<dim, Law>;
-    using Trial                   = CellTrial<dim, Law>;
+    using Motion                  = TrialMotion<Basis, Law>;
+    using Trial                   = CellTrial<Basis, Law>;
     using Rates                   = FlowRates<dim>;
     // [d, e][k, l]: what the force along d by the gradient along e grows by
     // with the displacement along k by the gradient along l
     using Moduli = decltype(Rates::deviator);
 
   public:
-    explicit TrialTangent(const TrialStrain<dim, Law> &strain)
+    explicit TrialTangent(const TrialStrain<Basis, Law> &strain)
       : law(strain.law)
       , strain(strain)
     {}
 
     void
-    add(Trial &trial, CellResponse<dim> &response) const
+    add(Trial &trial, CellResponse &response) const
     {
-      if (strain.assumes)
-        add_assumed(trial, response);
-      else
-        add_own(trial, response);
+      if constexpr (has_bending_modes<Basis>)
+        if (strain.assumes)
+          return add_assumed(trial, response);
+      add_own(trial, response);
     }
 
   private:
     void
-    add_assumed(Trial &trial, CellResponse<dim> &response) const
+    add_assumed(Trial &trial, CellResponse &response) const
     {
       std::vector<Moduli> moduli;
       for (const Motion &motion : trial.motions)
@@ -58,17 +59,17 @@ namespace limber
         [&](const std::size_t p, int d, int e, int f, int g) {
           return moduli[p][d * dim + e][f * dim + g];
         },
-        response.tangent);
+        response.tangent.data());
     }
 
     void
-    add_own(const Trial &trial, CellResponse<dim> &response) const
+    add_own(const Trial &trial, CellResponse &response) const
     {
       // derivatives of mean growth and, times the volume, of the slope
-      std::array<double, n_dofs> &mean_growth = response.volume_row;
-      std::array<double, n_dofs>  slope_of_cell{};
-      std::array<double, n_dofs>  by_growth{}; // of the force
-      double                      curvature_of_cell = trial.curvature;
+      std::vector<double>       &mean_growth = response.volume_row;
+      std::array<double, n_dofs> slope_of_cell{};
+      std::array<double, n_dofs> by_growth{}; // of the force
+      double                     curvature_of_cell = trial.curvature;
       for (const Motion &motion : trial.motions)
         {
           const Rates rates = rates_of(motion);
@@ -162,9 +163,9 @@ namespace limber
     }
 
     void
-    add_point(const Motion      &motion,
-              const Rates       &rates,
-              CellResponse<dim> &response) const
+    add_point(const Motion &motion,
+              const Rates  &rates,
+              CellResponse &response) const
     {
       constexpr int n = dim * dim;
       const Moduli  a = moduli_of(motion, rates);
@@ -186,7 +187,7 @@ namespace limber
     }
 
     const FurtherDeformation<Law> &law;
-    const TrialStrain<dim, Law>   &strain;
+    const TrialStrain<Basis, Law> &strain;
   };
 } // namespace limber
 

@@ -15,7 +15,7 @@ namespace limber
    * What the averaged volumes of cells resist with, kept apart from the matrix
    * of NewtonEquations: each gets a pressure that is an unknown besides the
    * displacements (doc/theory/implicit_steps.md, "What hardly changes its
-   * volume").
+   * volume"). For linear functions.
    */
   template <int dim>
   class AveragedVolumes

@@ -11,27 +11,32 @@
 namespace limber
 {
   /**
-   * A stiffness against jumps of the normal derivative across faces of cells
-   * next to the surface (ghost penalty; Sticko, Ludvigsson and Kreiss 2020,
-   * Coombs 2023),
+   * A stiffness against jumps of the normal derivative of order p, the degree
+   * of the functions, across faces of cells next to the surface (ghost penalty;
+   * Sticko, Ludvigsson and Kreiss 2020, Coombs 2023),
    *
-   *   energy  g E h/6  int [du/dn] . [du/dn] dA,
+   *   energy  g E / 2  h^(2p-1) / ((2p+1) p!^2)  int [d^p u/dn^p]^2 dA,
    *
    * without which nodes of cells that are hardly filled would resist some
-   * motions with nothing.
+   * motions with nothing. Lower derivatives do not jump. p = 1 for linear
+   * functions, 2 for quadratic splines.
    */
   template <int dim>
   class GhostPenalty
   {
   public:
-    static constexpr unsigned int n_lines = 1 << (dim - 1);
-
     // A face between two cells with points, near the surface
     struct Face
     {
-      // numbers of nodes: along the normal, for each place across it
-      std::array<std::array<std::uint32_t, 3>, n_lines> lines;
-      double                                            stiffness; // N/m
+      // Numbers of nodes, along the normal for each place across it: p + 2 in a
+      // line
+      std::vector<std::uint32_t> nodes;
+      // of the values along a line, what jumps, times h^p
+      std::array<double, 4> difference;
+      // Integrals of products of the functions over the unit interval, for each
+      // direction in the face
+      std::array<std::array<std::array<double, 3>, 3>, dim - 1> mass;
+      double stiffness; // N/m
     };
 
     /** There is none. */
@@ -70,6 +75,13 @@ namespace limber
     add_tangent(const Add &add) const;
 
   private:
+    static double
+    mass(const Face        &face,
+         unsigned int       i,
+         unsigned int       j,
+         const unsigned int along);
+
+    unsigned int      along = 2; // nodes of a cell along a direction, p + 1
     std::vector<Face> of_surface;
   };
 } // namespace limber

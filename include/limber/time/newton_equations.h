@@ -24,8 +24,8 @@ namespace limber
   /**
    * The equations of a step whose unknowns are the displacements of nodes in
    * it: nodes of occupied cells alone, dim equations each, in the order of
-   * NumberedNodes. They are made anew when points have moved. For linear
-   * functions and cells of one size.
+   * NumberedNodes. They are made anew when points have moved. For cells of one
+   * size.
    *
    * Each rank finds what its points resist with; then every rank knows the
    * equations of all and solves them, alike to the last bit.
@@ -40,8 +40,9 @@ namespace limber
     /**
      * Up to @p largest_direct unknowns are factorised. More are solved for with
      * conjugate gradients, or where a body has averaged volumes and a bulk
-     * modulus of @p mixed_beyond shear moduli and more, in mixed form with
-     * minimal residuals; unless the tangent is not symmetric.
+     * modulus of @p mixed_beyond shear moduli and more, with linear functions,
+     * in mixed form with minimal residuals; unless the tangent is not
+     * symmetric.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
                              std::size_t largest_direct = default_direct,
@@ -173,9 +174,9 @@ namespace limber
     void
     find_held();
     void
-    add_volume(std::size_t                                body,
-               const std::array<std::uint32_t, 1 << dim> &numbers,
-               CellResponse<dim>                         &response);
+    add_volume(std::size_t                          body,
+               typename NumberedNodes<dim>::Numbers numbers,
+               CellResponse                        &response);
     void
     condense_volumes();
     std::vector<double>

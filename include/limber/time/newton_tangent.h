@@ -72,7 +72,10 @@ namespace limber
     dealii::TrilinosWrappers::SparseMatrix matrix;
     std::vector<std::uint32_t>             rows, columns; // of held columns
     std::vector<double>                    of_columns;
-    double                                 largest = 0; // of the diagonal
+    // Of a row of a block, while it is added
+    std::vector<dealii::types::global_dof_index> row_places;
+    std::vector<double>                          row_values;
+    double                                       largest = 0; // of the diagonal
   };
 } // namespace limber
 

@@ -2,6 +2,7 @@
 #ifndef limber_time_numbered_nodes_h
 #define limber_time_numbered_nodes_h
 
+#include <deal.II/base/array_view.h>
 #include <deal.II/base/point.h>
 
 #include <limber/time/integrator.h>
@@ -16,15 +17,17 @@ namespace limber
   /**
    * The nodes of all cells that hold points, on whatever rank, numbered in the
    * order of their places in the lattice (the first direction runs fastest):
-   * the same on every rank and for any number of ranks. For linear functions
-   * and cells of one size. What is summed over ranks is the same on all of
-   * them, to the last bit.
+   * the same on every rank and for any number of ranks. For cells of one size,
+   * with linear functions, whose nodes are the vertices, or quadratic splines,
+   * whose nodes along a direction are the centres of the cells and both sides.
+   * What is summed over ranks is the same on all of them, to the last bit.
    */
   template <int dim>
   class NumberedNodes
   {
   public:
-    using Corners = std::array<std::uint32_t, 1 << dim>;
+    /** Of the nodes of a cell, in the order of the basis. */
+    using Numbers = dealii::ArrayView<const std::uint32_t>;
 
     explicit NumberedNodes(const RunParts<dim> &parts);
 
@@ -65,16 +68,37 @@ namespace limber
     std::uint8_t
     sides(std::size_t number) const;
 
-    /** Of all cells with points, in the order of the lattice. */
-    const std::vector<Corners> &
-    cells() const
+    /** Along each direction: 2 of linear functions, 3 of splines. */
+    unsigned int
+    n_along() const
     {
-      return corners;
+      return along;
+    }
+
+    /** With points, on whatever rank. */
+    std::size_t
+    n_cells() const
+    {
+      return cell_keys.size();
+    }
+
+    /** Of such a cell, in the order of the lattice. */
+    Numbers
+    of_cell(const std::size_t cell) const
+    {
+      return {&numbers[cell * in_cell], in_cell};
     }
 
     /** Of a cell of this rank's grid in which it has points. */
-    Corners
-    numbers_in(std::uint32_t cell) const;
+    Numbers
+    numbers_in(const std::uint32_t cell) const
+    {
+      return of_cell(index_of_local[cell]);
+    }
+
+    /** Whether a cell of that index ends at the lower and upper side. */
+    std::array<bool, 2>
+    at_sides(std::size_t cell, unsigned int direction) const;
 
     /** One step along a direction from a cell with points. */
     struct Neighbour
@@ -108,28 +132,37 @@ namespace limber
     }
 
   private:
-    // Place in the lattice as one number
-    using Key = std::uint64_t;
+    // Place in the lattice of nodes, or of cells, as one number
+    using Key   = std::uint64_t;
+    using Place = std::array<unsigned int, dim>;
 
-    Key
-    key_of(const std::uint32_t cell, const unsigned int corner) const;
-    std::array<unsigned int, dim>
-    place_in_lattice(Key key) const;
+    Place
+    cell_at(std::uint32_t cell) const;
+    static Key
+    key_of(const Place &place, const Place &extent);
+    static Place
+    place_of(Key key, const Place &extent);
     std::vector<Key>
     united(std::vector<Key> own) const;
-    std::uint32_t
-    number_of(Key key) const;
+    void
+    number_nodes();
+    void
+    find_places();
+    void
+    find_on_grid(const std::vector<std::uint32_t> &own_cells);
 
     const RunParts<dim>             parts;
     const bool                      parallel;
+    const unsigned int              along, in_cell; // nodes of a cell
     dealii::Point<dim>              edges;
-    std::array<Key, dim>            strides;         // of keys
-    std::vector<Key>                keys, cell_keys; // sorted
-    std::vector<std::uint32_t>      local, number_of_local;
+    Place                           n_nodes, n_cells_along; // of the lattice
+    std::vector<Key>                keys, cell_keys;        // sorted
+    std::vector<std::uint32_t>      numbers;        // in_cell for each cell
+    std::vector<std::uint32_t>      index_of_local; // cells
+    std::vector<std::uint32_t>      local;
     std::vector<int>                speakers; // ranks, by number
     int                             this_rank = 0;
     std::vector<dealii::Point<dim>> of_lattice;
-    std::vector<Corners>            corners;
   };
 } // namespace limber
 

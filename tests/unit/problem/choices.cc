@@ -5,13 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <tuple>
 
 /**
  * @file The lists of choices that a scene has: each says all about its
- * entries, and what follows from a list is what it has to be.
+ * entries, and what follows from a list is what it has to be. Then what 'auto'
+ * chooses of the kernel, and what the log says of it.
  */
 using namespace limber;
 
@@ -26,6 +28,14 @@ namespace
         set Young's modulus = 1
       end
     end)";
+
+
+
+  SceneFile
+  scene_with(const std::string &text, const std::vector<std::string> &overrides)
+  {
+    return SceneFile(ParameterText{text, FileFormat::prm, "scene"}, overrides);
+  }
 
 
 
@@ -240,4 +250,121 @@ TEST(Choices, EveryShapeFillsSomethingAsItIsDeclared)
   EXPECT_EQ(words.size(),
             std::tuple_size_v<ShapeList<2>> + from_files.size() + 1);
   EXPECT_EQ(from_files.size(), std::tuple_size_v<FileShapeList<2>>);
+}
+
+
+
+// Splines where bodies may bend across the cells
+TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
+{
+  const auto kernel_and_notes = [](const std::vector<std::string> &changes) {
+    const auto  problem = read_problem<2>(scene_with(R"(
+      set Bodies = block
+      subsection Body block
+        set Frame = initial
+      end
+      subsection Grid
+        set Lower corner = -0.3, 0
+        set Upper corner = 1.7, 2
+        set Cells = 20, 20
+      end
+      subsection Boundaries
+        set left = free
+        set right = free
+        set top = free
+        set bottom = no slip
+      end)",
+                                                    changes));
+    std::string notes;
+    for (const std::string &note : problem.notes)
+      notes += note + "\n";
+    return std::make_pair(problem.grid.kernel, notes);
+  };
+  const std::string block = "Body block/Shape=block";
+  const std::string tilted =
+    "Body block/Block/Corners=0.5, 0; 1, 0; 1.5, 1; 1, 1";
+  const std::string warning = "bends across the cells";
+  EXPECT_EQ(kernel_and_notes({}).first, KernelKind::linear);
+  EXPECT_EQ(kernel_and_notes({block}).first, KernelKind::linear);
+  // not where nothing holds it, and it may spin
+  EXPECT_EQ(kernel_and_notes({"Body block/Shape=ball",
+                              "Body block/Ball/Centre=1, 1",
+                              "Body block/Ball/Radius=0.4"})
+              .first,
+            KernelKind::linear);
+  EXPECT_EQ(kernel_and_notes({block, tilted, "Boundaries/bottom=free"}).first,
+            KernelKind::linear);
+  EXPECT_EQ(kernel_and_notes({block, tilted}).first, KernelKind::quadratic);
+  EXPECT_EQ(kernel_and_notes({block, tilted}).second.find(warning),
+            std::string::npos);
+  EXPECT_NE(kernel_and_notes({block, tilted, "Method/Kernel=linear"})
+              .second.find(warning),
+            std::string::npos);
+  const auto at_rest =
+    kernel_and_notes({block, tilted, "Method/Time integration=quasi-static"});
+  EXPECT_EQ(at_rest.first, KernelKind::quadratic);
+  EXPECT_EQ(at_rest.second.find(warning), std::string::npos);
+  // Newton's method knows no splines there
+  const auto current =
+    kernel_and_notes({block,
+                      tilted,
+                      "Body block/Frame=current",
+                      "Method/Time integration=quasi-static"});
+  EXPECT_EQ(current.first, KernelKind::linear);
+  EXPECT_NE(current.second.find(warning), std::string::npos);
+  EXPECT_EQ(kernel_and_notes({"Method/Kernel=linear"}).second.find(warning),
+            std::string::npos);
+}
+
+
+
+// A bar along an axis or across, four or eight cells thick; splines are worse.
+TEST(Choices, SlowTorsionIsNoted)
+{
+  const auto is_noted = [](const std::vector<std::string> &changes) {
+    const auto problem = read_problem<3>(scene_with(R"(
+      set Dimension = 3
+      set Bodies = bar
+      subsection Body bar
+        subsection Box
+          set Lower corner = 0, 1, 1
+          set Upper corner = 4, 2, 2
+        end
+      end
+      subsection Grid
+        set Upper corner = 5, 3, 3
+        set Cells = 20, 12, 12
+      end
+      subsection Boundaries
+        set left = no slip
+        set right = free
+        set top = free
+        set bottom = free
+        set front = free
+        set back = free
+      end)",
+                                                    changes));
+    return std::any_of(problem.notes.begin(),
+                       problem.notes.end(),
+                       [](const std::string &note) {
+                         return note.find("in torsion") != std::string::npos;
+                       });
+  };
+  EXPECT_TRUE(is_noted({}));
+  EXPECT_TRUE(
+    is_noted({"Method/Time integration=implicit", "Method/Time step=0.1"}));
+  EXPECT_FALSE(is_noted({"Method/Time integration=quasi-static"}));
+  EXPECT_FALSE(is_noted({"Boundaries/left=free"}));
+  EXPECT_FALSE(is_noted({"Grid/Cells=40, 24, 24"}));
+  EXPECT_FALSE(is_noted({"Grid/Cells=30, 18, 18"}));
+  EXPECT_TRUE(is_noted({"Grid/Cells=30, 18, 18", "Method/Kernel=quadratic"}));
+  // as thick as long, and a plate
+  EXPECT_FALSE(is_noted({"Body bar/Box/Upper corner=1, 2, 2"}));
+  EXPECT_FALSE(is_noted({"Body bar/Box/Lower corner=0, 0, 1.5"}));
+  // turned by 45 degrees
+  EXPECT_TRUE(
+    is_noted({"Body bar/Shape=block",
+              "Body bar/Block/Corners=0, 0, 1; 2.1, 2.1, 1; 1.4, 2.8, 1; 0, "
+              "1.4, 1; 0, 0, 2; 2.1, 2.1, 2; 1.4, 2.8, 2; 0, 1.4, 2",
+              "Grid/Cells=20, 12, 12"}));
 }

@@ -252,62 +252,6 @@ TEST(Scenes, DensityIsNotControlledWhereThereIsNoRoom)
 
 // Parts of the lattice of 'regular' are in or out as a whole, so that others
 // fill a block whose faces do not lie in it.
-// Splines where bodies may bend across the cells
-TEST(Scenes, KernelInTheInitialFrameFollowsTheFaces)
-{
-  const auto kernel_and_notes = [](const std::vector<std::string> &changes) {
-    const auto  problem = read_problem<2>(scene_of(R"(
-      set Bodies = block
-      subsection Body block
-        set Frame = initial
-      end
-      subsection Grid
-        set Lower corner = -0.3, 0
-        set Upper corner = 1.7, 2
-        set Cells = 20, 20
-      end
-      subsection Boundaries
-        set left = free
-        set right = free
-        set top = free
-        set bottom = no slip
-      end)",
-                                                  changes));
-    std::string notes;
-    for (const std::string &note : problem.notes)
-      notes += note + "\n";
-    return std::make_pair(problem.grid.kernel, notes);
-  };
-  const std::string block = "Body block/Shape=block";
-  const std::string tilted =
-    "Body block/Block/Corners=0.5, 0; 1, 0; 1.5, 1; 1, 1";
-  const std::string warning = "bends across the cells";
-  EXPECT_EQ(kernel_and_notes({}).first, KernelKind::linear);
-  EXPECT_EQ(kernel_and_notes({block}).first, KernelKind::linear);
-  // not where nothing holds it, and it may spin
-  EXPECT_EQ(kernel_and_notes({"Body block/Shape=ball",
-                              "Body block/Ball/Centre=1, 1",
-                              "Body block/Ball/Radius=0.4"})
-              .first,
-            KernelKind::linear);
-  EXPECT_EQ(kernel_and_notes({block, tilted, "Boundaries/bottom=free"}).first,
-            KernelKind::linear);
-  EXPECT_EQ(kernel_and_notes({block, tilted}).first, KernelKind::quadratic);
-  EXPECT_EQ(kernel_and_notes({block, tilted}).second.find(warning),
-            std::string::npos);
-  EXPECT_NE(kernel_and_notes({block, tilted, "Method/Kernel=linear"})
-              .second.find(warning),
-            std::string::npos);
-  const auto at_rest =
-    kernel_and_notes({block, tilted, "Method/Time integration=quasi-static"});
-  EXPECT_EQ(at_rest.first, KernelKind::linear);
-  EXPECT_NE(at_rest.second.find(warning), std::string::npos);
-  EXPECT_EQ(kernel_and_notes({"Method/Kernel=linear"}).second.find(warning),
-            std::string::npos);
-}
-
-
-
 TEST(Scenes, PlacementFollowsTheFaces)
 {
   const auto placement = [](const std::vector<std::string> &changes) {

@@ -16,13 +16,18 @@ using namespace limber::testing_support;
 
 namespace
 {
-  template <class LawType, int dimension, Treatment treatment, Frame frame_kind>
+  template <class LawType,
+            int        dimension,
+            Treatment  treatment,
+            Frame      frame_kind,
+            KernelKind functions = KernelKind::linear>
   struct TrialCase
   {
-    using Law                        = LawType;
-    static constexpr int       dim   = dimension;
-    static constexpr Treatment kind  = treatment;
-    static constexpr Frame     frame = frame_kind;
+    using Law                          = LawType;
+    static constexpr int        dim    = dimension;
+    static constexpr Treatment  kind   = treatment;
+    static constexpr Frame      frame  = frame_kind;
+    static constexpr KernelKind kernel = functions;
   };
 
 
@@ -68,7 +73,8 @@ namespace
                                      values_of<Law>(),
                                      Case::kind,
                                      HourglassResponse::bending,
-                                     Case::frame))
+                                     Case::frame,
+                                     Case::kernel))
     {
       const auto                                 points = view();
       std::array<double, Law::parameters.size()> values;
@@ -123,6 +129,34 @@ namespace
       return result;
     }
 
+    /** Points that nothing has strained yet. */
+    void
+    undo_strain()
+    {
+      for (int k = 0; k < dim * dim; ++k)
+        for (double &entry : deformation[k])
+          entry = k % (dim + 1) == 0;
+      for (int d = 0; d < dim; ++d)
+        own.fields[d] = places[d];
+    }
+
+    /** Displacements A x + b of the nodes where they are. */
+    void
+    set_linear(const Matrix<dim> &A, const Vector<dim> &b)
+    {
+      for (std::size_t node = 0; node < grid.n_nodes; ++node)
+        {
+          const auto x = grid.place(node);
+          for (int d = 0; d < dim; ++d)
+            {
+              double &u = displacement[node * dim + d];
+              u         = b[d];
+              for (int e = 0; e < dim; ++e)
+                u += A[d][e] * x[e];
+            }
+        }
+    }
+
     void
     set_random(const double size)
     {
@@ -152,17 +186,17 @@ namespace
         displacement.data(),
         former,
         with_tangent,
-        [&](const std::uint32_t cell, CellResponse<dim> &response) {
+        [&](const std::uint32_t cell, CellResponse &response) {
           response.add_volume_stiffness(response.volume_stiffness);
           result.energy += response.energy;
-          const auto dof = [&](const int k) {
+          const auto dof = [&](const unsigned int k) {
             return grid.node_number(cell, k / dim) * dim + k % dim;
           };
-          for (int k = 0; k < response.n; ++k)
+          for (unsigned int k = 0; k < response.n; ++k)
             {
               result.force[dof(k)] += response.force[k];
               if (with_tangent)
-                for (int l = 0; l < response.n; ++l)
+                for (unsigned int l = 0; l < response.n; ++l)
                   result.tangent[dof(k) * n + dof(l)] +=
                     response.tangent[k * response.n + l];
             }
@@ -171,7 +205,7 @@ namespace
     }
 
     static constexpr std::size_t            n_points = 12;
-    SmallGrid<dim>                          grid{3};
+    SmallGrid<dim, Case::kernel>            grid{3};
     Random                                  random;
     SmallPoints<dim>                        own;
     std::vector<std::vector<double>>        deformation, places;
@@ -188,7 +222,13 @@ namespace
     TrialCase<Law, dim, Treatment::assumed_strain, Frame::current>,
     TrialCase<Law, dim, Treatment::none, Frame::initial>,
     TrialCase<Law, dim, Treatment::cell, Frame::initial>,
-    TrialCase<Law, dim, Treatment::assumed_strain, Frame::initial>>;
+    TrialCase<Law, dim, Treatment::assumed_strain, Frame::initial>,
+    TrialCase<Law, dim, Treatment::none, Frame::initial, KernelKind::quadratic>,
+    TrialCase<Law,
+              dim,
+              Treatment::cell,
+              Frame::initial,
+              KernelKind::quadratic>>;
 
   TYPED_TEST_SUITE_P(TrialStresses);
 
@@ -332,7 +372,60 @@ namespace
 
 
 
+  // In the initial frame: nothing resists a rotation about a third of a turn,
+  // and a homogeneous deformation is that of every point.
+  TYPED_TEST_P(TrialStresses, RigidMotionsAreFreeAndLinearOnesExact)
+  {
+    if (TypeParam::frame != Frame::initial)
+      return;
+    constexpr int dim = TypeParam::dim;
+    Random        random(5);
+    const auto    A = random.template matrix<dim>(0.05);
+    const auto    b = random.template vector<dim>();
+    this->undo_strain();
+    this->set_linear(A, b);
+    const auto strained = this->respond();
+    this->trial->accept(this->view(),
+                        this->grid.view(),
+                        this->displacement.data());
+    for (std::size_t p = 0; p < this->n_points; ++p)
+      for (int d = 0; d < dim; ++d)
+        {
+          double x = this->places[d][p] + b[d];
+          for (int e = 0; e < dim; ++e)
+            {
+              x += A[d][e] * this->places[e][p];
+              EXPECT_NEAR(this->deformation[d * dim + e][p],
+                          A[d][e] + (d == e),
+                          1e-13);
+            }
+          EXPECT_NEAR(this->own.fields[d][p], x, 1e-13);
+        }
+
+    if (!TypeParam::Law::finite_strain)
+      return;
+    Matrix<dim>  turn{};
+    const double c = std::cos(2.), s = std::sin(2.);
+    turn[0][0] = turn[1][1] = c - 1;
+    turn[0][1]              = -s;
+    turn[1][0]              = s;
+    this->undo_strain();
+    this->set_linear(turn, b);
+    const auto turned  = this->respond();
+    double     largest = 0, error = 0;
+    for (std::size_t k = 0; k < turned.force.size(); ++k)
+      {
+        largest = std::max(largest, std::abs(strained.force[k]));
+        error   = std::max(error, std::abs(turned.force[k]));
+      }
+    EXPECT_LT(std::abs(turned.energy), 1e-12 * strained.energy);
+    EXPECT_LT(error, 1e-12 * largest);
+  }
+
+
+
   REGISTER_TYPED_TEST_SUITE_P(TrialStresses,
+                              RigidMotionsAreFreeAndLinearOnesExact,
                               ForceIsTheDerivativeOfTheEnergy,
                               TangentIsTheDerivativeOfTheForce,
                               StressInTheTangentIsExtrapolated,

@@ -129,6 +129,41 @@ TEST(NewtonSolvers, IterationsFindTheSameCorrection)
 
 
 
+// With splines too; a pressure of its own no cell has.
+TEST(NewtonSolvers, IterationsWithSplines)
+{
+  for (const double nu : {0.3, 0.45})
+    for (const int refined : {1, 2, 4})
+      {
+        SceneRun<2>       run(held_strip,
+                        {"Method/Time integration=quasi-static",
+                               "Method/Kernel=quadratic",
+                               "Body strip/Frame=initial",
+                               "Body strip/Box/Lower corner=0, 2.03",
+                               "Body strip/Box/Upper corner=7.7, 2.96",
+                               "Body strip/Neo hookean/Poisson's ratio=" + digits(nu),
+                               "Grid/Cells=" + std::to_string(20 * refined) + ", " +
+                                 std::to_string(10 * refined)});
+        const RunParts<2> parts{
+          run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+        const FirstCorrection factorised(parts, 0., 1u << 30, 0.),
+          iterated(parts, 0., 0, 0.);
+        ASSERT_TRUE(factorised.solved && iterated.solved);
+        std::printf("splines, nu %g, %zu unknowns: %lu iterations of conjugate "
+                    "gradients, %.1e away\n",
+                    nu,
+                    factorised.values.size(),
+                    iterated.equations.linear_iterations(),
+                    difference(factorised.values, iterated.values));
+        EXPECT_LT(difference(factorised.values, iterated.values), 1e-6);
+        EXPECT_FALSE(iterated.equations.gave_up_iterating());
+        EXPECT_FALSE(iterated.equations.is_mixed());
+        EXPECT_GT(iterated.equations.linear_iterations(), 0u);
+      }
+}
+
+
+
 // Cells that are cut, so that hardly filled ones hang on light nodes, in
 // equilibrium and in motion, where shear waves pass 20 cells in a step.
 TEST(NewtonSolvers, MixedFormOfCutCells)
