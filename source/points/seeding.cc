@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <limber/points/part_inside.h>
 #include <limber/points/seeding.h>
 #include <limber/problem/point_list.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -73,95 +76,6 @@ namespace limber
           const double shift = random() / 8589934592. - 0.25;
           site.place[d] += shift / body.points_per_cell_edge[d];
         }
-    }
-
-
-
-    template <int dim>
-    double
-    volume_of(const Corners<dim> &box)
-    {
-      double volume = 1;
-      for (int d = 0; d < dim; ++d)
-        volume *= box.second[d] - box.first[d];
-      return volume;
-    }
-
-
-
-    /** What of a box is inside a shape. */
-    template <int dim>
-    PartInside<dim>
-    inside_of(const Shape<dim> &shape, const Corners<dim> &box)
-    {
-      const double volume = volume_of<dim>(box);
-      if (auto part = shape.inside_of(box))
-        {
-          // Decimal fractions need not meet exactly.
-          if (part->volume <= 1e-6 * volume)
-            part->volume = 0;
-          return *part;
-        }
-
-      // of a box n times as small along each edge
-      const auto spread_of_box = [&](const unsigned int n) {
-        dealii::SymmetricTensor<2, dim> result;
-        for (int d = 0; d < dim; ++d)
-          {
-            const double edge = (box.second[d] - box.first[d]) / n;
-            result[d][d]      = edge * edge / 12;
-          }
-        return result;
-      };
-
-      using Geometry      = dealii::GeometryInfo<dim>;
-      const auto place_at = [&](const dealii::Point<dim> &xi) {
-        dealii::Point<dim> place = box.first;
-        for (int d = 0; d < dim; ++d)
-          place[d] += xi[d] * (box.second[d] - box.first[d]);
-        return place;
-      };
-
-      // Whether corners and centre may all be on one side of a surface that
-      // is there: of a thin sheet, or of the tip of a corner.
-      const dealii::Point<dim> centre =
-        box.first + 0.5 * (box.second - box.first);
-      const auto distance = shape.signed_distance(centre);
-      const bool is_near  = distance && std::abs(distance->value) <=
-                                         0.5 * box.first.distance(box.second);
-
-      unsigned int n_inside = 0;
-      for (unsigned int i = 0; i < Geometry::vertices_per_cell; ++i)
-        n_inside += shape.contains(place_at(Geometry::unit_cell_vertex(i)));
-      if (!is_near &&
-          n_inside ==
-            (shape.contains(centre) ? Geometry::vertices_per_cell : 0))
-        return {n_inside > 0 ? volume : 0., centre, spread_of_box(1)};
-
-      constexpr unsigned int              fine = dim == 2 ? 16 : 8;
-      static const dealii::QIterated<dim> samples(dealii::QMidpoint<1>(), fine);
-      PartInside<dim>                     result;
-      dealii::Tensor<1, dim>              moment; // about the centre
-      for (unsigned int q = 0; q < samples.size(); ++q)
-        {
-          const dealii::Point<dim> place = place_at(samples.point(q));
-          if (!shape.contains(place))
-            continue;
-          const double sample = samples.weight(q) * volume;
-          result.volume += sample;
-          moment += sample * (place - centre);
-          result.spread +=
-            sample * symmetrize(outer_product(place - centre, place - centre));
-        }
-      if (result.volume > 0)
-        {
-          moment /= result.volume;
-          result.centroid = centre + moment;
-          result.spread   = result.spread / result.volume -
-                          symmetrize(outer_product(moment, moment)) +
-                          spread_of_box(fine);
-        }
-      return result;
     }
 
 

@@ -443,13 +443,14 @@ namespace limber
     for (const std::string &name : root.list("Bodies"))
       problem.bodies.push_back(read_body(root, name, problem));
     choose_frames_and_kernel(root, problem);
-    const bool touches = !root.list("Obstacles").empty() ||
-                         !root.subsection("Contact").list("Pairs").empty();
+    const bool has_obstacles = !root.list("Obstacles").empty();
+    const bool touches =
+      has_obstacles || !root.subsection("Contact").list("Pairs").empty();
     for (auto &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);
         read_treatment(section, body, problem);
-        read_placement(section, touches, body, problem);
+        read_placement(section, touches, has_obstacles, body, problem);
       }
     warn_of_unbounded_gradients(problem);
   }

@@ -177,7 +177,8 @@ namespace limber
        "solids on cells of one size 'cut' if their faces run across the cells, or "
        "'regular' would miss the volume by more than 2 % (with several "
        "bodies, the faces); 'fitted' with domains, or linear functions and "
-       "contact"},
+       "contact; for liquids beside obstacles, with linear functions, 'cut', "
+       "unless they are boxes of whole parts"},
       {"regular", Placement::regular, "evenly, at the centres of the parts"},
       {"gauss",
        Placement::gauss,

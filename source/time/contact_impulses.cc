@@ -10,10 +10,6 @@ namespace limber
 {
   namespace
   {
-    // After four, what is pressed and what rolls does what it does after
-    // sixteen.
-    constexpr unsigned int passes_of_places = 4;
-
     constexpr int tag_of_places = 4711;
 
     // Of the normal of a place, what sides have to leave of it at a node, or
@@ -105,11 +101,12 @@ namespace limber
 
   template <int dim>
   void
-  ContactImpulses<dim>::finish_adding(std::vector<Peer> &&of_places)
+  ContactImpulses<dim>::finish_adding(std::vector<Peer> &&of_places,
+                                      const unsigned int  passes)
   {
     peers    = std::move(of_places);
     at_nodes = false;
-    n_passes = passes_of_places;
+    n_passes = passes;
     any_place =
       dealii::Utilities::MPI::max<unsigned int>(places.empty() ? 0 : 1,
                                                 nodes.grid.communicator) > 0;
@@ -131,7 +128,7 @@ namespace limber
     for (std::size_t p = 1; p < places.size(); ++p)
       if (seen[shares.all[shares.begin[p]].node].number ==
           seen[shares.all[shares.begin[p - 1]].node].number)
-        n_passes = passes_of_places;
+        n_passes = passes_of_points;
     find_relaxation();
   }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
+#include <limber/interpolation/basis_functions.h>
 #include <limber/interpolation/linear.h>
 #include <limber/time/cut_cells.h>
+#include <limber/time/simplices.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,29 +22,6 @@ namespace limber
     constexpr unsigned int n_parts = dim == 2 ? 4 : 2;
     constexpr double       nothing = 1e-3;
 
-    /** The corners of the simplices of the unit cube: along each of the ways
-     * from its first corner to its last. Seen across a face they meet. */
-    template <int dim>
-    std::vector<std::array<unsigned int, dim + 1>>
-    simplices_of_cube()
-    {
-      std::array<unsigned int, dim> order;
-      for (unsigned int d = 0; d < dim; ++d)
-        order[d] = d;
-      std::vector<std::array<unsigned int, dim + 1>> result;
-      do
-        {
-          std::array<unsigned int, dim + 1> corners{};
-          for (unsigned int d = 0; d < dim; ++d)
-            corners[d + 1] = corners[d] | 1u << order[d];
-          result.push_back(corners);
-        }
-      while (std::next_permutation(order.begin(), order.end()));
-      return result;
-    }
-
-
-
     template <int dim>
     double
     monomial(const unsigned int k, const dealii::Point<dim> &xi)
@@ -57,12 +36,39 @@ namespace limber
 
 
     template <int dim>
-    double
-    function_of_corner(const unsigned int a, const dealii::Point<dim> &xi)
+    BasisFunctions<Linear<dim>>
+    functions_at(const dealii::Point<dim> &xi,
+                 const GridView<dim>      &grid,
+                 const std::uint32_t       cell)
     {
-      double result = 1;
+      std::array<double, dim> natural;
       for (unsigned int d = 0; d < dim; ++d)
-        result *= a >> d & 1 ? xi[d] : 1 - xi[d];
+        natural[d] = xi[d];
+      return {natural, grid, cell};
+    }
+
+
+
+    template <int dim>
+    dealii::Point<dim>
+    place_at(const dealii::Point<dim> &xi, const CellGeometry<dim> &cell)
+    {
+      dealii::Point<dim> result;
+      for (unsigned int d = 0; d < dim; ++d)
+        result[d] = cell.origin[d] + xi[d] / cell.inverse_edge[d];
+      return result;
+    }
+
+
+
+    template <int dim>
+    double
+    least_distance(const std::vector<ObstaclePlace<dim>> &places,
+                   const dealii::Point<dim>              &x)
+    {
+      double result = 1e300;
+      for (const ObstaclePlace<dim> &place : places)
+        result = std::min(result, place.distance(x).value);
       return result;
     }
 
@@ -109,7 +115,28 @@ namespace limber
       if (body->description.is_liquid &&
           body->stress->treatment().kind != Treatment::cell)
         knowing[body->description.nodal_field] = false;
+    least_share = std::max(0.15, courant_number() * courant_number() / 4);
     reinit(0);
+  }
+
+
+
+  // What a given step is of that in which sound crosses a cell.
+  template <int dim>
+  double
+  CutCells<dim>::courant_number() const
+  {
+    if (!(parts.problem.method.time_step > 0))
+      return parts.problem.method.courant_number;
+    double squared = 0; // of the speed of sound
+    for (const auto &body : parts.bodies)
+      if (knowing[body->description.nodal_field])
+        squared =
+          std::max(squared,
+                   body->stress->wave_speed_squared(body->points.view()));
+    return parts.problem.method.time_step / parts.grid.smallest_edge *
+           std::sqrt(
+             dealii::Utilities::MPI::max(squared, parts.grid.communicator));
   }
 
 
@@ -199,6 +226,12 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           at_covered[parts.grid.geometry[cell].node[a] /
                      NodeLayout<dim>::stride] += 1u << a;
+    any_cut = dealii::Utilities::MPI::max<unsigned int>(
+                std::any_of(cells.begin(),
+                            cells.end(),
+                            [](const Cell &cell) { return cell.is_cut(); }),
+                parts.grid.communicator) > 0;
+    ++times_found;
     const ExchangePlan all(table.shared);
     for (LazyArray<double> *const of_nodes : {&at_cut, &at_covered})
       {
@@ -216,24 +249,9 @@ namespace limber
   CutCells<dim>::look_at(const std::uint32_t number, const Places &places)
   {
     const CellGeometry<dim> &geometry = parts.grid.geometry[number];
-    const auto               place_at = [&](const dealii::Point<dim> &xi) {
-      dealii::Point<dim> x;
-      for (unsigned int d = 0; d < dim; ++d)
-        x[d] = geometry.origin[d] + xi[d] / geometry.inverse_edge[d];
-      return x;
-    };
-    const auto least = [&](const dealii::Point<dim> &x) {
-      double result = 1e300;
-      for (const ObstaclePlace<dim> &place : places)
-        result = std::min(result, place.distance(x).value);
-      return result;
-    };
-    double diagonal = 0; // m
+    double                   diagonal = 0; // m
     for (unsigned int d = 0; d < dim; ++d)
-      {
-        const double edge = 1 / geometry.inverse_edge[d];
-        diagonal += edge * edge;
-      }
+      diagonal += std::pow(geometry.inverse_edge[d], -2);
     diagonal        = std::sqrt(diagonal);
     double &of_cell = distance[number];
     if (std::abs(of_cell) <= diagonal)
@@ -241,7 +259,7 @@ namespace limber
         dealii::Point<dim> middle;
         for (unsigned int d = 0; d < dim; ++d)
           middle[d] = 0.5;
-        of_cell = least(place_at(middle));
+        of_cell = least_distance(places, place_at(middle, geometry));
       }
     if (std::abs(of_cell) > diagonal)
       {
@@ -255,15 +273,12 @@ namespace limber
     for_each_open_simplex(number, places, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    if (cell.open < least_open)
+    if (cell.open < least_share)
       {
         kinds[number] = cell.open > 0 ? closed : covered;
         return;
       }
-    for (double &mean : cell.monomials)
-      mean /= cell.open;
-    if (cell.open > 1 - 1e-12)
-      cell.open = 1;
+    finish_volume(cell);
     kinds[number] = first_cut + static_cast<std::uint32_t>(cells.size());
     cells.push_back(std::move(cell));
   }
@@ -316,6 +331,13 @@ namespace limber
           mean /= surface.area;
         surface.place /= surface.area;
         surface.normal /= surface.normal.norm();
+        Vector from_origin;
+        for (unsigned int d = 0; d < dim; ++d)
+          from_origin[d] =
+            surface.place[d] - parts.grid.geometry[cell.number].origin[d];
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          cell.hydrostatic[a] -=
+            (from_origin * parts.problem.loads.gravity) * surface.normals[a];
       }
   }
 
@@ -360,16 +382,10 @@ namespace limber
         std::array<double, n_nodes>             distances;
         for (unsigned int a = 0; a < n_nodes; ++a)
           {
-            dealii::Point<dim> x;
             for (unsigned int d = 0, rest = part; d < dim; ++d, rest /= n)
-              {
-                corners[a][d] = double(rest % n + (a >> d & 1)) / n;
-                x[d] =
-                  geometry.origin[d] + corners[a][d] / geometry.inverse_edge[d];
-              }
-            double &least = distances[a] = 1e300;
-            for (const ObstaclePlace<dim> &place : places)
-              least = std::min(least, place.distance(x).value);
+              corners[a][d] = double(rest % n + (a >> d & 1)) / n;
+            double &least = distances[a] =
+              least_distance(places, place_at(corners[a], geometry));
             if (std::abs(least) < nothing * smallest)
               least = 0;
           }
@@ -424,22 +440,75 @@ namespace limber
   void
   CutCells<dim>::add_volume(const Simplex &simplex, Cell &cell) const
   {
-    dealii::Tensor<2, dim> edges;
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cell.number];
+    dealii::Tensor<2, dim>   edges;
     for (unsigned int k = 0; k < dim; ++k)
       edges[k] = simplex.corners[k + 1] - simplex.corners[0];
     const double volume = std::abs(determinant(edges)) / factorial(dim);
     cell.open += volume;
-    // of the second degree, as are the means that anybody needs
-    static const dealii::QGaussSimplex<dim> rule(2);
+    double of_cell = 1; // m^dim
+    for (unsigned int d = 0; d < dim; ++d)
+      of_cell /= geometry.inverse_edge[d];
+    // of the degree of x grad N_i; no mean that anybody needs has more
+    static const dealii::QGaussSimplex<dim> rule(dim);
     for (unsigned int q = 0; q < rule.size(); ++q)
       {
         dealii::Point<dim> xi = simplex.corners[0];
         for (unsigned int k = 0; k < dim; ++k)
           xi += rule.point(q)[k] * edges[k];
+        const double weight = rule.weight(q) * factorial(dim) * volume;
         for (unsigned int k = 0; k < n_nodes; ++k)
-          cell.monomials[k] +=
-            rule.weight(q) * factorial(dim) * volume * monomial<dim>(k, xi);
+          cell.monomials[k] += weight * monomial<dim>(k, xi);
+        double depth = 0; // g . x, m^2/s^2
+        for (unsigned int d = 0; d < dim; ++d)
+          depth +=
+            parts.problem.loads.gravity[d] * xi[d] / geometry.inverse_edge[d];
+        const BasisFunctions<Linear<dim>> there =
+          functions_at(xi, parts.nodes.view(), cell.number);
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (unsigned int d = 0; d < dim; ++d)
+            cell.hydrostatic[a][d] +=
+              weight * of_cell * depth * there.gradient[a][d];
       }
+  }
+
+
+
+  // From sums to means, and to the pressure against its mean: less what the
+  // depth of the centroid does, by the means of the gradients.
+  template <int dim>
+  void
+  CutCells<dim>::finish_volume(Cell &cell) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cell.number];
+    double                   volume   = cell.open; // m^dim
+    for (double &mean : cell.monomials)
+      mean /= cell.open;
+    double depth = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        volume /= geometry.inverse_edge[d];
+        depth += parts.problem.loads.gravity[d] * cell.monomials[1u << d] /
+                 geometry.inverse_edge[d];
+      }
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        // the mean of a product of linear functions by way of its monomials
+        auto means = cell.monomials;
+        for (unsigned int k = 0; k < n_nodes; ++k)
+          if (k >> d & 1)
+            means[k] = 0;
+        for (unsigned int e = 0; e < dim; ++e)
+          for (unsigned int k = 0; e != d && k < n_nodes; ++k)
+            if (!(k >> e & 1))
+              means[k] -= means[k | 1u << e];
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          cell.hydrostatic[a][d] -= depth * volume * geometry.inverse_edge[d] *
+                                    (a >> d & 1 ? 1 : -1) *
+                                    means[a & ~(1u << d)];
+      }
+    if (cell.open > 1 - 1e-12)
+      cell.open = 1;
   }
 
 
@@ -486,11 +555,16 @@ namespace limber
         for (unsigned int k = 1; k < dim; ++k)
           xi += rule.point(q)[k - 1] * (facet[k] - facet[0]);
         const double weight = rule.weight(q) * factorial(dim - 1) * area;
+        const double depth  = in_metres(xi) * parts.problem.loads.gravity;
+        const BasisFunctions<Linear<dim>> at_place =
+          functions_at(xi, parts.nodes.view(), cell.number);
         for (unsigned int a = 0; a < n_nodes; ++a)
-          functions[a] += weight * function_of_corner<dim>(a, xi);
-        for (unsigned int d = 0; d < dim; ++d)
-          middle[d] +=
-            weight * (geometry.origin[d] + xi[d] / geometry.inverse_edge[d]);
+          {
+            functions[a] += weight * at_place.value[a];
+            cell.hydrostatic[a] +=
+              (weight / area * at_place.value[a] * depth) * normal;
+          }
+        middle += weight * place_at(xi, geometry);
       }
     unsigned int obstacle = 0;
     for (unsigned int o = 1; o < places.size(); ++o)
@@ -517,7 +591,10 @@ namespace limber
     surface->area += area;
     surface->place += middle;
     for (unsigned int a = 0; a < n_nodes; ++a)
-      surface->functions[a] += functions[a];
+      {
+        surface->functions[a] += functions[a];
+        surface->normals[a] += functions[a] / area * normal;
+      }
   }
 
 

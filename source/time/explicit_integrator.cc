@@ -24,11 +24,14 @@ namespace limber
                                       return !body->description.is_liquid;
                                     }))
     , boundaries(parts.problem.sides)
-    , loads(parts.problem, parts.grid, parts.bodies)
-    , sweeps(parts)
     , cut_cells(CutCells<dim>::may_be(parts) ?
                   std::make_optional<CutCells<dim>>(parts) :
                   std::nullopt)
+    , loads(parts.problem,
+            parts.grid,
+            parts.bodies,
+            cut_cells ? &*cut_cells : nullptr)
+    , sweeps(parts)
     , liquid_means(parts, cut_cells ? &*cut_cells : nullptr)
     , stabilization(parts)
     , relocation(parts, loads)

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/contact.h>
+#include <limber/time/cut_cells.h>
 #include <limber/time/hydrostatic_load.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace limber
 {
   template <int dim>
   HydrostaticLoad<dim>::HydrostaticLoad(const Problem<dim>        &problem,
                                         const BackgroundGrid<dim> &grid,
-                                        const Bodies              &bodies)
+                                        const Bodies              &bodies,
+                                        CutCells<dim> *const       cut_cells)
     : problem(problem)
     , grid(grid)
+    , cut_cells(cut_cells)
     , surroundings(grid)
-    , on_masters(n_nodal_fields(problem))
+    , on_nodes(n_nodal_fields(problem))
   {
-    if (!grid.has_levels() || problem.loads.gravity.norm() == 0 ||
+    if ((!grid.has_levels() && cut_cells == nullptr) ||
+        problem.loads.gravity.norm() == 0 ||
         grid.description.kernel != KernelKind::linear)
       return;
     for (const auto &body : bodies)
@@ -29,19 +34,48 @@ namespace limber
 
 
   template <int dim>
+  bool
+  HydrostaticLoad<dim>::any() const
+  {
+    return may_be() &&
+           (grid.has_levels() || (cut_cells != nullptr && cut_cells->any()));
+  }
+
+
+
+  template <int dim>
   void
   HydrostaticLoad<dim>::reinit()
   {
-    const NodeTable<dim> &table = grid.vertices;
     surroundings.reinit();
-    sums.reinit(std::size_t(table.n()) * dim);
-    for (auto &forces : on_masters)
-      forces.assign(table.masters.size(), {});
+    sums.reinit(std::size_t(grid.vertices.n()) * dim);
+    find_cells();
+  }
+
+
+
+  template <int dim>
+  void
+  HydrostaticLoad<dim>::find_cells()
+  {
+    const NodeTable<dim> &table = grid.vertices;
+    if (cut_cells)
+      version = cut_cells->version();
+    meeting = table.masters;
     std::vector<bool> is_uneven(table.n(), false);
     for (const std::uint32_t node : table.masters)
       is_uneven[node] = true;
     for (const HangingNode &hanging : table.hanging)
       is_uneven[hanging.node] = true;
+    if (cut_cells && cut_cells->any())
+      for (std::uint32_t node = 0; node < table.n(); ++node)
+        if (cut_cells->is_cut(node) && !is_uneven[node])
+          {
+            meeting.push_back(node);
+            is_uneven[node] = true;
+          }
+    for (auto &forces : on_nodes)
+      forces.assign(meeting.size(), {});
     cells.clear();
     for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
       for (unsigned int a = 0; a < n_corners; ++a)
@@ -50,6 +84,15 @@ namespace limber
             cells.push_back(cell);
             break;
           }
+  }
+
+
+
+  template <int dim>
+  bool
+  HydrostaticLoad<dim>::knows_cut_cells(const unsigned int field) const
+  {
+    return cut_cells != nullptr && cut_cells->any() && cut_cells->knows(field);
   }
 
 
@@ -69,12 +112,12 @@ namespace limber
 
 
 
-  // rho V / (12 2^(dim - 2)), kg. Filled to the share f from one side, it has
-  // f^3 of that.
+  // rho. What is filled to the share f from one side has f^3 of the force.
   template <int dim>
   double
-  HydrostaticLoad<dim>::weight_within(const unsigned int  field,
-                                      const std::uint32_t cell) const
+  HydrostaticLoad<dim>::density_within(const unsigned int  field,
+                                       const std::uint32_t cell,
+                                       const double        open) const
   {
     double mass = 0, filled = 0; // m^3
     for (MaterialBody<dim> *const body : liquids)
@@ -85,30 +128,34 @@ namespace limber
           filled += body->cell_sums->record(cell)[view.volumetric()] /
                     body->stress->density();
         }
-    double volume = 1;
+    double volume = open;
     for (unsigned int d = 0; d < dim; ++d)
       volume /= grid.geometry[cell].inverse_edge[d];
     const double share =
       surroundings.is_inside(cell) ? 1 : std::min(1., filled / volume);
-    return mass / filled * volume * share * share * share /
-           (12 * (1 << (dim - 2)));
+    return mass / filled * share * share * share;
   }
 
 
 
-  // sum_(e /= d) s_ad s_ae g_e h_e / h_d, m/s^2. Halves of cells have the
-  // proportions of the whole.
+  // V / (12 2^(dim - 2)) sum_(e /= d) s_ad s_ae g_e h_e / h_d, m^(dim+1)/s^2.
   template <int dim>
   double
-  HydrostaticLoad<dim>::shape(const unsigned int a, const unsigned int d) const
+  HydrostaticLoad<dim>::of_whole_cell(const std::uint32_t cell,
+                                      const unsigned int  a,
+                                      const unsigned int  d) const
   {
-    const auto &inverse_edge = grid.geometry.front().inverse_edge;
-    double      result       = 0;
+    const auto &inverse_edge = grid.geometry[cell].inverse_edge;
+    double      volume = 1, result = 0;
     for (unsigned int e = 0; e < dim; ++e)
-      if (e != d)
-        result += ((a >> d & 1) == (a >> e & 1) ? 1 : -1) *
-                  problem.loads.gravity[e] * inverse_edge[d] / inverse_edge[e];
-    return result;
+      {
+        volume /= inverse_edge[e];
+        if (e != d)
+          result += ((a >> d & 1) == (a >> e & 1) ? 1 : -1) *
+                    problem.loads.gravity[e] * inverse_edge[d] /
+                    inverse_edge[e];
+      }
+    return volume * result / (12 * (1 << (dim - 2)));
   }
 
 
@@ -117,7 +164,9 @@ namespace limber
   void
   HydrostaticLoad<dim>::find(const NodalFields<dim> &nodes)
   {
-    for (unsigned int field = 0; field < on_masters.size(); ++field)
+    if (cut_cells && version != cut_cells->version())
+      find_cells();
+    for (unsigned int field = 0; field < on_nodes.size(); ++field)
       find(nodes, field);
   }
 
@@ -129,13 +178,16 @@ namespace limber
                              const unsigned int      field)
   {
     const NodeTable<dim> &table = grid.vertices;
-    surroundings.find(nodes, [&](const std::uint32_t cell) {
-      return holds_liquid_alone(field, cell);
-    });
+    const bool            knows = knows_cut_cells(field);
+    surroundings.find(
+      nodes,
+      [&](const std::uint32_t cell) { return holds_liquid_alone(field, cell); },
+      knows ? cut_cells->covered_corners() : nullptr);
     const auto of_node = [&](const std::uint32_t node) {
       return sums.data() + std::size_t(node) * dim;
     };
-    for (const auto *const all : {&nodes.active_nodes(), &table.masters})
+    for (const auto *const all :
+         {&nodes.active_nodes(), &std::as_const(meeting)})
       for (const std::uint32_t node : *all)
         std::fill_n(of_node(node), dim, 0.);
     for (const HangingNode &hanging : table.hanging)
@@ -143,24 +195,29 @@ namespace limber
 
     for (const std::uint32_t cell : cells)
       {
-        if (!holds_liquid_alone(field, cell))
+        if (!holds_liquid_alone(field, cell) ||
+            (knows && cut_cells->is_covered(cell)))
           continue;
-        const double weight = weight_within(field, cell);
+        const auto *const cut = knows ? cut_cells->cell(cell) : nullptr;
+        if (cut && !cut->surfaces.empty() && !cut_cells->wets(cell, field))
+          continue;
+        const double density = density_within(field, cell, cut ? cut->open : 1);
         for (unsigned int d = 0; d < dim; ++d)
           for (const unsigned int end : {0, 1})
             if (surroundings.has_neighbour(cell, d, end))
               for (unsigned int a = 0; a < n_corners; ++a)
                 if ((a >> d & 1) == end)
                   of_node(surroundings.node_of(cell, a))[d] +=
-                    weight * shape(a, d);
+                    density *
+                    (cut ? cut->hydrostatic[a][d] : of_whole_cell(cell, a, d));
       }
     table.give_to_masters(sums.data(), dim, 0, dim);
     exchange.start(nodes.node_plan(), sums.data(), 0, dim);
     exchange.finish(sums.data());
 
-    for (std::size_t k = 0; k < table.masters.size(); ++k)
+    for (std::size_t k = 0; k < meeting.size(); ++k)
       for (unsigned int d = 0; d < dim; ++d)
-        on_masters[field][k][d] = of_node(table.masters[k])[d];
+        on_nodes[field][k][d] = of_node(meeting[k])[d];
   }
 
 
@@ -170,10 +227,9 @@ namespace limber
   HydrostaticLoad<dim>::add(const unsigned int field,
                             LazyArray<double> &forces) const
   {
-    const auto &masters = grid.vertices.masters;
-    for (std::size_t k = 0; k < masters.size(); ++k)
+    for (std::size_t k = 0; k < meeting.size(); ++k)
       for (unsigned int d = 0; d < dim; ++d)
-        forces[std::size_t(masters[k]) * dim + d] += on_masters[field][k][d];
+        forces[std::size_t(meeting[k]) * dim + d] += on_nodes[field][k][d];
   }
 
 

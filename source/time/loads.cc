@@ -44,11 +44,12 @@ namespace limber
   ExternalLoads<dim>::ExternalLoads(
     const Problem<dim>                              &problem,
     const BackgroundGrid<dim>                       &grid,
-    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
+    std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
+    CutCells<dim> *const                             cut_cells)
     : problem(problem)
     , grid(grid)
     , bodies(bodies)
-    , hydrostatic(problem, grid, bodies)
+    , hydrostatic(problem, grid, bodies, cut_cells)
     , forces(n_nodal_fields(problem))
   {
     for (const FaceLoad<dim> &load : problem.loads.faces)
@@ -73,10 +74,10 @@ namespace limber
   void
   ExternalLoads<dim>::reinit()
   {
-    if (any())
+    if (any() || hydrostatic.may_be())
       for (LazyArray<double> &of_field : forces)
         of_field.reinit(grid.nodes().n() * dim);
-    if (hydrostatic.any())
+    if (hydrostatic.may_be())
       hydrostatic.reinit();
     exchange_pieces();
   }

@@ -211,12 +211,14 @@ namespace limber
 
   /**
    * How many points a body has, and where; its shape and kernel are known.
-   * @p touches: there are obstacles or bodies that touch each other.
+   * @p touches: there are obstacles or bodies that touch each other;
+   * @p beside_obstacles: there are obstacles.
    */
   template <int dim>
   void
   read_placement(const Section &section,
                  bool           touches,
+                 bool           beside_obstacles,
                  Body<dim>     &body,
                  Problem<dim>  &problem);
 

@@ -25,7 +25,7 @@ namespace limber
    *   J_n >= 0,  w_n >= least,  J_n (w_n - least) = 0,
    *   |J_t| <= mu J_n,  w_t = 0 where it is less        (Coulomb),
    *
-   * found by a few passes of a projected Jacobi method. With the masses M_i of
+   * found by some passes of a projected Jacobi method. With the masses M_i of
    * nodes that belong to the places, M_i = sum_p |a_pi| m_p, a pass changes
    * J_p by m_p (least - w_n) / s_p with s_p = sum_i |a_pi| M_i / m_i: what is
    * the same at all places is right after one pass, and nothing overshoots.
@@ -190,10 +190,14 @@ namespace limber
     /**
      * After all of these; masses of nodes are known. Collective. Places of a
      * rank are its own, apart from those with parts elsewhere, which @p peers
-     * names by rank.
+     * names by rank. After four passes points that are pressed or roll do what
+     * they do after sixteen.
      */
     void
-    finish_adding(std::vector<Peer> &&peers = {});
+    finish_adding(std::vector<Peer> &&peers  = {},
+                  unsigned int        passes = passes_of_points);
+
+    static constexpr unsigned int passes_of_points = 4;
 
     /**
      * The same of places at nodes, of two fields each, of which each rank has

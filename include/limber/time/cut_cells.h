@@ -22,10 +22,10 @@ namespace limber
    *   sum over cells of (int_open grad N_i dV) = - int_surface N_i n dS
    *
    * with n out of the obstacle, a constant pressure in the open part is borne
-   * by the same pressure on the surface, at every node.
+   * by the same pressure on the surface, at every node. What a pressure that
+   * grows with the depth adds to that is known as well, see Cell::hydrostatic.
    *
-   * A cell that is open by less than .15 counts as closed,
-   * as a thinner layer of liquid would be stiffer than the step allows for.
+   * A cell that is open by less than least_open() counts as closed.
    * Faces towards such cells are surfaces of others that are cut; else their
    * nodes are held by the points that touch. Theory: doc/theory/obstacles.md.
    */
@@ -36,9 +36,6 @@ namespace limber
     static constexpr unsigned int n_nodes = 1 << dim;
     using Vector                          = dealii::Tensor<1, dim>;
 
-    // Of a cell: where less is open it counts as closed
-    static constexpr double least_open = 0.15;
-
     /** A piece of surface in a cell: nearly flat, of one obstacle. */
     struct Surface
     {
@@ -47,6 +44,7 @@ namespace limber
       dealii::Point<dim>          place;  // its centroid, m
       double                      area = 0;    // m^(dim-1)
       std::array<double, n_nodes> functions{}; // means of N_i over it
+      std::array<Vector, n_nodes> normals{};   // int N_i n dS, m^(dim-1)
     };
 
     /** A cell with surfaces across it or in its faces. */
@@ -57,6 +55,11 @@ namespace limber
       // Means of the monomials (CellMeans) over the open part
       std::array<double, n_nodes> monomials{};
       std::vector<Surface>        surfaces;
+      // What the pressure rho g . x has beyond its means p_c over the open part
+      // and p_s over each surface does to the nodes, without rho:
+      //   int_open g . (x - x_c) grad N_i dV
+      //     + sum_s int_s g . (x - x_s) N_i n dS, m^(dim+1)/s^2
+      std::array<Vector, n_nodes> hydrostatic{};
 
       bool
       is_cut() const
@@ -78,6 +81,15 @@ namespace limber
       return knowing[field];
     }
 
+    /** Share of a cell: where less is open it counts as closed. As thin layers
+     * are stiff C^2 / 4, with the Courant number C, and at least .15, as water
+     * that passes the corner of a thin layer is held too much. */
+    double
+    least_open() const
+    {
+      return least_share;
+    }
+
     /** Adopt a mesh at a time; collective. */
     void
     reinit(double time);
@@ -90,6 +102,20 @@ namespace limber
     all() const
     {
       return cells;
+    }
+
+    /** Whether any rank has a cell that is cut. */
+    bool
+    any() const
+    {
+      return any_cut;
+    }
+
+    /** Another one whenever the cells have been found anew. */
+    unsigned int
+    version() const
+    {
+      return times_found;
     }
 
     /** That of a cell of the grid; null where it has none. */
@@ -127,6 +153,19 @@ namespace limber
     is_cut(const std::uint32_t node) const
     {
       return at_cut[node] > 0;
+    }
+
+    /** Whether a surface ends at a cell that is cut, as those across one do;
+     * others in faces of cells need not. */
+    bool
+    meets_cut(const Cell &cell, const Surface &surface) const
+    {
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        if (surface.functions[a] > 0 &&
+            is_cut(parts.grid.geometry[cell.number].node[a] /
+                   NodeLayout<dim>::stride))
+          return true;
+      return false;
     }
 
     /** Whether the liquid of a field reaches the surfaces in a cell, a record
@@ -171,6 +210,8 @@ namespace limber
     void
     add_volume(const Simplex &simplex, Cell &cell) const;
     void
+    finish_volume(Cell &cell) const;
+    void
     add_surface(const Simplex &simplex,
                 unsigned int   opposite,
                 const Places  &places,
@@ -181,6 +222,8 @@ namespace limber
               unsigned int  end) const;
     double
     way_since_found(const Places &places) const;
+    double
+    courant_number() const;
 
     const RunParts<dim>        parts;
     std::vector<char>          knowing; // by field
@@ -193,7 +236,10 @@ namespace limber
     // what the obstacles have moved by since
     std::vector<double> distance;
     Places              former;
-    bool                moves = false;
+    bool                moves       = false;
+    double              least_share = 0;
+    bool                any_cut     = false;
+    unsigned int        times_found = 0;
   };
 } // namespace limber
 

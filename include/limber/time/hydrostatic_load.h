@@ -10,9 +10,14 @@
 
 namespace limber
 {
+  template <int dim>
+  class CutCells;
+
+
+
   /**
    * The part of the hydrostatic pressure that a constant one leaves out, where
-   * cells of several sizes meet.
+   * cells of several sizes meet, and where obstacles cut them.
    *
    * In a liquid with the mean divergence of a cell the pressure is constant in
    * it. At rest it is p_c + rho g . (x - x_c), and the second part gives the
@@ -28,6 +33,10 @@ namespace limber
    * cells with a neighbour across d, of which one cancels the other if they are
    * equal. What a cell at a surface holds counts as filling it from within.
    * Theory: doc/theory/adaptive_grid.md.
+   *
+   * The same at the corners of cells that obstacles cut (CutCells), where the
+   * integral is that over the open part, and the pressure on the surfaces has
+   * such a part as well. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class HydrostaticLoad
@@ -35,16 +44,22 @@ namespace limber
   public:
     using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
 
+    /** Cells that obstacles cut, or null. */
     HydrostaticLoad(const Problem<dim>        &problem,
                     const BackgroundGrid<dim> &grid,
-                    const Bodies              &bodies);
+                    const Bodies              &bodies,
+                    CutCells<dim>             *cut_cells);
 
-    /** Whether there may be any: gravity, levels, and liquids. */
+    /** Whether there may be any: gravity, liquids, and levels or obstacles. */
     bool
-    any() const
+    may_be() const
     {
       return !liquids.empty();
     }
+
+    /** Whether there may be any now: levels, or cells that are cut. */
+    bool
+    any() const;
 
     /** Adopt a mesh; collective. */
     void
@@ -63,24 +78,33 @@ namespace limber
     static constexpr unsigned int n_corners = 1 << dim;
 
     void
+    find_cells();
+    void
     find(const NodalFields<dim> &nodes, unsigned int field);
+    bool
+    knows_cut_cells(unsigned int field) const;
     double
-    weight_within(unsigned int field, std::uint32_t cell) const;
+    density_within(unsigned int field, std::uint32_t cell, double open) const;
     double
-    shape(unsigned int corner, unsigned int direction) const;
+    of_whole_cell(std::uint32_t cell,
+                  unsigned int  corner,
+                  unsigned int  direction) const;
     bool
     holds_liquid_alone(unsigned int field, std::uint32_t cell) const;
 
     const Problem<dim>              &problem;
     const BackgroundGrid<dim>       &grid;
     std::vector<MaterialBody<dim> *> liquids, others;
+    CutCells<dim> *const             cut_cells;   // or null
+    unsigned int                     version = 0; // of these
     Surroundings<dim>                surroundings;
-    // Cells of this rank with a corner that is, or hangs on, a master
-    std::vector<std::uint32_t> cells;
+    // Masters of the mesh and corners of cells that are cut; cells of this
+    // rank with a corner that is one or hangs on one
+    std::vector<std::uint32_t> meeting, cells;
     LazyArray<double>          sums; // by node, N
     RecordExchange             exchange{dim};
-    // By field, of the masters of the mesh
-    std::vector<std::vector<dealii::Tensor<1, dim>>> on_masters;
+    // By field, of the nodes where unequal cells meet
+    std::vector<std::vector<dealii::Tensor<1, dim>>> on_nodes;
   };
 } // namespace limber
 

@@ -10,7 +10,7 @@ namespace limber
 {
   /**
    * Body force formulas, loads on faces and surfaces of bodies, and what
-   * gravity does where cells differ in size (HydrostaticLoad). Their
+   * gravity does where unequal cells meet (HydrostaticLoad). Their
    * forces are kept apart from the internal ones so that their work is known;
    * a scene without such loads has none of this.
    *
@@ -26,7 +26,8 @@ namespace limber
   public:
     ExternalLoads(const Problem<dim>                              &problem,
                   const BackgroundGrid<dim>                       &grid,
-                  std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
+                  std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
+                  CutCells<dim> *cut_cells = nullptr);
 
     bool
     any() const;

@@ -330,6 +330,49 @@ TEST(Scenes, PlacementFollowsTheFaces)
 
 
 
+// Of liquids: where obstacles bound them, unless parts of cells do.
+TEST(Scenes, LiquidsBesideObstaclesAreCut)
+{
+  const std::string wall      = R"(
+      set Obstacles = wall
+      subsection Obstacle wall
+        set Shape = half-space
+        subsection Half-space
+          set Point  = 0.73, 0
+          set Normal = -1, 0
+        end
+      end)";
+  const auto        placement = [&](const std::string &upper_corner,
+                             const bool         bounded) {
+    return read_problem<2>(scene_of(R"(
+      set Bodies = water
+      subsection Body water
+        set Shape = box
+        subsection Box
+          set Lower corner = 0, 0
+          set Upper corner = )" + upper_corner +
+                                    R"(
+        end
+        set Material = newtonian fluid
+        subsection Newtonian fluid
+          set Density      = 1000
+          set Bulk modulus = 1e6
+        end
+      end
+      subsection Grid
+        set Upper corner = 1, 1
+        set Cells        = 8, 8
+      end)" + (bounded ? wall : "")))
+      .bodies[0]
+      .placement;
+  };
+  EXPECT_EQ(placement("0.73, 0.5", true), Placement::cut);
+  EXPECT_EQ(placement("0.6875, 0.5", true), Placement::regular);
+  EXPECT_EQ(placement("0.73, 0.5", false), Placement::regular);
+}
+
+
+
 TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 {
   const Problem<3> problem = read_problem<3>(scene_of(R"(

@@ -24,7 +24,9 @@ namespace
            (in_3d ? ", 0.125" : "") +
            "\n end\n set Material = newtonian fluid\nend\n"
            "subsection Obstacle rock\n" +
-           obstacle + "\nend\nsubsection Grid\n set Upper corner = 1, 1" +
+           obstacle + "\nend\nsubsection Loads\n set Gravity = 3, -9.81" +
+           (in_3d ? ", 2" : "") +
+           "\nend\nsubsection Grid\n set Upper corner = 1, 1" +
            (in_3d ? ", 1\n set Cells = 8, 8, 8" : "\n set Cells = 8, 8") +
            "\nend\n";
   }
@@ -83,6 +85,38 @@ namespace
 
 
 
+  /** Of the unit cube, the share with c + g . xi > 0, no g_d being 0, and how
+   * fast it grows with c: sums over the corners of (alpha - sum g_d)_+^3, with
+   * alpha = - c and g mirrored to positive components. */
+  std::array<double, 2>
+  share_and_growth(double c, dealii::Tensor<1, 3> g)
+  {
+    for (double *component = g.begin_raw(); component != g.end_raw();
+         ++component)
+      if (*component < 0)
+        {
+          c += *component;
+          *component = -*component;
+        }
+    std::array<double, 2> result{{1, 0}};
+    for (unsigned int corner = 0; corner < 8; ++corner)
+      {
+        double beyond = -c, sign = 1;
+        for (unsigned int d = 0; d < 3; ++d)
+          if (corner >> d & 1)
+            {
+              beyond -= g[d];
+              sign = -sign;
+            }
+        beyond = std::max(beyond, 0.);
+        result[0] -= sign * beyond * beyond * beyond / (6 * g[0] * g[1] * g[2]);
+        result[1] += sign * beyond * beyond / (2 * g[0] * g[1] * g[2]);
+      }
+    return result;
+  }
+
+
+
   /** The mean over the unit cube, or what of it is open, of the derivative by
    * coordinate @p d of the function of corner @p a, from means of monomials. */
   template <int dim>
@@ -110,49 +144,100 @@ namespace
 
 
 
-  /** The largest of |int_open grad N_i dV + int_surface N_i n dS| of the nodes
-   * within the box, m^(dim-1). Nodes that no cell sees that is not covered have
-   * nothing. */
+  /** The mean of the function of corner @p a, from means of monomials. */
   template <int dim>
   double
-  largest_imbalance(const std::string &obstacle, unsigned int &n_cut)
+  mean_function(const unsigned int a, std::array<double, (1u << dim)> means)
   {
-    SceneRun<dim>               run(box_with_obstacle(dim, obstacle));
-    const CutCells<dim>         cut_cells = cut_cells_of(run);
-    constexpr unsigned int      n_nodes   = 1 << dim;
-    std::array<double, n_nodes> whole;
+    for (unsigned int e = 0; e < dim; ++e)
+      for (unsigned int k = 0; k < 1u << dim; ++k)
+        if (!(k >> e & 1))
+          means[k] -= means[k | 1u << e];
+    return means[a];
+  }
+
+
+
+  /** At the nodes within the box, what a pressure in the open part and on the
+   * surfaces leaves of the force: of a constant one int_open grad N_i dV +
+   * int_surface N_i n dS, m^(dim-1); of p = g . x and the weight
+   * int_open (p grad N_i + g N_i) dV + int_surface p N_i n dS, m^(dim+1)/s^2.
+   * The largest norms; nodes that no cell sees that is not covered have none.
+   */
+  struct Imbalance
+  {
+    double       constant = 0, growing = 0;
+    unsigned int n_cut = 0;
+  };
+
+  template <int dim>
+  Imbalance
+  imbalance(const std::string &obstacle)
+  {
+    SceneRun<dim>                run(box_with_obstacle(dim, obstacle));
+    const CutCells<dim>          cut_cells = cut_cells_of(run);
+    const dealii::Tensor<1, dim> gravity   = run.problem.loads.gravity;
+    constexpr unsigned int       n_nodes   = 1 << dim;
+    std::array<double, n_nodes>  whole;
     for (unsigned int k = 0; k < n_nodes; ++k)
       whole[k] = std::pow(0.5, __builtin_popcount(k));
 
-    std::vector<dealii::Tensor<1, dim>> sums(run.grid.vertices.n());
-    n_cut = 0;
+    Imbalance                           result;
+    std::vector<dealii::Tensor<1, dim>> constant(run.grid.vertices.n()),
+      growing(run.grid.vertices.n());
     for (std::uint32_t cell = 0; cell < run.grid.n_cells(); ++cell)
       {
         if (cut_cells.is_covered(cell))
           continue;
         const auto              *cut      = cut_cells.cell(cell);
         const CellGeometry<dim> &geometry = run.grid.geometry[cell];
+        const auto              &means    = cut ? cut->monomials : whole;
         double                   volume   = cut ? cut->open : 1;
+        dealii::Point<dim>       centroid;
         for (unsigned int d = 0; d < dim; ++d)
-          volume /= geometry.inverse_edge[d];
-        n_cut += cut != nullptr && cut->is_cut();
+          {
+            volume /= geometry.inverse_edge[d];
+            centroid[d] =
+              geometry.origin[d] + means[1u << d] / geometry.inverse_edge[d];
+          }
+        result.n_cut += cut != nullptr && cut->is_cut();
         for (unsigned int a = 0; a < n_nodes; ++a)
           {
-            auto &sum = sums[geometry.node[a] / NodeLayout<dim>::stride];
+            const std::uint32_t node =
+              geometry.node[a] / NodeLayout<dim>::stride;
+            dealii::Tensor<1, dim> force;
             for (unsigned int d = 0; d < dim; ++d)
-              sum[d] +=
-                volume * geometry.inverse_edge[d] *
-                mean_derivative<dim>(a, d, cut ? cut->monomials : whole);
-            if (cut)
-              for (const auto &surface : cut->surfaces)
-                sum += surface.area * surface.functions[a] * surface.normal;
+              force[d] = volume * geometry.inverse_edge[d] *
+                         mean_derivative<dim>(a, d, means);
+            constant[node] += force;
+            growing[node] += (gravity * centroid) * force +
+                             volume * mean_function<dim>(a, means) * gravity;
+            if (cut == nullptr) // HydrostaticLoad, in cells of equal edges
+              for (unsigned int d = 0; d < dim; ++d)
+                for (unsigned int e = 0; e < dim; ++e)
+                  if (e != d)
+                    growing[node][d] += volume / (12 * (1 << (dim - 2))) *
+                                        gravity[e] *
+                                        ((a >> d & 1) == (a >> e & 1) ? 1 : -1);
+            if (cut == nullptr)
+              continue;
+            growing[node] += cut->hydrostatic[a];
+            for (const auto &surface : cut->surfaces)
+              {
+                const auto bears =
+                  surface.area * surface.functions[a] * surface.normal;
+                constant[node] += bears;
+                growing[node] += (gravity * surface.place) * bears;
+              }
           }
       }
-    double largest = 0;
     for (std::uint32_t node = 0; node < run.grid.vertices.n(); ++node)
       if (run.grid.vertices.sides[node] == 0)
-        largest = std::max(largest, sums[node].norm());
-    return largest;
+        {
+          result.constant = std::max(result.constant, constant[node].norm());
+          result.growing  = std::max(result.growing, growing[node].norm());
+        }
+    return result;
   }
 } // namespace
 
@@ -200,7 +285,7 @@ TEST(CutCells, OpenSharesOfHalfPlanesAreExact)
           else if (cut_cells.is_closed(cell))
             {
               EXPECT_GT(expected[0], 0);
-              EXPECT_LT(expected[0], CutCells<2>::least_open);
+              EXPECT_LT(expected[0], cut_cells.least_open());
               ++n_closed;
             }
           else
@@ -216,12 +301,90 @@ TEST(CutCells, OpenSharesOfHalfPlanesAreExact)
 
 
 
-// What a constant pressure does to the open part is borne by the same pressure
-// on the surfaces: the divergence theorem for the function of each node. Flat
-// pieces, as those of a curved surface have one normal each.
-TEST(CutCells, SurfacesBearAConstantPressure)
+// The same in space, and the area of the surface in each cell, by which its
+// open volume grows with the distance.
+TEST(CutCells, OpenSharesAndAreasOfHalfSpacesAreExact)
 {
-  unsigned int n_cut;
+  for (dealii::Tensor<1, 3> normal : {dealii::Tensor<1, 3>({-0.3, 1, -0.2}),
+                                      dealii::Tensor<1, 3>({-1, 1, -1}),
+                                      dealii::Tensor<1, 3>({0.2, 1, -0.4})})
+    {
+      SCOPED_TRACE(digits(normal[0]) + ", " + digits(normal[1]) + ", " +
+                   digits(normal[2]));
+      const dealii::Point<3> through(0.5371, 0.4613, 0.5089);
+      SceneRun<3>            run(box_with_obstacle(
+        3,
+        " set Shape = half-space\n subsection Half-space\n"
+                   "  set Point = " +
+          digits(through[0]) + ", " + digits(through[1]) + ", " +
+          digits(through[2]) + "\n  set Normal = " + digits(normal[0]) + ", " +
+          digits(normal[1]) + ", " + digits(normal[2]) + "\n end"));
+      normal /= normal.norm();
+      const CutCells<3> cut_cells = cut_cells_of(run);
+      unsigned int      n_cut = 0, n_closed = 0;
+      for (std::uint32_t cell = 0; cell < run.grid.n_cells(); ++cell)
+        {
+          const CellGeometry<3> &geometry = run.grid.geometry[cell];
+          dealii::Point<3>       origin;
+          dealii::Tensor<1, 3>   along  = normal;
+          double                 volume = 1;
+          for (unsigned int d = 0; d < 3; ++d)
+            {
+              origin[d] = geometry.origin[d];
+              along[d] /= geometry.inverse_edge[d];
+              volume /= geometry.inverse_edge[d];
+            }
+          const auto expected =
+            share_and_growth((origin - through) * normal, along);
+          const auto *cut = cut_cells.cell(cell);
+          EXPECT_NEAR(cut                        ? cut->open :
+                      cut_cells.is_closed(cell)  ? expected[0] :
+                      cut_cells.is_covered(cell) ? 0 :
+                                                   1,
+                      expected[0],
+                      1e-12);
+          if (cut_cells.is_closed(cell))
+            {
+              EXPECT_LT(expected[0], cut_cells.least_open());
+              ++n_closed;
+            }
+          if (cut == nullptr || !cut->is_cut())
+            continue;
+          ++n_cut;
+          double area = 0; // without that towards cells that are closed
+          for (const auto &surface : cut->surfaces)
+            {
+              double sum = 0;
+              for (const double mean : surface.functions)
+                sum += mean;
+              EXPECT_NEAR(sum, 1, 1e-12);
+              if (surface.normal * normal > 1 - 1e-12)
+                {
+                  area += surface.area;
+                  EXPECT_NEAR((surface.place - through) * normal, 0, 1e-12);
+                }
+            }
+          EXPECT_NEAR(area, volume * expected[1], 1e-14);
+        }
+      EXPECT_GT(n_cut, 50u);
+      EXPECT_GT(n_closed, 5u);
+    }
+}
+
+
+
+// What a constant pressure does to the open part is borne by the same pressure
+// on the surfaces: the divergence theorem for the function of each node. One
+// that grows with the depth bears the weight besides. Flat pieces, as those of
+// a curved surface have one normal each.
+TEST(CutCells, SurfacesBearPressures)
+{
+  const auto expect_balance = [](const Imbalance   &found,
+                                 const unsigned int n_cut) {
+    EXPECT_LT(found.constant, 1e-14);
+    EXPECT_LT(found.growing, 1e-13);
+    EXPECT_GT(found.n_cut, n_cut);
+  };
   for (const std::string obstacle :
        {" set Shape = box\n subsection Box\n"
         "  set Lower corner = 0.39, 0.21\n"
@@ -230,14 +393,65 @@ TEST(CutCells, SurfacesBearAConstantPressure)
         "  set Point = 0.52, 0.47\n  set Normal = -0.3, 1\n end"})
     {
       SCOPED_TRACE(obstacle);
-      EXPECT_LT(largest_imbalance<2>(obstacle, n_cut), 1e-14);
-      EXPECT_GT(n_cut, 6u);
+      expect_balance(imbalance<2>(obstacle), 6);
     }
-  EXPECT_LT(largest_imbalance<3>(" set Shape = half-space\n"
-                                 " subsection Half-space\n"
-                                 "  set Point = 0.52, 0.47, 0.51\n"
-                                 "  set Normal = -0.3, 1, -0.2\n end",
-                                 n_cut),
-            1e-14);
-  EXPECT_GT(n_cut, 20u);
+  expect_balance(imbalance<3>(" set Shape = half-space\n"
+                              " subsection Half-space\n"
+                              "  set Point = 0.52, 0.47, 0.51\n"
+                              "  set Normal = -0.3, 1, -0.2\n end"),
+                 20);
+}
+
+
+
+// A metre of water between a side and a wall that leaves a share of a row of
+// cells open: nothing moves, and the wall bears rho g H^2 / 2, by a third of
+// rho g H / K more as water is compressed.
+TEST(CutCells, WaterRestsBesideAWall)
+{
+  for (const double share : {0.16, 0.3, 0.7})
+    {
+      SCOPED_TRACE(digits(share) + " of a cell");
+      const std::string wall = digits(1 - 0.125 * (1 - share));
+      SceneRun<2>       run(R"(
+        set Bodies = water
+        set Obstacles = wall
+        subsection Body water
+          set Shape = box
+          subsection Box
+            set Lower corner = 0, 0
+            set Upper corner = )" +
+                      wall + R"(, 1
+          end
+          set Placement = cut
+          set Initial pressure = hydrostatic
+          set Material = newtonian fluid
+          subsection Newtonian fluid
+            set Density = 1000
+            set Bulk modulus = 1e6
+          end
+        end
+        subsection Obstacle wall
+          set Shape = half-space
+          subsection Half-space
+            set Point = )" +
+                      wall + R"(, 0
+            set Normal = -1, 0
+          end
+        end
+        subsection Grid
+          set Upper corner = 1.5, 1.5
+          set Cells = 12, 12
+        end
+        subsection Loads
+          set Gravity = 0, -9.81
+        end)");
+      double            largest = 0;
+      run.advance_to(1, [&]() {
+        largest = std::max(largest, run.totals().all.kinetic_energy);
+      });
+      EXPECT_LT(largest, 1e-3);
+      const double exact = 0.5 * 1000 * 9.81 * (1 + 9810. / 3e6);
+      EXPECT_NEAR(-run.totals().obstacles[0].impulse[0], exact, 0.01 * exact);
+    }
 }
