@@ -214,14 +214,14 @@ namespace limber
     const bool          in_initial_frame; // all bodies
     // Points by the velocity that strains them, with MUSL and USAVG; APIC
     // would lose angular momentum.
-    const bool                   moves_as_strained;
-    BoundaryConditions<dim>      boundaries;
+    const bool              moves_as_strained;
+    BoundaryConditions<dim> boundaries;
+    // Where obstacles may cut cells that hold a liquid
     std::optional<CutCells<dim>> cut_cells;
     ExternalLoads<dim>           loads;
     BodySweeps<dim>              sweeps;
-    // Where obstacles may cut cells that hold a liquid
-    LiquidMeans<dim> liquid_means;
-    bool             touched = false; // bodies or obstacles, in the step before
+    LiquidMeans<dim>             liquid_means;
+    bool touched = false; // bodies or obstacles, in the step before
     std::optional<Contact<dim>>         contact;   // of bodies that may part
     std::optional<ObstacleContact<dim>> obstacles; // where the scene has any
     Stabilization<dim>                  stabilization;
