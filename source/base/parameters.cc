@@ -210,6 +210,7 @@ namespace limber
 
     for (const std::string &override_text : overrides)
       read_override(override_text);
+    check_use();
   }
 
 
@@ -388,24 +389,14 @@ namespace limber
     // What says that a section is not in use: "'Material' is 'j2'." of 'Linear
     // elastic'; empty where it is, or nothing chooses it.
     const auto what_chooses_another = [&](const SectionPath &section) {
-      if (section.empty())
+      std::string       word;
+      const auto *const chooser = what_chooses(section, word);
+      if (chooser == nullptr)
         return std::string();
-      const SectionPath around(section.begin(), section.end() - 1);
-      std::string       word = section.back();
-      std::transform(word.begin(), word.end(), word.begin(), [](const char c) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      });
-      for (const Declaration &declaration : declarations)
-        if (declaration.section == around &&
-            declaration.admissible.is_choice() &&
-            declaration.admissible.match(word))
-          {
-            const std::string chosen = value(around, declaration.name);
-            return chosen == word ? std::string() :
-                                    in_quotes(declaration.name) + " is " +
-                                      in_quotes(chosen) + ".";
-          }
-      return std::string();
+      const std::string chosen = value(chooser->section, chooser->name);
+      return chosen == word ? std::string() :
+                              in_quotes(chooser->name) + " is " +
+                                in_quotes(chosen) + ".";
     };
 
     // Sections that a word beside them has not chosen, as 'Linear elastic'

@@ -409,6 +409,15 @@ namespace limber
                      "body " +
                      in_quotes(body.name) +
                      ", keeps no strain that could creep");
+      // With splines and FLIP liquids lose volume, and what floats in them
+      // sinks; only affine increments keep it.
+      const std::string transfer =
+        root.subsection("Method").text("Transfer");
+      if (transfer != "apic" && transfer != "aflip")
+        for (const auto &body : problem.bodies)
+          if (body.is_liquid)
+            return say("'linear', as with splines liquids, like body " +
+                       in_quotes(body.name) + ", lose volume");
       for (const auto &body : problem.bodies)
         if (!body.is_liquid && body.frame == Frame::current)
           {

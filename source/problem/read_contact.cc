@@ -76,6 +76,10 @@ namespace limber
           "",
           admissible::non_negative_number("0.3").or_empty(),
           "Coulomb's coefficient mu, no unit, for 'friction'.");
+        parameters.only_with("Friction coefficient",
+                             "friction",
+                             "Law",
+                             parameters.present_section());
         parameters.leave_subsection();
       }
     parameters.leave_subsection();

@@ -111,6 +111,10 @@ namespace limber
                          "",
                          admissible::non_negative_number("0.3").or_empty(),
                          "Coulomb's coefficient mu, no unit, for 'friction'.");
+      parameters.only_with("Friction coefficient",
+                           "friction",
+                           "Law",
+                           parameters.present_section());
       declare_constants(parameters);
       declare_motion(parameters, dim);
       declare_shape_sections(parameters, dim, union_parts);

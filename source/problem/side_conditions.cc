@@ -80,6 +80,7 @@ namespace limber
                    side_words(),
                    "What the side of the grid at the " +
                      meanings[side_index(side)] + " does to the velocity.");
+    const SectionPath around = parameters.present_section();
     for (const std::string &side : side_names(dim))
       {
         parameters.enter_subsection("Side " + side);
@@ -95,6 +96,11 @@ namespace limber
                              std::to_string(dim) + " components, or empty",
                            for_each_direction(dim, "0", "; ")),
           "Velocity of the side, m/s, for 'velocity'.");
+        parameters.only_with("Friction coefficient",
+                             "friction",
+                             side,
+                             around);
+        parameters.only_with("Velocity", "velocity", side, around);
         declare_constants(parameters);
         parameters.leave_subsection();
       }

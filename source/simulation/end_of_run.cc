@@ -26,7 +26,7 @@ namespace limber
 
     /** Where no cause has been found: the usual one, and what to change. */
     std::string
-    usual_cause(const FailureKind kind)
+    usual_cause(const FailureKind kind, const bool a_side_is_open)
     {
       switch (kind)
         {
@@ -40,9 +40,13 @@ namespace limber
                    "'Grid/Cells', load more slowly, or set 'Method/Courant "
                    "number' to 0.4 or below.";
           case FailureKind::lost_points:
-            return "Usually a side is free there. Close it in 'Boundaries' "
-                   "with slip, or raise 'Method/Lost points limit' above the "
-                   "share that is lost.";
+            return a_side_is_open ?
+                     "Usually a side is free there. Close it in 'Boundaries' "
+                     "with slip, or raise 'Method/Lost points limit' above the "
+                     "share that is lost." :
+                     "No side is free, so the motion is unstable there. Set "
+                     "'Method/Blend time', smaller cells, or a 'Method/Lost "
+                     "points limit' above the share that is lost.";
           case FailureKind::step_too_small:
             return "Usually a point is compressed to nothing, see 'smallest "
                    "volume ratio' in the statistics. Refine 'Grid/Cells' or "
@@ -107,8 +111,15 @@ namespace limber
   {
     integrator->synchronise();
     const Diagnosis suspected = look_for_cause(/*unstable=*/true);
-    std::string     message   = std::string(failure.what()) + " " +
-                          (suspected.mode.empty() ? usual_cause(failure.kind) :
+    const bool      a_side_is_open =
+      std::any_of(problem.sides.begin(),
+                  problem.sides.end(),
+                  [](const Side<dim> &side) {
+                    return side.held == HeldComponents::none ||
+                           !side.velocity.empty();
+                  });
+    std::string message   = std::string(failure.what()) + " " +
+                          (suspected.mode.empty() ? usual_cause(failure.kind, a_side_is_open) :
                                                     in_words(suspected)) +
                           " " + describe_last_state();
     try

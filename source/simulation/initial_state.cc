@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/farthest_place.h>
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 
@@ -61,7 +62,23 @@ namespace limber
     : problem(problem)
     , body(body)
     , law(law)
-  {}
+  {
+    const bool geostatic =
+      body.initial_stress && !body.initial_stress->lateral_ratio.empty();
+    if (!body.hydrostatic && !geostatic)
+      return;
+    const auto  &gravity = problem.loads.gravity;
+    const double g       = gravity.norm();
+    const auto   top     = reach<dim>(*body.shape, -gravity / g);
+    if (!top)
+      throw InputError(
+        "The highest place of body " + in_quotes(body.name) +
+        " is not found, below which 'Body " + body.name + "/Initial " +
+        (geostatic ? "stress" : "pressure") +
+        "' begins. Usually the body is very thin in its bounding box. Write "
+        "a formula there, or give tighter corners of the shape.");
+    highest = *top * g;
+  }
 
 
 
@@ -194,15 +211,7 @@ namespace limber
   double
   InitialState<dim>::head(const dealii::Point<dim> &place) const
   {
-    const auto &gravity = problem.loads.gravity;
-    const auto  box     = body.shape->bounding_box();
-    double      result  = 0;
-    for (int d = 0; d < dim; ++d)
-      {
-        const double top = gravity[d] < 0 ? box.second[d] : box.first[d];
-        result += body.density() * gravity[d] * (place[d] - top);
-      }
-    return result;
+    return body.density() * (highest + problem.loads.gravity * place);
   }
 
 

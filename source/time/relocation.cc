@@ -13,6 +13,107 @@ namespace limber
     // Points must not go beyond the ghost layer before ranks exchange them:
     // the longest way between two exchanges, in cells.
     constexpr double travel_limit = 0.9;
+
+    // How far beyond a side that holds it a point is put back, and where to,
+    // in cells. Those that go farther are lost, as the motion is unstable.
+    constexpr double put_back_limit = 0.01, put_back_place = 1e-6;
+
+
+
+    /** Whether material cannot pass a side, which stays where it is. */
+    template <int dim>
+    bool
+    holds_material(const Side<dim> &side)
+    {
+      return side.held != HeldComponents::none && side.velocity.empty();
+    }
+
+
+
+    /** The place inside the box of a point that is hardly beyond closed sides
+     * of it; others keep theirs. */
+    template <int dim>
+    std::array<double, dim>
+    place_inside(const Problem<dim>  &problem,
+                 const PointView<dim> &points,
+                 const std::size_t     p)
+    {
+      const GridDescription<dim> &box = problem.grid;
+      std::array<double, dim> x;
+      for (int d = 0; d < dim; ++d)
+        {
+          x[d]              = points.position[d][p];
+          const double edge = box.edge(d), allowed = put_back_limit * edge;
+          if (holds_material(problem.sides[2 * d]) && x[d] < box.lower[d] &&
+              x[d] > box.lower[d] - allowed)
+            x[d] = box.lower[d] + put_back_place * edge;
+          if (holds_material(problem.sides[2 * d + 1]) && x[d] >= box.upper[d] &&
+              x[d] < box.upper[d] + allowed)
+            x[d] = box.upper[d] - put_back_place * edge;
+        }
+      return x;
+    }
+
+
+
+    /** A point in a cell is new there. */
+    template <int dim>
+    void
+    enter_cell(const GridView<dim>     &grid,
+               MaterialBody<dim>       &body,
+               const PointView<dim>    &points,
+               const std::size_t        p)
+    {
+      const std::uint32_t cell = points.cell[p];
+      if (cell >= grid.n_owned_cells)
+        *grid.is_in_ghosts = true;
+      if (!grid.occupied[cell])
+        {
+          grid.occupied[cell] = 1;
+          grid.entered->push_back(cell);
+        }
+      if (!body.cell_sums)
+        return;
+      PointView<dim> alone = points;
+      alone.size           = 1;
+      alone.mass += p;
+      alone.volumetric += p;
+      alone.cell += p;
+      for (int d = 0; d < dim; ++d)
+        alone.place[d] += p;
+      gather_cell_sums<dim>(alone, grid, body.cell_sums->view());
+    }
+
+
+
+    /**
+     * A side that holds the normal velocity lets nothing pass. But a node next
+     * to it that has hardly any mass may be so fast that a point there, which
+     * takes a tiny part of its velocity, is a tiny part of a cell beyond the
+     * side. Such points are put back.
+     */
+    template <int dim>
+    void
+    put_back(const RunParts<dim> &parts)
+    {
+      const GridView<dim> grid = parts.nodes.view();
+      for (const auto &body : parts.bodies)
+        {
+          const PointView<dim> points = body->points.view();
+          for (std::size_t p = 0; p < points.size; ++p)
+            if (points.cell[p] == invalid_cell)
+              {
+                const auto          x = place_inside(parts.problem, points, p);
+                const std::uint32_t cell = grid.bins.cell_at(x);
+                if (cell == invalid_cell)
+                  continue;
+                for (int d = 0; d < dim; ++d)
+                  points.position[d][p] = x[d];
+                points.cell[p] = cell;
+                enter_cell(grid, *body, points, p);
+              }
+        }
+    }
   } // namespace
 
 
@@ -121,7 +222,15 @@ namespace limber
       excess_batches += n_batches - n_batches_sorted;
     reduce(extremes);
     if (any_lost > 0)
-      remove_lost_points();
+      {
+        put_back(parts);
+        any_entered_shared = parts.nodes.has_entered_shared() ? 1 : 0;
+        any_entered_ghosts = parts.nodes.has_entered_ghosts() ? 1 : 0;
+        if (parallel)
+          for (double *const any : {&any_entered_shared, &any_entered_ghosts})
+            *any = dealii::Utilities::MPI::max(*any, parts.grid.communicator);
+        remove_lost_points();
+      }
     parts.nodes.add_entered();
     if (any_entered_shared > 0)
       parts.nodes.agree_on_sums();

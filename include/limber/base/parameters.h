@@ -67,6 +67,20 @@ namespace limber
     renamed(const std::string &former, const std::string &now);
 
     /**
+     * Say that the entry @p entry of the present section only has an effect
+     * with the word @p word of the entry @p chooser of @p section.
+     */
+    void
+    only_with(const std::string &entry,
+              const std::string &word,
+              const std::string &chooser,
+              const SectionPath &section);
+
+    /** Where declare() puts entries. */
+    SectionPath
+    present_section() const;
+
+    /**
      * Declare the entry @p list of the present section as a list of names,
      * each of which has a section called @p prefix + name beside it.
      */
@@ -79,7 +93,8 @@ namespace limber
     /**
      * Take the values of a file and then those of the command line
      * ("Section/Name=value"). Throws InputError for an unknown section or
-     * entry and for a value that is not admissible.
+     * entry, for a value that is not admissible, and for one that has no effect
+     * because the word that chooses it is not given.
      */
     void
     read(const Scan &scan, const std::vector<std::string> &overrides);
@@ -96,7 +111,8 @@ namespace limber
     void
     print(std::ostream &out, const PrintStyle style) const;
 
-    /** What was not wrong but worth a line in the log: repeated entries. */
+    /** What was not wrong but worth a line in the log: repeated entries, and
+     * those without effect. */
     const std::vector<std::string> &
     warnings() const;
 
@@ -110,8 +126,29 @@ namespace limber
       std::string entry, prefix;
     };
 
+    /** An entry that only counts with one word of another entry. */
+    struct Condition
+    {
+      SectionPath section;
+      std::string entry;
+      SectionPath chooser_section;
+      std::string chooser, word;
+    };
+
     const Declaration *
     find(const SectionPath &section, const std::string &name) const;
+
+    /**
+     * The entry beside @p section of which its name is a word, 'Material' for
+     * 'Neo hookean'; null: the section is always in use. @p word is its name as
+     * it stands there.
+     */
+    const Declaration *
+    what_chooses(const SectionPath &section, std::string &word) const;
+
+    /** Refuse or note what is given without effect. */
+    void
+    check_use();
 
     bool
     is_declared(const SectionPath &section) const;
@@ -145,6 +182,7 @@ namespace limber
     mutable dealii::ParameterHandler handler; // its print() is not const
     std::vector<Declaration>         declarations;
     std::vector<NameList>            lists;
+    std::vector<Condition>           conditions;
     SectionPath                      present;
 
     // What entries of former versions are called now, by full former name.

@@ -47,6 +47,7 @@ namespace limber
     const Problem<dim>      &problem;
     const Body<dim>         &body;
     const StressUpdate<dim> &law;
+    double                   highest = 0; // largest -g . x in the body, m^2/s^2
   };
 } // namespace limber
 
