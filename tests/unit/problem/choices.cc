@@ -318,6 +318,60 @@ TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
 
 
 
+TEST(Choices, KernelOfScenesWithALiquidIsLinear)
+{
+  const auto kernel = [](const std::vector<std::string> &changes) {
+    return read_problem<2>(scene_with(R"(
+      set Bodies = block, water
+      subsection Body block
+        subsection Box
+          set Lower corner = 0, 0.5
+        end
+      end
+      subsection Body water
+        set Material = newtonian fluid
+        subsection Box
+          set Upper corner = 1, 0.5
+        end
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end)",
+                                      changes))
+      .grid.kernel;
+  };
+  EXPECT_EQ(kernel({}), KernelKind::linear);
+  // which keep the volume of liquids with splines
+  EXPECT_EQ(kernel({"Method/Transfer=aflip"}), KernelKind::quadratic);
+  EXPECT_EQ(kernel({"Body water/Material=linear elastic"}),
+            KernelKind::quadratic);
+}
+
+
+
+// What has no effect is noted, if the word that chooses it is given.
+TEST(Choices, EntriesWithoutEffectAreNoted)
+{
+  const auto warnings = [](const std::string &material) {
+    return SceneFile(ParameterText{"set Bodies = block\nsubsection Body block\n"
+                                   "set Material = " +
+                                     material +
+                                     "\n subsection J2\n set Yield stress = "
+                                     "7\n set Density = 1000\n end\n end\n",
+                                   FileFormat::prm,
+                                   "scene"},
+                     {})
+      .warnings();
+  };
+  EXPECT_TRUE(warnings("j2").empty());
+  ASSERT_EQ(warnings("neo hookean").size(), 1u);
+  EXPECT_EQ(warnings("neo hookean").front(),
+            "Section 'Body block/J2' has no effect, as 'Material' is 'neo "
+            "hookean'.");
+}
+
+
+
 // A bar along an axis or across, four or eight cells thick; splines are worse.
 TEST(Choices, SlowTorsionIsNoted)
 {

@@ -44,7 +44,8 @@ namespace
 TEST(Reach, IsThatOfTheFarthestPlace)
 {
   const BoxShape<2>             box(Point<2>(-1, 2), Point<2>(3, 4));
-  const BallShape<2>            ball(Point<2>(1, 2), 0.5);
+  const Point<2>                centre(1, 2);
+  const BallShape<2>            ball(centre, 0.5);
   const BlockShape<2>::Vertices corners = {
     {Point<2>(0, 0.2), Point<2>(0.7, 0), Point<2>(0.3, 1), Point<2>(1, 0.6)}};
   const BlockShape<2> block(corners);
@@ -54,7 +55,7 @@ TEST(Reach, IsThatOfTheFarthestPlace)
       EXPECT_NEAR(*reach<2>(box, n),
                   n[0] * (n[0] > 0 ? 3 : -1) + n[1] * (n[1] > 0 ? 4 : 2),
                   1e-14);
-      EXPECT_NEAR(*reach<2>(ball, n), n * ball.centre + 0.5, 1e-9);
+      EXPECT_NEAR(*reach<2>(ball, n), n * centre + 0.5, 1e-9);
       double of_corners = -1e300;
       for (const Point<2> &corner : corners)
         of_corners = std::max<double>(of_corners, n * corner);
