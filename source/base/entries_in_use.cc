@@ -16,8 +16,7 @@ namespace limber
    */
 
   const Declaration *
-  Parameters::what_chooses(const SectionPath &section,
-                           std::string       &word) const
+  Parameters::what_chooses(const SectionPath &section, std::string &word) const
   {
     if (section.empty())
       return nullptr;
@@ -76,8 +75,8 @@ namespace limber
       if (!is_given(chooser))
         {
           std::string place = where(entry.section, entry.name);
-          place[0] = static_cast<char>(std::toupper(
-            static_cast<unsigned char>(place[0])));
+          place[0]          = static_cast<char>(
+            std::toupper(static_cast<unsigned char>(place[0])));
           throw InputError(
             place + ", has no effect: " + in_quotes(chooser.name) + " is " +
             in_quotes(chosen) +

@@ -394,9 +394,9 @@ namespace limber
       if (chooser == nullptr)
         return std::string();
       const std::string chosen = value(chooser->section, chooser->name);
-      return chosen == word ? std::string() :
-                              in_quotes(chooser->name) + " is " +
-                                in_quotes(chosen) + ".";
+      return chosen == word ?
+               std::string() :
+               in_quotes(chooser->name) + " is " + in_quotes(chosen) + ".";
     };
 
     // Sections that a word beside them has not chosen, as 'Linear elastic'

@@ -411,8 +411,7 @@ namespace limber
                      ", keeps no strain that could creep");
       // With splines and FLIP liquids lose volume, and what floats in them
       // sinks; only affine increments keep it.
-      const std::string transfer =
-        root.subsection("Method").text("Transfer");
+      const std::string transfer = root.subsection("Method").text("Transfer");
       if (transfer != "apic" && transfer != "aflip")
         for (const auto &body : problem.bodies)
           if (body.is_liquid)

@@ -61,7 +61,7 @@ namespace limber
        KernelKind::automatic,
        "'quadratic' if points of a solid may cross cells, or a body that a "
        "side holds may bend across them, where the time integration knows "
-       "splines; else 'linear'"},
+       "splines and no liquid is in the scene; else 'linear'"},
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
       {"quadratic",
        KernelKind::quadratic,

@@ -110,18 +110,16 @@ namespace limber
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
     integrator->synchronise();
-    const Diagnosis suspected = look_for_cause(/*unstable=*/true);
-    const bool      a_side_is_open =
-      std::any_of(problem.sides.begin(),
-                  problem.sides.end(),
-                  [](const Side<dim> &side) {
-                    return side.held == HeldComponents::none ||
-                           !side.velocity.empty();
-                  });
-    std::string message   = std::string(failure.what()) + " " +
-                          (suspected.mode.empty() ? usual_cause(failure.kind, a_side_is_open) :
-                                                    in_words(suspected)) +
-                          " " + describe_last_state();
+    const Diagnosis suspected      = look_for_cause(/*unstable=*/true);
+    const bool      a_side_is_open = std::any_of(
+      problem.sides.begin(), problem.sides.end(), [](const Side<dim> &side) {
+        return side.held == HeldComponents::none || !side.velocity.empty();
+      });
+    std::string message =
+      std::string(failure.what()) + " " +
+      (suspected.mode.empty() ? usual_cause(failure.kind, a_side_is_open) :
+                                in_words(suspected)) +
+      " " + describe_last_state();
     try
       {
         const std::string checkpoint = describe_last_checkpoint();

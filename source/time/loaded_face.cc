@@ -105,8 +105,9 @@ namespace limber
                                   "': ";
       if (!load.where.empty())
         return nothing + "'Where = " + load.where.expression() +
-               "' is positive nowhere on it. Usually the sign is wrong. Change "
-               "'Where' so that it is positive where the load acts.";
+               "' is positive nowhere on it. Usually the sign is wrong, or that "
+               "part lies in a side of the grid. Change 'Where', or enlarge the "
+               "grid.";
       return nothing +
              "all of its surface lies in the sides of the grid, or it is "
              "thinner than the spacing of its points. Enlarge the grid, or set "

@@ -34,12 +34,12 @@ namespace limber
      * of it; others keep theirs. */
     template <int dim>
     std::array<double, dim>
-    place_inside(const Problem<dim>  &problem,
+    place_inside(const Problem<dim>   &problem,
                  const PointView<dim> &points,
                  const std::size_t     p)
     {
       const GridDescription<dim> &box = problem.grid;
-      std::array<double, dim> x;
+      std::array<double, dim>     x;
       for (int d = 0; d < dim; ++d)
         {
           x[d]              = points.position[d][p];
@@ -47,8 +47,8 @@ namespace limber
           if (holds_material(problem.sides[2 * d]) && x[d] < box.lower[d] &&
               x[d] > box.lower[d] - allowed)
             x[d] = box.lower[d] + put_back_place * edge;
-          if (holds_material(problem.sides[2 * d + 1]) && x[d] >= box.upper[d] &&
-              x[d] < box.upper[d] + allowed)
+          if (holds_material(problem.sides[2 * d + 1]) &&
+              x[d] >= box.upper[d] && x[d] < box.upper[d] + allowed)
             x[d] = box.upper[d] - put_back_place * edge;
         }
       return x;
@@ -59,10 +59,10 @@ namespace limber
     /** A point in a cell is new there. */
     template <int dim>
     void
-    enter_cell(const GridView<dim>     &grid,
-               MaterialBody<dim>       &body,
-               const PointView<dim>    &points,
-               const std::size_t        p)
+    enter_cell(const GridView<dim>  &grid,
+               MaterialBody<dim>    &body,
+               const PointView<dim> &points,
+               const std::size_t     p)
     {
       const std::uint32_t cell = points.cell[p];
       if (cell >= grid.n_owned_cells)

@@ -72,8 +72,7 @@ TEST(Reach, OfAFormulaIsThatOfItsSurface)
               0.37,
               1e-12);
   const Tensor<1, 2> up = direction(1.2);
-  EXPECT_NEAR(*reach<2>(formula_in_unit_box(
-                          "0.4 - (cos(1.2)*x + sin(1.2)*y)"),
+  EXPECT_NEAR(*reach<2>(formula_in_unit_box("0.4 - (cos(1.2)*x + sin(1.2)*y)"),
                         up),
               0.4,
               1e-12);
@@ -83,10 +82,10 @@ TEST(Reach, OfAFormulaIsThatOfItsSurface)
               0.4,
               1e-9);
   const Tensor<1, 3> oblique = Point<3>(2. / 7, 3. / 7, 6. / 7);
-  EXPECT_NEAR(
-    *reach<3>(formula_in_unit_cube("0.5 - (2*x + 3*y + 6*z) / 7"), oblique),
-    0.5,
-    1e-12);
+  EXPECT_NEAR(*reach<3>(formula_in_unit_cube("0.5 - (2*x + 3*y + 6*z) / 7"),
+                        oblique),
+              0.5,
+              1e-12);
   EXPECT_FALSE(
     reach<3>(formula_in_unit_cube("1e-4 - abs(z - 0.4)"), oblique).has_value());
 }
@@ -114,13 +113,13 @@ TEST(Reach, HydrostaticPressureBeginsAtTheSurface)
       set Gravity = )" +
                   digits(g * std::sin(angle)) + ", " +
                   digits(-g * std::cos(angle)) + "\nend\n");
-  const auto points = run.points();
+  const auto       points = run.points();
   ASSERT_GT(points.size, 400u);
   for (std::size_t p = 0; p < points.size; ++p)
     {
-      const auto   x     = run.position(p);
-      const double depth = std::sin(angle) * (x[0] - 0.5) -
-                           std::cos(angle) * (x[1] - 0.5);
+      const auto   x = run.position(p);
+      const double depth =
+        std::sin(angle) * (x[0] - 0.5) - std::cos(angle) * (x[1] - 0.5);
       EXPECT_NEAR(points.pressure[p], rho * g * depth, 0.02);
     }
 }
