@@ -2,6 +2,7 @@
 #include <limber/adaptation/adaptation.h>
 #include <limber/adaptation/criteria.h>
 #include <limber/adaptation/joining.h>
+#include <limber/adaptation/stretched_points.h>
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
@@ -14,15 +15,17 @@ namespace limber
   namespace
   {
     // Points may go so much of the rim, in fine cells, before criteria are
-    // asked again: all but half a cell.
+    // asked again: all but half a cell. Points next to each other part by less
+    // than they go.
     template <int dim>
     double
-    way_within_rim(const Problem<dim> &problem)
+    way_between(const Problem<dim> &problem)
     {
-      return 2 * rim_pairs(problem) - 0.5;
+      return problem.grid.levels > 0 ? 2 * rim_pairs(problem) - 0.5 : 0.5;
     }
 
-    // What formulas of the time and fields want may change while points rest.
+    // What formulas of the time and fields want may change while points rest,
+    // and points are stretched by others that move.
     constexpr std::uint64_t steps_at_rest = 50;
   } // namespace
 
@@ -35,9 +38,9 @@ namespace limber
     : problem(problem)
     , grid(grid)
     , bodies(bodies)
-    , longest_way(way_within_rim(problem))
+    , longest_way(way_between(problem))
   {
-    if (!grid.has_levels())
+    if (!problem.adapts())
       return;
     memory.mesh = memory.wanted = grid.divided_cells().numbers();
     for (const auto &body : bodies)
@@ -50,15 +53,16 @@ namespace limber
   bool
   Adaptation<dim>::is_due(const double displacement)
   {
-    if (!grid.has_levels())
+    if (!problem.adapts())
       return false;
     memory.way += displacement;
     ++memory.steps;
     if (grid.description.adapt_every > 0)
       return memory.steps >= grid.description.adapt_every;
     return memory.way + displacement > longest_way ||
-           (grid.description.may_change_at_rest() &&
-            memory.steps >= steps_at_rest);
+           (memory.steps >= steps_at_rest &&
+            (grid.description.may_change_at_rest() ||
+             problem.splits_stretched_points()));
   }
 
 
@@ -72,6 +76,25 @@ namespace limber
     memory.steps        = 0;
     ++memory.times_asked;
 
+    removed      = 0;
+    bool changed = grid.has_levels() && adapt_mesh(time, kept);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (bodies[b]->description.splits_stretched_points)
+        changed |= divide_points(b, kept[b]);
+    if (changed)
+      for (auto &body : bodies)
+        body->points.hand_over();
+    changed |= grid.description.joins_points && join_points(kept);
+    seconds_spent += wall_time() - before;
+    return changed;
+  }
+
+
+
+  template <int dim>
+  bool
+  Adaptation<dim>::adapt_mesh(const double time, const KeptPoints &kept)
+  {
     // A cell is joined again only when nothing has wanted it twice in a row.
     RefinedCells<dim>       mesh    = wanted_mesh(problem, grid, bodies, time);
     const RefinedCells<dim> present = grid.divided_cells();
@@ -89,13 +112,53 @@ namespace limber
         memory.mesh = mesh.numbers();
         ++memory.mesh_changes;
       }
-    if (split || changed)
-      for (auto &body : bodies)
-        body->points.hand_over();
-    removed           = 0;
-    const bool joined = grid.description.joins_points && join_points(kept);
-    seconds_spent += wall_time() - before;
-    return split || changed || joined;
+    return split || changed;
+  }
+
+
+
+  // Numbers that this rank's predecessors take come first.
+  template <int dim>
+  std::uint64_t
+  Adaptation<dim>::take_numbers(const std::size_t   body,
+                                const unsigned long own,
+                                std::uint64_t      &first)
+  {
+    const unsigned long all =
+      dealii::Utilities::MPI::sum(own, grid.communicator);
+    unsigned long before = 0;
+    const int     ierr   = MPI_Exscan(
+      &own, &before, 1, MPI_UNSIGNED_LONG, MPI_SUM, grid.communicator);
+    AssertThrowMPI(ierr);
+    if (dealii::Utilities::MPI::this_mpi_process(grid.communicator) == 0)
+      before = 0;
+    first = memory.next_id[body] + before;
+    memory.next_id[body] += all;
+    memory.points_added += all;
+    return all;
+  }
+
+
+
+  // A part may be too long still, or long along another axis.
+  template <int dim>
+  bool
+  Adaptation<dim>::divide_points(const std::size_t                        b,
+                                 const std::unordered_set<std::uint64_t> &kept)
+  {
+    for (bool any = false;; any = true)
+      {
+        const auto    long_ones = stretched_points(grid, *bodies[b], kept);
+        unsigned long n_new     = 0;
+        for (const Division<dim> &division : long_ones)
+          n_new += division.parts - 1;
+        std::uint64_t first;
+        if (take_numbers(b, n_new, first) == 0)
+          return any;
+        removed -= bodies[b]->points.divide(long_ones, first);
+        memory.points_split +=
+          dealii::Utilities::MPI::sum(long_ones.size(), grid.communicator);
+      }
   }
 
 
@@ -105,8 +168,8 @@ namespace limber
   Adaptation<dim>::split_points(const RefinedCells<dim> &mesh,
                                 const KeptPoints        &kept)
   {
-    const GridDescription<dim> &box   = grid.description;
-    std::uint64_t               added = 0;
+    const GridDescription<dim> &box = grid.description;
+    bool                        any = false;
     for (std::size_t b = 0; b < bodies.size(); ++b)
       {
         MaterialPoints<dim>    &points = bodies[b]->points;
@@ -129,31 +192,18 @@ namespace limber
                     kept[b].count(points.id(p)) == 0)
                   large.push_back(p);
               }
-            // Numbers that this rank's predecessors take come first.
-            const unsigned long n_new = large.size() * ((1u << dim) - 1);
-            const unsigned long all =
-              dealii::Utilities::MPI::sum(n_new, grid.communicator);
+            const unsigned int  n_new = (1u << dim) - 1; // of each
+            std::uint64_t       first;
+            const std::uint64_t all =
+              take_numbers(b, large.size() * n_new, first);
             if (all == 0)
               break;
-            unsigned long before = 0;
-            const int     ierr   = MPI_Exscan(&n_new,
-                                        &before,
-                                        1,
-                                        MPI_UNSIGNED_LONG,
-                                        MPI_SUM,
-                                        grid.communicator);
-            AssertThrowMPI(ierr);
-            if (dealii::Utilities::MPI::this_mpi_process(grid.communicator) ==
-                0)
-              before = 0;
-            points.split(large, spacing, memory.next_id[b] + before);
-            memory.next_id[b] += all;
-            memory.points_split += all / ((1u << dim) - 1);
-            added += all;
+            points.split(large, spacing, first);
+            memory.points_split += all / n_new;
+            any = true;
           }
       }
-    memory.points_added += added;
-    return added > 0;
+    return any;
   }
 
 
@@ -186,9 +236,11 @@ namespace limber
   void
   Adaptation<dim>::restore(const AdaptationState &former)
   {
+    if (!problem.adapts())
+      return;
+    memory = former;
     if (!grid.has_levels())
       return;
-    memory                 = former;
     RefinedCells<dim> mesh = grid.no_divided_cells();
     mesh.set(former.mesh);
     for (auto &body : bodies)

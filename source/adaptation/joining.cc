@@ -109,6 +109,25 @@ namespace limber
 
 
 
+    /** Whether it is a part of what has been stretched. */
+    template <int dim>
+    bool
+    is_divided(const BackgroundGrid<dim> &grid,
+               const MaterialBody<dim>   &body,
+               const std::size_t          p)
+    {
+      const PointView<dim> points = body.points.view();
+      for (int d = 0; d < dim; ++d)
+        if (points.edge[d] != nullptr &&
+            points.edge[d][p] < 0.75 * grid.description.edge(d) /
+                                  body.description.points_per_cell_edge[d] /
+                                  (1u << body.points.size_class(p)))
+          return true;
+      return false;
+    }
+
+
+
     /** The points of a cell by the rooms of its own points; see sets_to_join().
      */
     template <int dim>
@@ -130,7 +149,7 @@ namespace limber
       for (const std::size_t p : of_cell)
         {
           if (body.points.size_class(p) != grid.level_of(cell) + 1 ||
-              kept.count(body.points.id(p)) > 0)
+              is_divided(grid, body, p) || kept.count(body.points.id(p)) > 0)
             continue;
           const std::array<double, dim> xi = natural_place(points, geometry, p);
           std::size_t                   room = 0;

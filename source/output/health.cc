@@ -280,7 +280,10 @@ namespace limber
       HealthLine         line;
       line.value   = share_of_gaps(body);
       line.verdict = check.verdict(line.value);
-      line.entry   = of_body(body, "Points per cell edge");
+      line.entry =
+        of_body(body,
+                body.is_plastic || body.is_split ? "Points per cell edge" :
+                                                   "Split stretched points");
       line.text =
         line.value > 0 ?
           "body '" + body.name + "' has come apart on the grid: " +

@@ -45,8 +45,11 @@ namespace limber
       double largest = -std::numeric_limits<double>::infinity();
       for (std::size_t p = 0; p < points.size; ++p)
         {
-          const double end = sign * points.position[axis][p] +
-                             0.5 * spacing / (1u << body.points.size_class(p));
+          const double end =
+            sign * points.position[axis][p] +
+            0.5 * (points.edge[axis] != nullptr ?
+                     points.edge[axis][p] :
+                     spacing / (1u << body.points.size_class(p)));
           if (end > largest && is_within(points, p, observable))
             largest = end;
         }

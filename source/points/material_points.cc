@@ -22,6 +22,7 @@ namespace limber
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
              (layout.crossings ? 1 : 0) + (layout.reach ? 1 : 0) +
+             (layout.edges ? dim : 0) +
              n_domain_components(layout.domains, dim) +
              (layout.initial_frame ? dim * dim : 0) +
              (layout.has_reference() ? dim : 0);
@@ -135,6 +136,9 @@ namespace limber
       result.crossings = fields[f++].data();
     if (layout.reach)
       result.reach = fields[f++].data();
+    if (layout.edges)
+      for (auto &array : result.edge)
+        array = fields[f++].data();
     result.domain_form = layout.domains;
     for (unsigned int k = 0, n = n_domain_components(layout.domains, dim);
          k < n;
@@ -214,6 +218,9 @@ namespace limber
       names.push_back("crossings");
     if (layout.reach)
       names.push_back("reach");
+    if (layout.edges)
+      for (int d = 0; d < dim; ++d)
+        names.push_back("edge " + std::string(1, "xyz"[d]));
     numbered("domain", n_domain_components(layout.domains, dim));
     numbered("deformation gradient", layout.initial_frame ? dim * dim : 0);
     if (layout.has_reference())
@@ -501,132 +508,6 @@ namespace limber
       }
     carrier.reset();
     ++n_reorderings;
-  }
-
-
-
-  // A quarter of the edges of what the point stands for: its domain, along the
-  // axes or its own edges, or its share of the cell that it was made for.
-  template <int dim>
-  dealii::Tensor<2, dim>
-  MaterialPoints<dim>::shifts_of_children(
-    const PointView<dim>          &points,
-    const std::size_t              p,
-    const std::array<double, dim> &spacing) const
-  {
-    dealii::Tensor<2, dim> result;
-    for (int d = 0; d < dim; ++d)
-      if (points.has_domains())
-        {
-          for (int k = 0; k < dim; ++k)
-            if (const double *const component = points.domain[d * dim + k])
-              result[d][k] = 0.5 * component[p];
-          if (points.has_boxes()) // with the length of the row, see half_box()
-            {
-              const double half = result[d].norm();
-              result[d]         = 0;
-              result[d][d]      = half;
-            }
-        }
-      else
-        result[d][d] = 0.25 * spacing[d] / (1u << size_classes[p]);
-    return result;
-  }
-
-
-
-  // Shifted alike to both sides, nearly as far as the cell reaches: the centre
-  // of mass stays, and with it whatever is linear in each direction within the
-  // cell. On a face of the cell round-off would decide where a point is.
-  template <int dim>
-  void
-  MaterialPoints<dim>::split(const std::vector<std::size_t> &which,
-                             const std::array<double, dim>  &spacing,
-                             std::uint64_t                   next_id)
-  {
-    constexpr unsigned int n_children = 1 << dim;
-    constexpr double       share      = 0.9;
-    std::size_t            last       = size();
-    resize(last + which.size() * (n_children - 1));
-    const PointView<dim> points = view();
-    for (const std::size_t p : which)
-      {
-        const CellGeometry<dim> &geometry = grid.geometry[cell[p]];
-        // column k: from the point to its children along its edge k
-        dealii::Tensor<2, dim> shifts = shifts_of_children(points, p, spacing);
-        for (int d = 0; d < dim; ++d)
-          {
-            const double below = points.position[d][p] - geometry.origin[d];
-            const double above = 1 / geometry.inverse_edge[d] - below;
-            double       all   = 0;
-            for (int k = 0; k < dim; ++k)
-              all += std::abs(shifts[d][k]);
-            const double room = std::max(0., share * std::min(below, above));
-            if (all > room)
-              shifts[d] *= room / all;
-          }
-        points.mass[p] /= n_children;
-        for (double *const component : points.domain)
-          if (component != nullptr)
-            component[p] /= 2;
-        if (points.reach != nullptr)
-          points.reach[p] /= 2;
-        ++size_classes[p];
-        for (unsigned int child = 1; child < n_children; ++child, ++last)
-          {
-            move(p, last);
-            ids[last] = next_id++;
-          }
-        const auto place_child = [&](const std::size_t  q,
-                                     const unsigned int child) {
-          for (int d = 0; d < dim; ++d)
-            {
-              double way = 0;
-              for (int k = 0; k < dim; ++k)
-                way += child >> k & 1 ? shifts[d][k] : -shifts[d][k];
-              points.position[d][q] += way;
-              if (layout.has_reference())
-                fields[fields.size() - dim + d][q] += way;
-            }
-        };
-        place_child(p, 0);
-        for (unsigned int child = 1; child < n_children; ++child)
-          place_child(last - n_children + child, child);
-      }
-    ++n_reorderings;
-  }
-
-
-
-  template <int dim>
-  void
-  MaterialPoints<dim>::join(const std::vector<std::vector<std::size_t>> &sets)
-  {
-    const PointView<dim> points = view();
-    double *const        mass   = points.mass;
-    for (const auto &set : sets)
-      {
-        double all = 0;
-        for (const std::size_t p : set)
-          all += mass[p];
-        for (auto &field : fields)
-          {
-            if (field.data() == mass)
-              continue;
-            // Differences from the first: a mean of equal numbers is that one.
-            double sum = 0;
-            for (const std::size_t p : set)
-              sum += mass[p] * (field[p] - field[set[0]]);
-            field[set[0]] += sum / all;
-          }
-        mass[set[0]] = all;
-        if (points.reach != nullptr)
-          points.reach[set[0]] *= 2;
-        --size_classes[set[0]];
-        for (std::size_t i = 1; i < set.size(); ++i)
-          cell[set[i]] = invalid_cell;
-      }
-    remove_lost();
   }
 
 

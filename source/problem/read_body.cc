@@ -109,6 +109,13 @@ namespace limber
                          "0",
                          admissible::non_negative_number("0.01"),
                          "Time constant tau, s, for histories that 'relax'.");
+      parameters.declare("Split stretched points",
+                         "false",
+                         admissible::flag(),
+                         "Whether points longer than 2/3 of a cell along some "
+                         "direction become two, so that a solid that is "
+                         "stretched far does not come apart on the grid "
+                         "(numerical fracture).");
     }
 
 
@@ -308,7 +315,8 @@ namespace limber
       body.history = read_word(section, "History", history_words());
       body.deviatoric_history =
         read_word(section, "Deviatoric history", history_words());
-      body.relaxation_time = section.number("Relaxation time");
+      body.relaxation_time         = section.number("Relaxation time");
+      body.splits_stretched_points = section.flag("Split stretched points");
 
       const bool relaxes = body.history == HistoryTreatment::relax ||
                            body.deviatoric_history == HistoryTreatment::relax;

@@ -381,10 +381,51 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Points may be halved only if they know how far they are stretched. */
+    template <int dim>
+    void
+    check_stretched(const Section      &section,
+                    const Body<dim>    &body,
+                    const Problem<dim> &problem)
+    {
+      const auto refuse = [&](const std::string &reason,
+                              const std::string &remedy) {
+        throw InputError(
+          "Points of body " + in_quotes(body.name) + " cannot be halved (" +
+          section.where("Split stretched points") + "): " + reason + ". Set " +
+          remedy + ", or 'Split stretched points = false'.");
+      };
+      const KernelKind kernel = problem.grid.kernel;
+      const bool       follows =
+        kernel == KernelKind::cpgimp || kernel == KernelKind::cpdi;
+      if (body.is_liquid)
+        refuse("a liquid keeps no shape that could be stretched",
+               "'Density control' in semi-implicit steps");
+      if (body.frame == Frame::initial)
+        refuse("in the initial frame nothing comes apart", "'Frame = current'");
+      if (is_solved_by_newton(problem.method.integration))
+        refuse("Newton steps keep the points of the start",
+               "'Method/Time integration = explicit'");
+      if (has_domains(kernel) && !follows)
+        refuse("domains of this kernel do not become halves",
+               "'Method/Kernel = cpgimp' or 'cpdi'");
+      if (body.is_plastic && !follows)
+        refuse("what has flowed plastically does not know its whole stretch",
+               "'Method/Kernel = cpgimp' or 'cpdi', whose domains do");
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   check_levels(const Section &root, const Problem<dim> &problem)
   {
+    for (const Body<dim> &body : problem.bodies)
+      if (body.splits_stretched_points)
+        check_stretched(root.subsection("Body " + body.name), body, problem);
     if (problem.grid.levels == 0)
       return;
     check_plastic_strains(root.subsection("Grid"), problem);

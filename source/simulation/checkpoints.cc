@@ -303,8 +303,8 @@ namespace limber
         n += read_points(file,
                          grid,
                          b,
-                         grid.has_levels() ? state.adaptation.next_id[b] :
-                                             n_at_start[b],
+                         problem.adapts() ? state.adaptation.next_id[b] :
+                                            n_at_start[b],
                          bodies[b]->points);
       }
     const std::size_t wanted =

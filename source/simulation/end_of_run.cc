@@ -230,7 +230,7 @@ namespace limber
     for (auto &[name, share_of_step] : summary.verbs)
       share_of_step /= std::max(all, 1e-300);
 
-    if (grid.has_levels())
+    if (problem.adapts())
       {
         const AdaptationState &adapted = adaptation.state();
         summary.adaptation = {{"times asked", double(adapted.times_asked)},
@@ -242,7 +242,8 @@ namespace limber
           summary.adaptation.insert(summary.adaptation.end() - 1,
                                     {"points joined",
                                      double(adapted.points_joined)});
-        summary.levels = adaptation.report();
+        if (grid.has_levels())
+          summary.levels = adaptation.report();
       }
 
     summary.checks = checks.results();

@@ -158,6 +158,7 @@ namespace limber
       layout.domains       = domain_form(kernel);
       layout.initial_frame = body.frame == Frame::initial;
       layout.size_class    = grid.has_levels();
+      layout.edges = body.splits_stretched_points && !has_domains(kernel);
       layout.reference =
         problem.output.time_interval > 0 &&
         std::find(fields.begin(), fields.end(), "displacement") != fields.end();
@@ -205,6 +206,39 @@ namespace limber
 
 
 
+    // Of a cut part, which is smaller than the spacing, or of a point of a
+    // lattice of the body's own, by its volume.
+    template <int dim>
+    void
+    set_edges(const GridDescription<dim>                              &box,
+              const Body<dim>                                         &body,
+              const std::function<double(const dealii::Point<dim> &)> &density,
+              MaterialPoints<dim>                                     &points)
+    {
+      const PointView<dim> view = points.view();
+      if (view.edge[0] == nullptr)
+        return;
+      std::array<double, dim> spacing;
+      double                  room = 1;
+      for (int d = 0; d < dim; ++d)
+        {
+          spacing[d] = box.edge(d) / body.points_per_cell_edge[d];
+          room *= spacing[d];
+        }
+      for (std::size_t p = 0; p < view.size; ++p)
+        {
+          dealii::Point<dim> place;
+          for (int d = 0; d < dim; ++d)
+            place[d] = view.position[d][p];
+          const double size =
+            std::pow(view.mass[p] / density(place) / room, 1. / dim);
+          for (int d = 0; d < dim; ++d)
+            view.edge[d][p] = size * spacing[d];
+        }
+    }
+
+
+
     template <int dim>
     void
     fill_with_points(const Problem<dim>        &problem,
@@ -219,6 +253,7 @@ namespace limber
       seed<dim>(body.description, grid, density, body.points);
       set_initial_state(problem, body);
       set_reach<dim>(*body.description.shape, density, body.points);
+      set_edges<dim>(problem.grid, body.description, density, body.points);
 
       if (body.points.n_global() == 0)
         throw InputError("The body '" + body.description.name +

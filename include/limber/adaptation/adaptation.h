@@ -33,7 +33,8 @@ namespace limber
    * Lets the mesh follow what the scene's refinements want, and points follow
    * the mesh: one in a cell of a finer level than it was made for becomes 2^dim
    * of half its size. Where the scene allows it, points in a cell of a coarser
-   * level than they were made for are joined. Every member function is
+   * level than they were made for are joined, and stretched ones divided.
+   * Every member function is
    * collective but those that only tell something.
    */
   template <int dim>
@@ -44,7 +45,7 @@ namespace limber
     // Numbers of points of each body that have to stay what they are
     using KeptPoints = std::vector<std::unordered_set<std::uint64_t>>;
 
-    /** Of a scene set up; does nothing where it has no levels. */
+    /** Of a scene set up; does nothing where it does not adapt. */
     Adaptation(const Problem<dim>  &problem,
                BackgroundGrid<dim> &grid,
                Bodies              &bodies);
@@ -74,7 +75,8 @@ namespace limber
       return memory;
     }
 
-    /** Kinetic and strain energy less by the last adapt() on this rank, J. */
+    /** Kinetic and strain energy less by the last adapt() on this rank, J;
+     * below zero where there is more. */
     double
     energy_removed() const
     {
@@ -94,6 +96,16 @@ namespace limber
 
   private:
     bool
+    adapt_mesh(double time, const KeptPoints &kept);
+
+    std::uint64_t
+    take_numbers(std::size_t body, unsigned long own, std::uint64_t &first);
+
+    bool
+    divide_points(std::size_t                              body,
+                  const std::unordered_set<std::uint64_t> &kept);
+
+    bool
     split_points(const RefinedCells<dim> &mesh, const KeptPoints &kept);
 
     bool
@@ -102,7 +114,7 @@ namespace limber
     const Problem<dim>  &problem;
     BackgroundGrid<dim> &grid;
     Bodies              &bodies;
-    const double         longest_way; // until criteria are asked, in fine cells
+    const double         longest_way; // between adaptations, in fine cells
     AdaptationState      memory;
     double               seconds_spent = 0;
     double               removed       = 0;

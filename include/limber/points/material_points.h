@@ -25,6 +25,7 @@ namespace limber
     DomainForm   domains    = DomainForm::none; // GIMP, CPDI
     bool         reference  = false; // reference position, for displacements
     bool         size_class = false; // the level of cells they are made for
+    bool         edges      = false; // of what they stand for, at the start
     // Functions of the initial places: also the reference position and F.
     bool initial_frame = false;
 
@@ -33,6 +34,19 @@ namespace limber
     {
       return reference || initial_frame;
     }
+  };
+
+
+
+  /** A point that is to become several in a row. */
+  template <int dim>
+  struct Division
+  {
+    std::size_t            point;
+    dealii::Tensor<1, dim> half_edge; // to the end of the row, m
+    unsigned int           direction; // axis, or edge of a parallelepiped
+    unsigned int           parts;     // if there is one in the middle, it stays
+    double                 rate = 0;  // at which it becomes longer, 1/s
   };
 
 
@@ -202,6 +216,17 @@ namespace limber
           std::uint64_t                   next_id);
 
     /**
+     * Let each of these points become some that share its mass, its domain or
+     * edge, and stand where the rows that they divide have their middles, in
+     * this cell or the next. The one in the middle or, of two, the first keeps
+     * the number, the others get numbers from @p next_id on. They part as the
+     * material does, along their row: momentum and its moment stay. Returns the
+     * kinetic energy that they have more than before, J.
+     */
+    double
+    divide(const std::vector<Division<dim>> &which, std::uint64_t next_id);
+
+    /**
      * Let the points of each of these sets, which are in one cell and of one
      * size class, become one of the next coarser class. It has their mass and
      * the mean by mass of all else, so that mass, momentum and the centre of
@@ -256,6 +281,12 @@ namespace limber
                        std::size_t                    p,
                        const std::array<double, dim> &spacing) const;
     void
+    shift_point(std::size_t p, const dealii::Tensor<1, dim> &way);
+    double
+    room_in_cell(const PointView<dim> &points,
+                 std::size_t           p,
+                 unsigned int          axis) const;
+    void
     move(std::size_t from, std::size_t to);
     std::vector<std::uint32_t>
     occupied_cells() const;
@@ -276,8 +307,8 @@ namespace limber
     const PointLayout          layout;
 
     // Position, velocity, mass, pressure, deviator, history, affine part,
-    // crossings, reach, domain, deformation gradient; the reference position,
-    // if there is one, comes last.
+    // crossings, reach, edges, domain, deformation gradient; the reference
+    // position, if there is one, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;

@@ -93,6 +93,8 @@ namespace limber
     // From the point to where its material ends towards what it may touch, m,
     // before it is stretched (time/obstacle_contact.h)
     double *reach = nullptr;
+    // Of what the point stands for, as it was at the start, along the axes, m
+    std::array<double *, dim> edge{};
 
     /** Whether the functions of the grid are those of the initial places. */
     bool

@@ -182,6 +182,10 @@ namespace limber
     HistoryTreatment deviatoric_history = HistoryTreatment::keep;
     double           relaxation_time    = 0; // s, for HistoryTreatment::relax
 
+    // Whether points become two where they are stretched so far that cells
+    // between them would soon be empty
+    bool splits_stretched_points = false;
+
     // Which fields of nodes it gives to and takes from: bodies that may part
     // have different ones
     unsigned int nodal_field = 0;
@@ -444,6 +448,23 @@ namespace limber
     std::vector<std::string>     notes; // what the reader decided, for the log
     // Entries that a run cannot change on its way, as "name = value"
     std::vector<std::string> fixed_entries;
+
+    /** Whether points of any body become two where they are stretched. */
+    bool
+    splits_stretched_points() const
+    {
+      for (const Body<dim> &body : bodies)
+        if (body.splits_stretched_points)
+          return true;
+      return false;
+    }
+
+    /** Whether the grid, or the points of a body, change on the way. */
+    bool
+    adapts() const
+    {
+      return grid.levels > 0 || splits_stretched_points();
+    }
   };
 } // namespace limber
 

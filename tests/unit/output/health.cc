@@ -116,6 +116,8 @@ namespace limber::test
 
     figures                = sound();
     figures.bodies[0].gaps = 10;
+    expect_bad("gaps", figures, "Split stretched points");
+    figures.bodies[0].is_plastic = true;
     expect_bad("gaps", figures, "Points per cell edge");
 
     figures                        = sound();
