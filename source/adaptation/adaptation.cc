@@ -148,6 +148,7 @@ namespace limber
   {
     for (bool any = false;; any = true)
       {
+        bodies[b]->points.hand_over();
         const auto    long_ones = stretched_points(grid, *bodies[b], kept);
         unsigned long n_new     = 0;
         for (const Division<dim> &division : long_ones)

@@ -47,6 +47,35 @@ namespace limber
 
 
   template <int dim>
+  void
+  MotionSums<dim>::add(const MotionSums<dim>         &other,
+                       const dealii::Tensor<1, dim>  &shift,
+                       const std::array<double, dim> &scale)
+  {
+    const double *const theirs = other.sums.data(), *const places = theirs + 1,
+                        *const velocities = places + dim,
+                        *const squares    = velocities + dim,
+                        *const motions    = squares + dim * dim;
+    const double               mass       = *theirs;
+    double                    *sum        = sums.data();
+    *sum++ += mass;
+    for (int d = 0; d < dim; ++d)
+      *sum++ += scale[d] * places[d] + mass * shift[d];
+    for (int d = 0; d < dim; ++d)
+      *sum++ += velocities[d];
+    for (int d = 0; d < dim; ++d)
+      for (int e = 0; e < dim; ++e)
+        *sum++ += scale[d] * scale[e] * squares[d * dim + e] +
+                  scale[d] * places[d] * shift[e] +
+                  shift[d] * scale[e] * places[e] + mass * shift[d] * shift[e];
+    for (int d = 0; d < dim; ++d)
+      for (int e = 0; e < dim; ++e)
+        *sum++ += scale[e] * motions[d * dim + e] + velocities[d] * shift[e];
+  }
+
+
+
+  template <int dim>
   LinearMotion<dim>
   MotionSums<dim>::motion() const
   {
@@ -128,6 +157,41 @@ namespace limber
 
 
 
+    /** Let those of ghost cells be what their owners have; collective. */
+    template <int dim, std::size_t n>
+    void
+    give_to_ghosts(const BackgroundGrid<dim> &grid, CellRecords<n> &records)
+    {
+      using Cell   = typename BackgroundGrid<dim>::Cell;
+      using Record = std::array<double, n>;
+      dealii::GridTools::exchange_cell_data_to_ghosts<
+        Record,
+        typename BackgroundGrid<dim>::Mesh>(
+        grid.triangulation,
+        [&](const Cell &cell) { return records[grid.cell_number(cell)]; },
+        [&](const Cell &cell, const Record &record) {
+          records[grid.cell_number(cell)] = record;
+        });
+    }
+
+
+
+    /** See motion_of_cells(); of ghost cells, what this rank has there. */
+    template <int dim>
+    CellRecords<MotionSums<dim>::n>
+    motion_records(const BackgroundGrid<dim> &grid,
+                   const MaterialBody<dim>   &body)
+    {
+      return sums_over_points<MotionSums<dim>::n>(
+        grid, body, [&](const auto &points, const std::size_t p, auto &record) {
+          MotionSums<dim> sums{record};
+          sums.add(points, p, grid.geometry[points.cell[p]]);
+          record = sums.sums;
+        });
+    }
+
+
+
     template <int dim>
     double
     longest_edge(const BackgroundGrid<dim> &grid, const std::uint32_t cell)
@@ -146,16 +210,10 @@ namespace limber
                const MaterialBody<dim>   &body,
                std::vector<double>       &values)
     {
-      constexpr std::size_t n = MotionSums<dim>::n;
-      const double          c = largest_wave_speed(grid, body);
+      const double c = largest_wave_speed(grid, body);
       if (!(c > 0))
         return;
-      const CellRecords<n> records = sums_over_points<n>(
-        grid, body, [&](const auto &points, const std::size_t p, auto &record) {
-          MotionSums<dim> sums{record};
-          sums.add(points, p, grid.geometry[points.cell[p]]);
-          record = sums.sums;
-        });
+      const auto records = motion_records(grid, body);
       for (std::uint32_t cell = 0; cell < values.size(); ++cell)
         {
           const LinearMotion<dim> motion =
@@ -247,14 +305,7 @@ namespace limber
       for (Record &record : of)
         for (unsigned int k = 1; k < n && record[0] > 0; ++k)
           record[k] /= record[0];
-      dealii::GridTools::exchange_cell_data_to_ghosts<
-        Record,
-        typename BackgroundGrid<dim>::Mesh>(
-        grid.triangulation,
-        [&](const Cell &cell) { return of[grid.cell_number(cell)]; },
-        [&](const Cell &cell, const Record &record) {
-          of[grid.cell_number(cell)] = record;
-        });
+      give_to_ghosts(grid, of);
 
       const auto compare = [&](const Cell &cell, const Cell &other) {
         const std::uint32_t own = grid.cell_number(cell);
@@ -278,6 +329,22 @@ namespace limber
             }
     }
   } // namespace
+
+
+
+  template <int dim>
+  std::vector<MotionSums<dim>>
+  motion_of_cells(const BackgroundGrid<dim> &grid,
+                  const MaterialBody<dim>   &body)
+  {
+    auto records = motion_records(grid, body);
+    give_to_ghosts(grid, records);
+    std::vector<MotionSums<dim>> result;
+    result.reserve(records.size());
+    for (const auto &record : records)
+      result.push_back({record});
+    return result;
+  }
 
 
 
@@ -318,6 +385,10 @@ namespace limber
   largest_wave_speed(const BackgroundGrid<3> &, const MaterialBody<3> &);
   template struct MotionSums<2>;
   template struct MotionSums<3>;
+  template std::vector<MotionSums<2>>
+  motion_of_cells(const BackgroundGrid<2> &, const MaterialBody<2> &);
+  template std::vector<MotionSums<3>>
+  motion_of_cells(const BackgroundGrid<3> &, const MaterialBody<3> &);
   template std::vector<double>
   cell_values(const Refinement<2> &,
               const BackgroundGrid<2> &,

@@ -2,8 +2,8 @@
 #include <limber/adaptation/cell_values.h>
 #include <limber/adaptation/stretched_points.h>
 
+#include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 namespace limber
 {
@@ -100,51 +100,45 @@ namespace limber
 
 
 
-    /** The points of a body by cells, for velocity gradients around points. */
+    /** Of the points in a cell and in those around, 1/s. */
     template <int dim>
-    class VelocityGradients
+    dealii::Tensor<2, dim>
+    velocity_gradient(const BackgroundGrid<dim>          &grid,
+                      const std::vector<MotionSums<dim>> &motion,
+                      const std::uint32_t                 cell)
     {
-    public:
-      VelocityGradients(const BackgroundGrid<dim> &grid,
-                        const PointView<dim>      &points)
-        : grid(grid)
-        , points(points)
-      {}
-
-      /** Of the points in the cell of point p and those around, 1/s. */
-      dealii::Tensor<2, dim>
-      around(const std::size_t p)
-      {
-        if (by_cell.empty())
-          for (std::size_t q = 0; q < points.size; ++q)
-            by_cell[points.cell[q]].push_back(q);
-        const std::uint32_t      cell     = points.cell[p];
-        const CellGeometry<dim> &geometry = grid.geometry[cell];
-        MotionSums<dim>          sums;
-        for (unsigned int n = 0; n < (dim == 2 ? 9 : 27); ++n)
-          {
-            std::array<double, dim> x;
-            for (int d = 0, k = n; d < dim; ++d, k /= 3)
-              x[d] =
-                geometry.origin[d] + (k % 3 - 0.5) / geometry.inverse_edge[d];
-            const auto found = by_cell.find(grid.bins.cell_at(x));
-            if (found != by_cell.end())
-              for (const std::size_t q : found->second)
-                sums.add(points, q, geometry);
-          }
-        const LinearMotion<dim> motion = sums.motion();
-        dealii::Tensor<2, dim>  result = motion.gradient;
-        for (int d = 0; d < dim; ++d)
-          for (int e = 0; e < dim; ++e)
-            result[d][e] *= geometry.inverse_edge[e];
-        return result;
-      }
-
-    private:
-      const BackgroundGrid<dim>                                  &grid;
-      const PointView<dim>                                       &points;
-      std::unordered_map<std::uint32_t, std::vector<std::size_t>> by_cell;
-    };
+      const CellGeometry<dim>   &geometry = grid.geometry[cell];
+      MotionSums<dim>            sums;
+      std::vector<std::uint32_t> seen; // a larger cell is in several directions
+      for (unsigned int n = 0; n < (dim == 2 ? 9 : 27); ++n)
+        {
+          std::array<double, dim> x;
+          for (int d = 0, k = n; d < dim; ++d, k /= 3)
+            x[d] =
+              geometry.origin[d] + (k % 3 - 0.5) / geometry.inverse_edge[d];
+          const std::uint32_t other = grid.bins.cell_at(x);
+          if (other == invalid_cell ||
+              std::find(seen.begin(), seen.end(), other) != seen.end())
+            continue;
+          seen.push_back(other);
+          const CellGeometry<dim> &theirs = grid.geometry[other];
+          dealii::Tensor<1, dim>   shift;
+          std::array<double, dim>  scale;
+          for (int d = 0; d < dim; ++d)
+            {
+              scale[d] = geometry.inverse_edge[d] / theirs.inverse_edge[d];
+              shift[d] = (theirs.origin[d] - geometry.origin[d]) *
+                           geometry.inverse_edge[d] +
+                         0.5 * (scale[d] - 1);
+            }
+          sums.add(motion[other], shift, scale);
+        }
+      dealii::Tensor<2, dim> result = sums.motion().gradient;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          result[d][e] *= geometry.inverse_edge[e];
+      return result;
+    }
   } // namespace
 
 
@@ -157,17 +151,23 @@ namespace limber
   {
     std::vector<Division<dim>> result;
     const PointView<dim>       points = body.points.view();
-    VelocityGradients<dim>     gradients(grid, points);
     for (std::size_t p = 0; p < points.size; ++p)
       if (Division<dim> division; is_stretched(grid, body, points, p, division))
         {
           if (kept.count(body.points.id(p)) > 0)
             division.parts = 3;
-          const auto &along = division.half_edge;
-          division.rate =
-            along * (gradients.around(p) * along) / along.norm_square();
           result.push_back(division);
         }
+    if (dealii::Utilities::MPI::sum(result.size(), grid.communicator) == 0)
+      return result;
+    const auto motion = motion_of_cells(grid, body);
+    for (Division<dim> &division : result)
+      {
+        const auto &along = division.half_edge;
+        const auto  gradient =
+          velocity_gradient(grid, motion, points.cell[division.point]);
+        division.rate = along * (gradient * along) / along.norm_square();
+      }
     return result;
   }
 

@@ -289,7 +289,7 @@ namespace limber
          << " ns per point and step, energy drift " << summary.energy_drift
          << ", momentum error " << summary.momentum_error << ", "
          << summary.lost_points << " points lost\n";
-    if (!summary.levels.empty())
+    if (!summary.adaptation.empty())
       {
         text << summary.levels << "  adaptation:";
         for (const auto &[name, value] : summary.adaptation)

@@ -43,9 +43,26 @@ namespace limber
     void
     add(const PointView<dim> &points, std::size_t p, const CellGeometry<dim> &);
 
+    /**
+     * Those of the points of another cell, whose centre is at @p shift from
+     * that of this one and whose edges are @p scale times as long, both in
+     * edges of this one.
+     */
+    void
+    add(const MotionSums<dim>         &other,
+        const dealii::Tensor<1, dim>  &shift,
+        const std::array<double, dim> &scale);
+
     LinearMotion<dim>
     motion() const;
   };
+
+  /** Of the points of a body in the cells of this rank, owned and ghost, by
+   * local number. Collective. */
+  template <int dim>
+  std::vector<MotionSums<dim>>
+  motion_of_cells(const BackgroundGrid<dim> &grid,
+                  const MaterialBody<dim>   &body);
 
   /**
    * What a refinement with a scale compares with it, of the cells of this rank,
