@@ -2,7 +2,7 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_solver.h>
 
-#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
 #include <limber/fem/linear_solver.h>
 #include <limber/fem/multigrid.h>
 
@@ -25,7 +25,28 @@ namespace limber
         "is degenerate, or numbers are too large or not finite. Set a side to "
         "'no slip' in 'Boundaries', or 'Reference/Method = implicit'.");
     }
+    std::string
+    failed_iterations(const std::string &method,
+                      const unsigned int iterations,
+                      const double       residual)
+    {
+      return method + " stopped after " + std::to_string(iterations) +
+             " iterations with " + brief(residual) +
+             " of the residual at the start";
+    }
   } // namespace
+
+
+
+  IterationsFailed::IterationsFailed(const std::string &method,
+                                     const unsigned int iterations,
+                                     const double       residual,
+                                     const std::string &what_to_do)
+    : ComputationError("The " +
+                       failed_iterations(method, iterations, residual) + "." +
+                       what_to_do)
+    , event(failed_iterations(method, iterations, residual))
+  {}
 
 
 
@@ -112,14 +133,13 @@ namespace limber
       }
     catch (const dealii::SolverControl::NoConvergence &failure)
       {
-        throw ComputationError(
-          "The conjugate gradients of the finite element reference stopped "
-          "after " +
-          std::to_string(failure.last_step) + " steps at the residual " +
-          std::to_string(failure.last_residual / size) +
-          " of its start. Usually the body has lost its stability or "
-          "Poisson's ratio is too close to 0.5. Set 'Reference/Load steps' or "
-          "'Reference/Time step' finer, or take 'Element = Q1-P0-P0'.");
+        throw IterationsFailed(
+          "conjugate gradients",
+          failure.last_step,
+          failure.last_residual / size,
+          " Usually the body has lost its stability or Poisson's ratio is too "
+          "close to 0.5. Set 'Reference/Load steps' or 'Reference/Time step' "
+          "finer, or take 'Element = Q1-P0-P0'.");
       }
     return control.last_step();
   }

@@ -4,7 +4,6 @@
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_minres.h>
 
-#include <limber/base/exceptions.h>
 #include <limber/fem/mixed_solver.h>
 #include <limber/fem/multigrid.h>
 
@@ -152,10 +151,9 @@ namespace limber
       }
     catch (const dealii::SolverControl::NoConvergence &failure)
       {
-        throw ComputationError(
-          "Minimal residuals stopped after " +
-          std::to_string(failure.last_step) + " steps at the residual " +
-          std::to_string(failure.last_residual / size) + " of its start.");
+        throw IterationsFailed("minimal residuals",
+                               failure.last_step,
+                               failure.last_residual / size);
       }
     solution = unknowns.block(0);
     return control.last_step();

@@ -146,6 +146,8 @@ namespace limber
           console.say("step " + std::to_string(state.step + 1) + " from time " +
                       brief(state.time) + " s: no solution over " +
                       brief(asked) + " s, so it is " + brief(step) + " s long");
+        if (const std::string warning = integrator->warning(); !warning.empty())
+          console.warn("At time " + brief(state.time) + " s " + warning);
         state.time += step;
         state.step_size = step;
         ++state.step;

@@ -18,6 +18,12 @@ namespace limber
     // share that cells know of. The rest is for surfaces and sides, found by
     // counting iterations.
     constexpr double alternating_share = 0.99;
+
+    // A cell that is hardly filled hangs on nodes that others hold: it gives in
+    // to its pressure as these do, by the diagonal of their stiffness, and not
+    // as if its own shear modulus alone held it. The factor makes both the same
+    // in a full cell amidst others.
+    constexpr double of_diagonal = 3;
   } // namespace
 
 
@@ -80,7 +86,7 @@ namespace limber
         compliance.push_back(1 / volume.stiffness);
         kept.push_back(volume.kept);
       }
-    fill_pressure_matrix();
+    fill_pressure_matrix(stiffness);
     MixedSolver::Equations equations;
     equations.stiffness   = &stiffness;
     equations.rows        = &rows;
@@ -100,7 +106,8 @@ namespace limber
   // the pattern alone.
   template <int dim>
   void
-  AveragedVolumes<dim>::fill_pressure_matrix()
+  AveragedVolumes<dim>::fill_pressure_matrix(
+    const dealii::TrilinosWrappers::SparseMatrix &stiffness)
   {
     constexpr unsigned int n = 1 << dim;
     using Around = std::array<std::uint32_t, n>; // volumes around a node
@@ -132,7 +139,17 @@ namespace limber
     std::vector<double> root(volumes.size());
     for (std::size_t c = 0; c < volumes.size(); ++c)
       {
-        root[c] = 1 / std::sqrt(volumes[c].shear);
+        double of_nodes = 0;
+        for (unsigned int k = 0; k < volumes[c].row.size(); ++k)
+          {
+            const std::size_t column =
+              std::size_t(volumes[c].numbers[k / dim]) * dim + k % dim;
+            if (!held[column])
+              of_nodes += volumes[c].row[k] * volumes[c].row[k] /
+                          stiffness.diag_element(column);
+          }
+        root[c] =
+          std::sqrt(std::min(1 / volumes[c].shear, of_diagonal * of_nodes));
         of_pressure.add(c,
                         c,
                         1 / (volumes[c].kept + volumes[c].stiffness) +

@@ -26,9 +26,11 @@ namespace limber
   template <int dim>
   NewtonEquations<dim>::NewtonEquations(const RunParts<dim> &parts,
                                         const std::size_t    largest_direct,
-                                        const double         mixed_beyond)
+                                        const double         mixed_beyond,
+                                        const std::size_t    most_factorised)
     : parts(parts)
     , largest_direct(largest_direct)
+    , most_factorised(most_factorised)
     , constraints(parts.problem.sides)
     , nodes(parts)
     , tangent(std::make_unique<NewtonTangent<dim>>(nodes, held))
@@ -338,20 +340,37 @@ namespace limber
                                                 right_side,
                                                 solution);
       }
-    catch (const ComputationError &)
+    catch (const IterationsFailed &failure)
       {
-        if (!is_iterated())
-          return false;
+        failed_iterations = failure.event;
+        too_large         = size() > most_factorised;
+        if (too_large)
+          {
+            why_unsolved =
+              failure.event + ", and " + std::to_string(size()) +
+              " unknowns are too many to factorise (at most " +
+              std::to_string(most_factorised) + ")";
+            return false;
+          }
         factorises_all = true; // from now on
         return solve(unbalanced, of_held, correction);
+      }
+    catch (const ComputationError &)
+      {
+        why_unsolved = "the equations have no unique solution";
+        return false;
       }
     correction.resize(size());
     double all = 0;
     for (std::size_t k = 0; k < size(); ++k)
       {
-        correction[k] = solution[k];
+        // multigrid leaves round-off on what is held, by which Newton's method
+        // would never arrive
+        correction[k] = is_held(k) ? of_held[k] : solution[k];
         all += std::abs(correction[k]);
       }
+    if (!std::isfinite(all))
+      why_unsolved = "the equations have no unique solution";
     return std::isfinite(all);
   }
 

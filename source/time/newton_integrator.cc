@@ -115,6 +115,25 @@ namespace limber
 
   template <int dim>
   std::string
+  NewtonIntegrator<dim>::warning()
+  {
+    if (warned || equations.failure_of_iterations().empty())
+      return "";
+    warned = true;
+    return equations.failure_of_iterations() +
+           (equations.gave_up_iterating() ?
+              ". All " + std::to_string(equations.size()) +
+                " unknowns are factorised from now on, which takes longer." :
+              ". The step was tried again with half the length.") +
+           " Usually Poisson's ratio is close to 0.5 or the body buckles. Set "
+           "'Locking treatment = cell', a shorter 'Method/Time step', or "
+           "coarser 'Grid/Cells'.";
+  }
+
+
+
+  template <int dim>
+  std::string
   NewtonIntegrator<dim>::effort() const
   {
     return "Newton's method: " +
@@ -134,7 +153,8 @@ namespace limber
                       double(std::max(1ul, newton.corrections()))) +
                 " iterations a correction" +
                 (equations.gave_up_iterating() ?
-                   ", until they failed; factorised since" :
+                   ", until " + equations.failure_of_iterations() +
+                     "; factorised since" :
                    "") :
               "");
   }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/time/newton_method.h>
 
@@ -35,6 +36,17 @@ namespace limber
     product(const std::vector<double> &a, const std::vector<double> &b)
     {
       return std::inner_product(a.begin(), a.end(), b.begin(), 0.);
+    }
+
+
+
+    [[noreturn]] void
+    refuse(const std::string &obstacle)
+    {
+      throw ComputationError(
+        "The equations of this step cannot be solved: " + obstacle +
+        ". Usually Poisson's ratio is close to 0.5. Set 'Locking treatment = "
+        "cell', 'Kernel = linear', or coarser 'Grid/Cells'.");
     }
   } // namespace
 
@@ -164,7 +176,10 @@ namespace limber
         clock.lap(NewtonVerb::solve_equations);
         if (!solved)
           {
-            reason = "the equations have no unique solution";
+            // shorter steps have this first correction, too
+            if (equations.is_too_large() && n_iterations == 1)
+              refuse(equations.obstacle());
+            reason = equations.obstacle();
             return false;
           }
         // where forces nearly vanish, round-off of large ones remains
@@ -205,7 +220,9 @@ namespace limber
     for (unsigned int k = 0; k < most_searches; ++k, share /= 2)
       {
         for (std::size_t i = 0; i < start.size(); ++i)
-          displacement[i] = start[i] + share * correction[i];
+          displacement[i] = share == 1 && equations.is_held(i) ?
+                              question.held[i] :
+                              start[i] + share * correction[i];
         rest = unbalance(question, displacement, left);
         if (rest == infinite)
           continue;

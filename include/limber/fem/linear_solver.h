@@ -4,7 +4,10 @@
 
 #include <deal.II/lac/la_parallel_vector.h>
 
+#include <limber/base/exceptions.h>
+
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace dealii
@@ -18,6 +21,23 @@ namespace dealii
 namespace limber
 {
   using NodalVector = dealii::LinearAlgebra::distributed::Vector<double>;
+
+
+
+  /** Iterations have not converged. */
+  class IterationsFailed : public ComputationError
+  {
+  public:
+    /** @p method: of what kind the iterations are, as the subject of a
+     * sentence; @p residual: what is left, as a share of that at the start. */
+    IterationsFailed(const std::string &method,
+                     unsigned int       iterations,
+                     double             residual,
+                     const std::string &what_to_do = "");
+
+    /** "conjugate gradients stopped after 2000 iterations ..." */
+    const std::string event;
+  };
 
 
 
@@ -46,7 +66,8 @@ namespace limber
 
     /**
      * Returns the iterations it took, none by factorisation. Throws
-     * ComputationError where they do not converge.
+     * IterationsFailed where they do not converge, ComputationError where the
+     * matrix is singular.
      */
     unsigned int
     solve(NodalVector &solution, const NodalVector &right_side);

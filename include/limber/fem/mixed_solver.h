@@ -50,7 +50,7 @@ namespace limber
 
     /**
      * The displacements u for the right sides f and g. Returns the iterations
-     * it took; throws ComputationError where they do not converge.
+     * it took; throws IterationsFailed where they do not converge.
      */
     unsigned int
     solve(NodalVector               &solution,

@@ -74,7 +74,8 @@ namespace limber
     make_solver(const dealii::TrilinosWrappers::SparseMatrix &stiffness,
                 const std::vector<double>                    &motions);
     void
-    fill_pressure_matrix();
+    fill_pressure_matrix(
+      const dealii::TrilinosWrappers::SparseMatrix &stiffness);
 
     const NumberedNodes<dim>         &nodes;
     const std::vector<unsigned char> &held;

@@ -42,11 +42,13 @@ namespace limber
      * conjugate gradients, or where a body has averaged volumes and a bulk
      * modulus of @p mixed_beyond shear moduli and more, with linear functions,
      * in mixed form with minimal residuals; unless the tangent is not
-     * symmetric.
+     * symmetric. Where iterations fail, up to @p most_factorised unknowns are
+     * factorised instead, from then on.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
-                             std::size_t largest_direct = default_direct,
-                             double      mixed_beyond   = default_mixed);
+                             std::size_t largest_direct  = default_direct,
+                             double      mixed_beyond    = default_mixed,
+                             std::size_t most_factorised = default_most);
     ~NewtonEquations();
 
     /**
@@ -131,12 +133,36 @@ namespace limber
 
     /**
      * The correction of displacements by the last tangent, with held
-     * components corrected by @p of_held. False where there is no solution.
+     * components corrected by @p of_held, to the last bit. False where there is
+     * none, with an obstacle().
      */
     bool
     solve(const std::vector<double> &unbalanced,
           const std::vector<double> &of_held,
           std::vector<double>       &correction);
+
+    /** Why solve() found nothing. */
+    const std::string &
+    obstacle() const
+    {
+      return why_unsolved;
+    }
+
+    /** Iterations have failed last time, and there are too many unknowns to
+     * factorise. */
+    bool
+    is_too_large() const
+    {
+      return too_large;
+    }
+
+    /** What iterations failed with, as the subject and verb of a sentence;
+     * empty as long as they did not. */
+    const std::string &
+    failure_of_iterations() const
+    {
+      return failed_iterations;
+    }
 
     /** Of conjugate gradients or minimal residuals, in all. */
     unsigned long
@@ -165,7 +191,9 @@ namespace limber
 
   private:
     // faster than iterations up to here
-    static constexpr std::size_t default_direct = dim == 2 ? 60000 : 12000;
+    static constexpr std::size_t default_direct = dim == 2 ? 60000 : 3000;
+    // takes minutes and some gigabytes beyond
+    static constexpr std::size_t default_most = dim == 2 ? 400000 : 30000;
     // less work than conjugate gradients from here on: nu = .475
     static constexpr double default_mixed = 20;
 
@@ -193,7 +221,7 @@ namespace limber
            std::vector<double>       &on_grid) const;
 
     const RunParts<dim>                                  parts;
-    const std::size_t                                    largest_direct;
+    const std::size_t largest_direct, most_factorised;
     bool                                                 mixed = false;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
@@ -210,6 +238,8 @@ namespace limber
     bool                                        is_factorised       = false;
     unsigned long                               n_linear_iterations = 0;
     bool                                        factorises_all      = false;
+    bool                                        too_large           = false;
+    std::string why_unsolved, failed_iterations;
   };
 } // namespace limber
 

@@ -73,6 +73,8 @@ namespace limber
     std::vector<std::pair<std::string, double>>
     verb_seconds() const override;
     std::string
+    warning() override;
+    std::string
     effort() const override;
 
   private:
@@ -127,6 +129,7 @@ namespace limber
     std::string   obstacle;               // why the last step failed
     unsigned long steps = 0, iterations = 0, halvings = 0;
     unsigned long most_iterations = 0;
+    bool          warned = false; // that iterations have failed
   };
 } // namespace limber
 
