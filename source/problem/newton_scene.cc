@@ -168,12 +168,6 @@ namespace limber
                "where a side holds or does not",
                "'" + std::string(side_names(dim)[side]) + " = slip'");
     const Section loads = root.subsection("Loads");
-    for (const FaceLoad<dim> &load : problem.loads.faces)
-      if (load.is_pressure)
-        refuse(loads.subsection("Face load " + load.name),
-               "Pressure",
-               "which has no tangent of loads that follow the surface",
-               "'Traction' instead");
     if (problem.method.integration != TimeIntegration::quasi_static &&
         !problem.loads.factor.empty())
       refuse(loads,

@@ -20,23 +20,22 @@ namespace limber
 
 
 
-    /**
-     * Takes a short vector at a point to what the gradients of the functions
-     * have to meet: itself, or F^-1 of it in the initial frame.
-     */
-    template <int dim>
-    dealii::Tensor<2, dim>
-    pull_back(const PointView<dim> &points, const std::size_t p)
-    {
-      dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
-      if (!points.in_initial_frame())
-        return F;
-      for (int d = 0; d < dim; ++d)
-        for (int e = 0; e < dim; ++e)
-          F[d][e] = points.deformation[d * dim + e][p];
-      return invert(F);
-    }
   } // namespace
+
+
+
+  template <int dim>
+  dealii::Tensor<2, dim>
+  pull_back(const PointView<dim> &points, const std::size_t p)
+  {
+    dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
+    if (!points.in_initial_frame())
+      return F;
+    for (int d = 0; d < dim; ++d)
+      for (int e = 0; e < dim; ++e)
+        F[d][e] = points.deformation[d * dim + e][p];
+    return invert(F);
+  }
 
 
 
@@ -229,7 +228,9 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::add(NodalFields<dim> &nodes, const double time)
+  ExternalLoads<dim>::add(NodalFields<dim> &nodes,
+                          const double      time,
+                          const bool        pressures)
   {
     for (LazyArray<double> &of_nodes : forces)
       for (const std::uint32_t node : nodes.active_nodes())
@@ -239,7 +240,8 @@ namespace limber
       for (const auto &body : bodies)
         add_body_force(*body, time);
     for (LoadedFace<dim> &face : faces)
-      add_face_load(face, time);
+      if (pressures || !face.load.is_pressure)
+        add_face_load(face, time);
 
     for (unsigned int field = 0; field < forces.size(); ++field)
       {
@@ -288,6 +290,10 @@ namespace limber
 
 
 
+  template dealii::Tensor<2, 2>
+  pull_back(const PointView<2> &, std::size_t);
+  template dealii::Tensor<2, 3>
+  pull_back(const PointView<3> &, std::size_t);
   template class ExternalLoads<2>;
   template class ExternalLoads<3>;
 } // namespace limber

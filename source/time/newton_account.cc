@@ -18,13 +18,14 @@ namespace limber
 
 
   // Forces on the nodes at a time, N; @p given are those of them that are not
-  // the weight, with what holds part of it while the load grows.
+  // the weight, with what holds part of it while the load grows. Pressures are
+  // not among them (FollowerPressure).
   template <int dim>
   typename NewtonIntegrator<dim>::Values
   NewtonIntegrator<dim>::loads_at(const double time, Values *const given)
   {
     if (loads.any())
-      loads.add(parts.nodes, time);
+      loads.add(parts.nodes, time, false);
     const double              factor = load_factor(time);
     const NumberedNodes<dim> &nodes  = equations.numbered_nodes();
     Values                    result(equations.size());

@@ -73,6 +73,9 @@ namespace limber
     solver.reset();
     tangent->reinit(ghost);
     total_forces.assign(size(), 0.);
+    forces_of_pressures.assign(size(), 0.);
+    if (pressures != nullptr)
+      pressures->find();
     noise = 1e-14 * modulus() * std::pow(parts.grid.smallest_edge, dim - 1) *
             std::sqrt(double(size()));
   }
@@ -226,6 +229,20 @@ namespace limber
       return false;
     nodes.sum(total_forces);
     nodes.sum(&total_energy, 1);
+    if (pressures != nullptr && pressures->any())
+      {
+        std::fill(forces_of_pressures.begin(), forces_of_pressures.end(), 0.);
+        pressures->add_forces(displacement, forces_of_pressures);
+        nodes.sum(forces_of_pressures);
+        if (inertia != nullptr)
+          pressures->add_tangent(displacement,
+                                 is_iterated(),
+                                 [&](const std::uint32_t *const numbers,
+                                     const unsigned int         n_nodes,
+                                     const double *const        block) {
+                                   tangent->add(numbers, n_nodes, block);
+                                 });
+      }
     if (inertia != nullptr)
       {
         tangent->sum_over_ranks(parts.grid.communicator);

@@ -31,12 +31,14 @@ namespace limber
     , loads(parts.problem, parts.grid, parts.bodies)
     , relocation(parts, loads)
     , equations(parts)
+    , pressures(parts, equations.numbered_nodes(), loads)
     , newton(equations, parts.problem.method.newton_tolerance, clock)
     , longest(parts.problem.method.time_step > 0 ?
                 parts.problem.method.time_step :
                 share_of_run * parts.problem.end_time)
     , next_step(longest)
   {
+    equations.set_pressures(&pressures);
     relocation.reinit();
     measure_waves();
   }
@@ -280,10 +282,16 @@ namespace limber
 
     // The forces of the beginning, at the present places
     Values displacement(equations.size());
+    pressures.set(time, load_factor(time));
     equations.evaluate(displacement, nullptr);
-    Values net(equations.size()); // as they would accelerate
+    const Values former_pressure = equations.pressure_forces();
+    Values       net(equations.size()); // as they would accelerate
     for (std::size_t k = 0; k < equations.size(); ++k)
-      net[k] = former_loads[k] - equations.forces()[k];
+      net[k] = former_loads[k] + former_pressure[k] - equations.forces()[k];
+    pressures.set(time + step, load_factor(time + step));
+    question.pressure_at_rest.assign(equations.size(), 0.);
+    pressures.add_forces(displacement, question.pressure_at_rest);
+    equations.numbered_nodes().sum(question.pressure_at_rest);
 
     question.inertia.assign(equations.size(), 0.);
     question.inertial_displacement.assign(equations.size(), 0.);
@@ -304,6 +312,14 @@ namespace limber
       }
     if (!stays_with_ranks(displacement))
       return false;
+
+    // Pressures are known now; to the account they are loads like others.
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      {
+        question.external[k] += equations.pressure_forces()[k];
+        given[k] +=
+          0.5 * (former_pressure[k] + equations.pressure_forces()[k]);
+      }
 
     // v1 = v0 + 2 (u / dt - v0); sides say how fast they are at the end
     Values new_velocity(equations.size());

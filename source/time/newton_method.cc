@@ -102,13 +102,15 @@ namespace limber
           (displacement[k] - question.inertial_displacement[k]);
         left[k] = equations.is_held(k) ?
                     0 :
-                    question.external[k] - equations.forces()[k] - inertia;
+                    question.external[k] + equations.pressure_forces()[k] -
+                      equations.forces()[k] - inertia;
         of_inertia += inertia * inertia;
         const double momentum =
           question.inertia[k] * question.inertial_displacement[k];
         of_momentum += momentum * momentum;
       }
     const double scale = std::max({norm(question.external),
+                                   norm(equations.pressure_forces()),
                                    norm(equations.forces()),
                                    std::sqrt(of_inertia),
                                    known_share * std::sqrt(of_momentum),
@@ -118,14 +120,17 @@ namespace limber
 
 
 
-  // Whose derivative is the unbalance
+  // Whose derivative is the unbalance, but for the work of follower pressures,
+  // which is that of the mean of their forces before and after.
   template <int dim>
   double
   NewtonMethod<dim>::potential(const StepQuestion &question,
                                const Values       &displacement) const
   {
     double result =
-      equations.energy() - product(question.external, displacement);
+      equations.energy() - product(question.external, displacement) -
+      0.5 * (product(question.pressure_at_rest, displacement) +
+             product(equations.pressure_forces(), displacement));
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const double way = displacement[k] - question.inertial_displacement[k];

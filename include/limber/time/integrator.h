@@ -129,6 +129,10 @@ namespace limber
     virtual std::vector<std::pair<std::string, double>>
     verb_seconds() const = 0;
 
+    /** A line for the end of a run about work that varies; may be empty. */
+    virtual std::string
+    effort() const = 0;
+
     /** What happened in the last step that a user should know; said once,
      * empty otherwise. */
     virtual std::string
@@ -136,10 +140,6 @@ namespace limber
     {
       return "";
     }
-
-    /** A line for the end of a run about work that varies; may be empty. */
-    virtual std::string
-    effort() const = 0;
   };
 
 

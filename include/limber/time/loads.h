@@ -9,6 +9,16 @@
 namespace limber
 {
   /**
+   * Takes a short vector at a point to what the gradients of the functions
+   * have to meet: itself, or F^-1 of it in the initial frame.
+   */
+  template <int dim>
+  dealii::Tensor<2, dim>
+  pull_back(const PointView<dim> &points, std::size_t p);
+
+
+
+  /**
    * Body force formulas, loads on faces and surfaces of bodies, and what
    * gravity does where unequal cells meet (HydrostaticLoad). Their
    * forces are kept apart from the internal ones so that their work is known;
@@ -41,9 +51,10 @@ namespace limber
     void
     look_at_cells(const NodalFields<dim> &nodes);
 
-    /** Add the forces at @p time to those of active nodes; collective. */
+    /** Add the forces at @p time to those of active nodes, on request without
+     * the pressures (FollowerPressure); collective. */
     void
-    add(NodalFields<dim> &nodes, double time);
+    add(NodalFields<dim> &nodes, double time, bool pressures = true);
 
     /**
      * Deform the pieces of faces as the points around them are strained, while
@@ -69,6 +80,13 @@ namespace limber
     /** The sum of the forces on a node of a field, of the last add(), N. */
     dealii::Tensor<1, dim>
     on_node(unsigned int field, std::uint32_t node) const;
+
+    /** In the order of the scene. */
+    std::vector<LoadedFace<dim>> &
+    loaded_faces()
+    {
+      return faces;
+    }
 
   private:
     void

@@ -5,6 +5,7 @@
 #include <limber/fem/linear_solver.h>
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
+#include <limber/time/follower_pressure.h>
 #include <limber/time/ghost_penalty.h>
 
 #include <memory>
@@ -50,6 +51,13 @@ namespace limber
                              double      mixed_beyond    = default_mixed,
                              std::size_t most_factorised = default_most);
     ~NewtonEquations();
+
+    /** Pressures that evaluate() takes account of; those of the caller. */
+    void
+    set_pressures(FollowerPressure<dim> *const of_scene)
+    {
+      pressures = of_scene;
+    }
 
     /**
      * Number the nodes of the cells that hold points, and find which components
@@ -129,6 +137,13 @@ namespace limber
     forces() const
     {
       return total_forces;
+    }
+
+    /** Of follower pressures at the last displacement, N; zero without any. */
+    const std::vector<double> &
+    pressure_forces() const
+    {
+      return forces_of_pressures;
     }
 
     /**
@@ -229,7 +244,8 @@ namespace limber
     std::vector<unsigned char> held, side_of; // by equation
     GhostPenalty<dim>          ghost;
     std::vector<double>        by_node, former_by_node; // displacements, m
-    std::vector<double>        total_forces;
+    std::vector<double>        total_forces, forces_of_pressures;
+    FollowerPressure<dim>     *pressures = nullptr; // or none
     double                     total_energy = 0, energy_of_jumps = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;

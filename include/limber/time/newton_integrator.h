@@ -115,6 +115,7 @@ namespace limber
     ExternalLoads<dim>   loads;
     Relocation<dim>      relocation;
     NewtonEquations<dim> equations;
+    FollowerPressure<dim> pressures;
     NewtonClock          clock;
     NewtonMethod<dim>    newton;
 

@@ -24,8 +24,9 @@ namespace
     FirstCorrection(const RunParts<dim> &parts,
                     const double         inertia,
                     const std::size_t    largest_direct,
-                    const double         mixed_beyond)
-      : equations(parts, largest_direct, mixed_beyond)
+                    const double         mixed_beyond,
+                    const std::size_t    most_factorised = 1u << 30)
+      : equations(parts, largest_direct, mixed_beyond, most_factorised)
     {
       equations.begin_step();
       const std::vector<double> none(equations.size()),
@@ -260,6 +261,119 @@ TEST(NewtonSolvers, MixedFormInSpace)
         mixed(parts, 0., 0, 0.);
       expect_alike(factorised, mixed, "in space", 60);
     }
+}
+
+
+
+// A sphere with a hole cuts its cells anywhere, and three planes of symmetry
+// hold it. Iterations by grid and Poisson's ratio are in
+// doc/theory/implicit_steps.md.
+TEST(NewtonSolvers, CutCellsOfAShell)
+{
+  struct Case
+  {
+    double       nu;
+    int          cells;
+    unsigned int most_iterations;
+  };
+  for (const Case &solved : {Case{0.3, 9, 25},
+                             Case{0.499, 9, 80},
+                             Case{0.4999, 9, 80},
+                             Case{0.3, 18, 25},
+                             Case{0.499, 18, 100}})
+    {
+      const std::string n = std::to_string(solved.cells);
+      SceneRun<3>       run(R"(
+        set Dimension = 3
+        set End time = 1
+        set Bodies = shell
+        subsection Body shell
+          set Shape = formula
+          subsection Formula
+            set Inside = (x^2 + y^2 + z^2 - 1)*(4 - x^2 - y^2 - z^2)
+          end
+          set Points per cell edge = 2
+          set Placement = cut
+          set Locking treatment = cell
+          set Material = linear elastic
+          subsection Linear elastic
+            set Density = 1
+            set Young's modulus = 1000
+            set Poisson's ratio = )" +
+                        digits(solved.nu) + R"(
+          end
+        end
+        subsection Grid
+          set Upper corner = 2, 2, 2
+          set Cells = )" +
+                        n + ", " + n + ", " + n + R"(
+        end
+        subsection Boundaries
+          set right = free
+          set top = free
+          set front = free
+        end
+        subsection Method
+          set Time integration = quasi-static
+        end)");
+      const RunParts<3> parts{
+        run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+      const FirstCorrection iterated(parts, 0., 0, 20.);
+      if (solved.cells == 9)
+        {
+          const FirstCorrection factorised(parts, 0., 1u << 30, 20.);
+          expect_alike(factorised,
+                       iterated,
+                       "of a shell",
+                       solved.most_iterations);
+        }
+      ASSERT_TRUE(iterated.solved);
+      std::printf("shell, nu %g, %zu unknowns: %lu iterations\n",
+                  solved.nu,
+                  iterated.values.size(),
+                  iterated.equations.linear_iterations());
+      EXPECT_LE(iterated.equations.linear_iterations(), solved.most_iterations);
+      // to the last bit, or Newton's method never arrives
+      for (std::size_t k = 0; k < iterated.values.size(); ++k)
+        if (iterated.equations.is_held(k))
+          {
+            ASSERT_EQ(iterated.values[k], 0.);
+          }
+    }
+}
+
+
+
+// Iterations that fail say so, and a factorisation replaces them up to a
+// number of unknowns.
+TEST(NewtonSolvers, FailedIterationsAreTold)
+{
+  SceneRun<2>       run(held_strip,
+                  {"Method/Time integration=quasi-static",
+                         "Body strip/Frame=current",
+                         "Body strip/Locking treatment=cell",
+                         "Body strip/Neo hookean/Poisson's ratio=0.4999999",
+                         "Grid/Cells=80, 40"});
+  const RunParts<2> parts{
+    run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  const double               never = 1e300;
+  const FirstCorrection      factorised(parts, 0., 1u << 30, never);
+  const FirstCorrection      replaced(parts, 0., 0, never);
+  const FirstCorrection      refused(parts, 0., 0, never, 100);
+  const NewtonEquations<2>  &of_refused = refused.equations;
+  ASSERT_TRUE(factorised.solved && replaced.solved);
+  EXPECT_TRUE(factorised.equations.failure_of_iterations().empty());
+  EXPECT_TRUE(replaced.equations.gave_up_iterating());
+  EXPECT_EQ(replaced.equations.failure_of_iterations().find(
+              "conjugate gradients stopped after 2000 iterations"),
+            0u);
+  EXPECT_LT(difference(factorised.values, replaced.values), 1e-6);
+  EXPECT_FALSE(refused.solved);
+  EXPECT_FALSE(of_refused.gave_up_iterating());
+  EXPECT_TRUE(of_refused.is_too_large());
+  EXPECT_NE(of_refused.obstacle().find("too many to factorise (at most 100)"),
+            std::string::npos)
+    << of_refused.obstacle();
 }
 
 
