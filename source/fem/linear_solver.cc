@@ -10,8 +10,7 @@ namespace limber
 {
   namespace
   {
-    constexpr unsigned int most_cg_iterations = 2000;
-    constexpr double       cg_accuracy        = 1e-10; // relative residual
+    constexpr double cg_accuracy = 1e-10; // relative residual
 
 
 
@@ -62,11 +61,13 @@ namespace limber
 
   LinearSolver::LinearSolver(const bool                 direct,
                              const unsigned int         dim,
-                             const std::vector<double> &rigid_motions)
+                             const std::vector<double> &rigid_motions,
+                             const unsigned int         most_iterations)
     : direct(direct)
     , dim(dim)
     , rigid_motions(rigid_motions)
     , methods(std::make_unique<Methods>())
+    , most_iterations(most_iterations)
   {}
 
 
@@ -120,7 +121,7 @@ namespace limber
         return 0;
       }
     const double          size = right_side.l2_norm();
-    dealii::SolverControl control(most_cg_iterations, cg_accuracy * size);
+    dealii::SolverControl control(most_iterations, cg_accuracy * size);
     solution = 0;
     if (size == 0)
       return 0;

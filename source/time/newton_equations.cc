@@ -27,7 +27,8 @@ namespace limber
   NewtonEquations<dim>::NewtonEquations(const RunParts<dim> &parts,
                                         const std::size_t    largest_direct,
                                         const double         mixed_beyond,
-                                        const std::size_t    most_factorised)
+                                        const std::size_t    most_factorised,
+                                        const unsigned int   most_iterations)
     : parts(parts)
     , largest_direct(largest_direct)
     , most_factorised(most_factorised)
@@ -35,6 +36,7 @@ namespace limber
     , nodes(parts)
     , tangent(std::make_unique<NewtonTangent<dim>>(nodes, held))
     , volumes(std::make_unique<AveragedVolumes<dim>>(nodes, held))
+    , most_iterations(most_iterations)
   {
     for (const auto &body : parts.bodies)
       {
@@ -401,7 +403,10 @@ namespace limber
     if (!solver || solver->direct == is_iterated())
       {
         is_factorised = false;
-        solver.emplace(!is_iterated(), dim, rigid_motions());
+        solver.emplace(!is_iterated(),
+                       dim,
+                       rigid_motions(),
+                       most_iterations);
       }
     if (!is_factorised)
       solver->set_matrix(tangent->values());

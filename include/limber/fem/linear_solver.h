@@ -53,10 +53,12 @@ namespace limber
     /**
      * @p rigid_motions: values of each motion on the locally owned degrees
      * of freedom, one motion after the other; @p dim: components of a node.
+     * Iterations have failed where they do not converge in @p most_iterations.
      */
     LinearSolver(const bool                 direct,
                  const unsigned int         dim,
-                 const std::vector<double> &rigid_motions);
+                 const std::vector<double> &rigid_motions,
+                 const unsigned int         most_iterations = 2000);
 
     ~LinearSolver();
 
@@ -80,6 +82,7 @@ namespace limber
     const unsigned int        dim;
     const std::vector<double> rigid_motions;
     std::unique_ptr<Methods>  methods;
+    const unsigned int        most_iterations;
   };
 } // namespace limber
 

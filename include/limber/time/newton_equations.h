@@ -43,13 +43,15 @@ namespace limber
      * conjugate gradients, or where a body has averaged volumes and a bulk
      * modulus of @p mixed_beyond shear moduli and more, with linear functions,
      * in mixed form with minimal residuals; unless the tangent is not
-     * symmetric. Where iterations fail, up to @p most_factorised unknowns are
+     * symmetric. Where conjugate gradients take more than @p most_iterations,
+     * or minimal residuals fail, up to @p most_factorised unknowns are
      * factorised instead, from then on.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
                              std::size_t largest_direct  = default_direct,
                              double      mixed_beyond    = default_mixed,
-                             std::size_t most_factorised = default_most);
+                             std::size_t most_factorised = default_most,
+                             unsigned int most_iterations = 2000);
     ~NewtonEquations();
 
     /** Pressures that evaluate() takes account of; those of the caller. */
@@ -256,6 +258,7 @@ namespace limber
     bool                                        factorises_all      = false;
     bool                                        too_large           = false;
     std::string why_unsolved, failed_iterations;
+    const unsigned int most_iterations;
   };
 } // namespace limber
 
