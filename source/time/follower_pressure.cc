@@ -93,8 +93,7 @@ namespace limber
   FollowerPressure<dim>::pressure(const Piece          &piece,
                                   const FacePiece<dim> &at) const
   {
-    return factor *
-           piece.load->formula.value(dealii::Point<dim>(at.arm), time);
+    return factor * piece.load->formula.value(dealii::Point<dim>(at.arm), time);
   }
 
 

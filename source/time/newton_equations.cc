@@ -365,10 +365,9 @@ namespace limber
         too_large         = size() > most_factorised;
         if (too_large)
           {
-            why_unsolved =
-              failure.event + ", and " + std::to_string(size()) +
-              " unknowns are too many to factorise (at most " +
-              std::to_string(most_factorised) + ")";
+            why_unsolved = failure.event + ", and " + std::to_string(size()) +
+                           " unknowns are too many to factorise (at most " +
+                           std::to_string(most_factorised) + ")";
             return false;
           }
         factorises_all = true; // from now on
@@ -403,10 +402,7 @@ namespace limber
     if (!solver || solver->direct == is_iterated())
       {
         is_factorised = false;
-        solver.emplace(!is_iterated(),
-                       dim,
-                       rigid_motions(),
-                       most_iterations);
+        solver.emplace(!is_iterated(), dim, rigid_motions(), most_iterations);
       }
     if (!is_factorised)
       solver->set_matrix(tangent->values());

@@ -317,8 +317,7 @@ namespace limber
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         question.external[k] += equations.pressure_forces()[k];
-        given[k] +=
-          0.5 * (former_pressure[k] + equations.pressure_forces()[k]);
+        given[k] += 0.5 * (former_pressure[k] + equations.pressure_forces()[k]);
       }
 
     // v1 = v0 + 2 (u / dt - v0); sides say how fast they are at the end

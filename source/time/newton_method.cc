@@ -127,10 +127,10 @@ namespace limber
   NewtonMethod<dim>::potential(const StepQuestion &question,
                                const Values       &displacement) const
   {
-    double result =
-      equations.energy() - product(question.external, displacement) -
-      0.5 * (product(question.pressure_at_rest, displacement) +
-             product(equations.pressure_forces(), displacement));
+    double result = equations.energy() -
+                    product(question.external, displacement) -
+                    0.5 * (product(question.pressure_at_rest, displacement) +
+                           product(equations.pressure_forces(), displacement));
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const double way = displacement[k] - question.inertial_displacement[k];

@@ -20,8 +20,8 @@ namespace limber
    *   a = a + sum_i u_i (a . grad N_i),
    *
    * and gives the nodes the forces - p(x, t) w_i n da, where n da is the cross
-   * product of the edges (ExternalLoads, whose pieces these are). r and a of the
-   * start of the step are pulled back where gradients are those of initial
+   * product of the edges (ExternalLoads, whose pieces these are). r and a of
+   * the start of the step are pulled back where gradients are those of initial
    * places.
    */
   template <int dim>
@@ -87,8 +87,7 @@ namespace limber
     };
 
     FacePiece<dim>
-    moved(const Piece               &piece,
-          const std::vector<double> &displacement) const;
+    moved(const Piece &piece, const std::vector<double> &displacement) const;
     double
     pressure(const Piece &piece, const FacePiece<dim> &at) const;
 

@@ -48,9 +48,9 @@ namespace limber
      * factorised instead, from then on.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
-                             std::size_t largest_direct  = default_direct,
-                             double      mixed_beyond    = default_mixed,
-                             std::size_t most_factorised = default_most,
+                             std::size_t  largest_direct  = default_direct,
+                             double       mixed_beyond    = default_mixed,
+                             std::size_t  most_factorised = default_most,
                              unsigned int most_iterations = 2000);
     ~NewtonEquations();
 
@@ -237,9 +237,9 @@ namespace limber
     spread(const std::vector<double> &displacement,
            std::vector<double>       &on_grid) const;
 
-    const RunParts<dim>                                  parts;
-    const std::size_t largest_direct, most_factorised;
-    bool                                                 mixed = false;
+    const RunParts<dim> parts;
+    const std::size_t   largest_direct, most_factorised;
+    bool                mixed = false;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
     NumberedNodes<dim>                                   nodes;
@@ -247,7 +247,7 @@ namespace limber
     GhostPenalty<dim>          ghost;
     std::vector<double>        by_node, former_by_node; // displacements, m
     std::vector<double>        total_forces, forces_of_pressures;
-    FollowerPressure<dim>     *pressures = nullptr; // or none
+    FollowerPressure<dim>     *pressures    = nullptr; // or none
     double                     total_energy = 0, energy_of_jumps = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;
@@ -257,8 +257,8 @@ namespace limber
     unsigned long                               n_linear_iterations = 0;
     bool                                        factorises_all      = false;
     bool                                        too_large           = false;
-    std::string why_unsolved, failed_iterations;
-    const unsigned int most_iterations;
+    std::string                                 why_unsolved, failed_iterations;
+    const unsigned int                          most_iterations;
   };
 } // namespace limber
 

@@ -110,14 +110,14 @@ namespace limber
     [[noreturn]] void
     fail(double time, double step) const;
 
-    const RunParts<dim>  parts;
-    const bool           in_motion; // has inertia
-    ExternalLoads<dim>   loads;
-    Relocation<dim>      relocation;
-    NewtonEquations<dim> equations;
+    const RunParts<dim>   parts;
+    const bool            in_motion; // has inertia
+    ExternalLoads<dim>    loads;
+    Relocation<dim>       relocation;
+    NewtonEquations<dim>  equations;
     FollowerPressure<dim> pressures;
-    NewtonClock          clock;
-    NewtonMethod<dim>    newton;
+    NewtonClock           clock;
+    NewtonMethod<dim>     newton;
 
     Values masses, velocities; // of the nodes of the step, kg, m/s
 
@@ -130,7 +130,7 @@ namespace limber
     std::string   obstacle;               // why the last step failed
     unsigned long steps = 0, iterations = 0, halvings = 0;
     unsigned long most_iterations = 0;
-    bool          warned = false; // that iterations have failed
+    bool          warned          = false; // that iterations have failed
   };
 } // namespace limber
 

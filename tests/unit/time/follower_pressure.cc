@@ -68,7 +68,8 @@ namespace
       end
       subsection Method
         set Kernel = linear
-        )" + method +
+        )" +
+           method +
            R"(
       end)";
   }
@@ -150,7 +151,8 @@ namespace
     for (std::size_t k = 0; k < n; ++k)
       EXPECT_NEAR(at_rest[k],
                   2 * loads.on_node(
-                        0, equations.numbered_nodes().on_grid()[k / dim])[k % dim],
+                        0,
+                        equations.numbered_nodes().on_grid()[k / dim])[k % dim],
                   1e-10 * size);
   }
 } // namespace

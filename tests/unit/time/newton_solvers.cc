@@ -305,13 +305,13 @@ TEST(NewtonSolvers, CutCellsOfAShell)
             set Density = 1
             set Young's modulus = 1000
             set Poisson's ratio = )" +
-                        digits(solved.nu) + R"(
+                      digits(solved.nu) + R"(
           end
         end
         subsection Grid
           set Upper corner = 2, 2, 2
           set Cells = )" +
-                        n + ", " + n + ", " + n + R"(
+                      n + ", " + n + ", " + n + R"(
         end
         subsection Boundaries
           set right = free
