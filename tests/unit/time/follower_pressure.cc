@@ -30,7 +30,7 @@ namespace
         set Shape = formula
         subsection Formula
           set Inside = ()" +
-           square + " - 1)*(4 - " + square + R"()
+           square + " - 1)*(4 - (" + square + R"())
         end
         set Points per cell edge = 2
         set Placement = cut

@@ -356,7 +356,8 @@ TEST(NewtonSolvers, FailedIterationsAreTold)
   SceneRun<2>       run(held_strip,
                   {"Method/Time integration=quasi-static",
                          "Body strip/Frame=current",
-                         "Body strip/Locking treatment=cell"});
+                         "Body strip/Locking treatment=cell",
+                         "Grid/Cells=40, 20"});
   const RunParts<2> parts{
     run.problem, run.grid, run.nodes, run.bodies, run.ledger};
   const double          never = 1e300;
