@@ -354,12 +354,43 @@ namespace limber
 
 
 
+    /** The pressure on obstacles is implicit for liquids that slide on them,
+     * over cells of one size. */
+    template <int dim>
+    void
+    check_implicit_pressure(const Section &root, const Problem<dim> &problem)
+    {
+      const auto refuse = [&](const std::string &cause,
+                              const std::string &remedy) {
+        const Section method = root.subsection("Method");
+        throw InputError("Obstacles with " +
+                         in_quotes(method.text("Time integration")) + " in " +
+                         method.where("Time integration") + " do not go with " +
+                         cause + " yet. Set " + remedy +
+                         ", or 'Time integration = explicit'.");
+      };
+      for (const Body<dim> &body : problem.bodies)
+        if (!body.is_liquid)
+          refuse("the solid " + in_quotes(body.name),
+                 "'newtonian fluid' for it");
+      if (problem.grid.levels > 0)
+        refuse("cells of several sizes", "'Grid/Levels = 0'");
+      for (const Obstacle<dim> &obstacle : problem.obstacles)
+        if (obstacle.friction > 0)
+          refuse("friction on obstacle " + in_quotes(obstacle.name),
+                 "'Law = slip'");
+    }
+
+
+
     template <int dim>
     void
     check_method_of_obstacles(const Section &root, const Problem<dim> &problem)
     {
       const Section method = root.subsection("Method");
-      if (problem.method.integration != TimeIntegration::explicit_steps)
+      if (problem.method.integration == TimeIntegration::semi_implicit)
+        check_implicit_pressure(root, problem);
+      else if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse_with_obstacles(method,
                               "Time integration",
                               "'Time integration = explicit'");

@@ -121,8 +121,14 @@ namespace limber
         return "cells have several sizes";
       if (!root.subsection("Contact").list("Pairs").empty())
         return "bodies touch by 'Contact/Pairs'";
-      if (!root.list("Obstacles").empty())
-        return "the scene has obstacles";
+      for (const std::string &name : root.list("Obstacles"))
+        if (root.subsection("Obstacle " + name).text("Law") != "slip")
+          return "liquids do not slide on obstacle " + in_quotes(name);
+      if (!root.list("Obstacles").empty() &&
+          !std::all_of(problem.bodies.begin(),
+                       problem.bodies.end(),
+                       [](const auto &body) { return body.is_liquid; }))
+        return "solids may meet obstacles";
       if (problem.method.order != StressUpdateOrder::automatic &&
           problem.method.order != StressUpdateOrder::usl)
         return "the stress update is neither 'auto' nor 'usl'";

@@ -310,7 +310,8 @@ namespace limber
         CellPressures pressures;
         if (body->implicit)
           pressures = body->implicit->view(description.is_liquid,
-                                           description.cuts_tension);
+                                           description.cuts_tension ||
+                                             !parts.problem.obstacles.empty());
         what.implicit = body->implicit ? &pressures : nullptr;
         what.remapped =
           remapped && !(body->implicit && !body->implicit->is_whole);

@@ -82,7 +82,7 @@ namespace limber
     heeded.clear();
     held.clear();
     held_components.clear();
-    any_place = holds_before = false;
+    any_place = holds_before = gives_some = false;
   }
 
 
@@ -455,8 +455,9 @@ namespace limber
             const Vector wanted =
               place.impulse + place.relaxation * (place.least * place.normal -
                                                   vector_at(relative, p));
-            const double pressing = wanted * place.normal;
-            Vector       impulse;
+            const double pressing =
+              (place.is_given ? place.impulse : wanted) * place.normal;
+            Vector impulse;
             place.sticks = false;
             if (pressing > 0)
               {
@@ -526,7 +527,8 @@ namespace limber
     find_relative(false, Seen::velocity);
     for (std::size_t p = 0; p < places.size(); ++p)
       places[p].brought = vector_at(relative, p) - places[p].increase;
-    if (holds_before)
+    const bool starts = holds_before || gives_some;
+    if (starts)
       {
         for (std::size_t p = 0; p < places.size(); ++p)
           {
@@ -535,7 +537,7 @@ namespace limber
           }
         give_impulses();
       }
-    press(!holds_before && held.empty());
+    press(!starts && held.empty());
     for (std::size_t i = 0; i < seen.size(); ++i)
       {
         double *const        new_velocity = seen[i].record + Layout::velocity,

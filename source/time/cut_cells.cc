@@ -17,6 +17,10 @@ namespace limber
     // degrees.
     constexpr double least_cosine = 0.995;
 
+    // Share of a cell below which it counts as closed, where the pressure is
+    // implicit
+    constexpr double least_of_implicit = 0.01;
+
     // Parts of a cell along an edge, and what of a part is nothing
     template <int dim>
     constexpr unsigned int n_parts = dim == 2 ? 4 : 2;
@@ -107,6 +111,8 @@ namespace limber
     , moves(std::any_of(parts.problem.obstacles.begin(),
                         parts.problem.obstacles.end(),
                         [](const auto &obstacle) { return obstacle.moves(); }))
+    , is_implicit(parts.problem.method.integration ==
+                  TimeIntegration::semi_implicit)
   {
     for (const auto &body : parts.bodies)
       if (body->description.is_liquid)
@@ -115,7 +121,9 @@ namespace limber
       if (body->description.is_liquid &&
           body->stress->treatment().kind != Treatment::cell)
         knowing[body->description.nodal_field] = false;
-    least_share = std::max(0.15, courant_number() * courant_number() / 4);
+    least_share = is_implicit ?
+                    least_of_implicit :
+                    std::max(0.15, courant_number() * courant_number() / 4);
     reinit(0);
   }
 
@@ -331,13 +339,18 @@ namespace limber
           mean /= surface.area;
         surface.place /= surface.area;
         surface.normal /= surface.normal.norm();
+      }
+    find_pieces(cell);
+    for (const Surface &surface : cell.surfaces)
+      {
         Vector from_origin;
         for (unsigned int d = 0; d < dim; ++d)
           from_origin[d] =
             surface.place[d] - parts.grid.geometry[cell.number].origin[d];
         for (unsigned int a = 0; a < n_nodes; ++a)
           cell.hydrostatic[a] -=
-            (from_origin * parts.problem.loads.gravity) * surface.normals[a];
+            (from_origin * parts.problem.loads.gravity - surface.beyond) *
+            surface.normals[a];
       }
   }
 
@@ -470,45 +483,6 @@ namespace limber
             cell.hydrostatic[a][d] +=
               weight * of_cell * depth * there.gradient[a][d];
       }
-  }
-
-
-
-  // From sums to means, and to the pressure against its mean: less what the
-  // depth of the centroid does, by the means of the gradients.
-  template <int dim>
-  void
-  CutCells<dim>::finish_volume(Cell &cell) const
-  {
-    const CellGeometry<dim> &geometry = parts.grid.geometry[cell.number];
-    double                   volume   = cell.open; // m^dim
-    for (double &mean : cell.monomials)
-      mean /= cell.open;
-    double depth = 0;
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        volume /= geometry.inverse_edge[d];
-        depth += parts.problem.loads.gravity[d] * cell.monomials[1u << d] /
-                 geometry.inverse_edge[d];
-      }
-    for (unsigned int d = 0; d < dim; ++d)
-      {
-        // the mean of a product of linear functions by way of its monomials
-        auto means = cell.monomials;
-        for (unsigned int k = 0; k < n_nodes; ++k)
-          if (k >> d & 1)
-            means[k] = 0;
-        for (unsigned int e = 0; e < dim; ++e)
-          for (unsigned int k = 0; e != d && k < n_nodes; ++k)
-            if (!(k >> e & 1))
-              means[k] -= means[k | 1u << e];
-        for (unsigned int a = 0; a < n_nodes; ++a)
-          cell.hydrostatic[a][d] -= depth * volume * geometry.inverse_edge[d] *
-                                    (a >> d & 1 ? 1 : -1) *
-                                    means[a & ~(1u << d)];
-      }
-    if (cell.open > 1 - 1e-12)
-      cell.open = 1;
   }
 
 

@@ -17,15 +17,23 @@ namespace limber
     // So often cells without pressure may get it again; then they only lose it,
     // so that it ends.
     constexpr unsigned int most_returns = 20;
+
+    // So often nodes that an obstacle would pull are let go and those that come
+    // near are held again; then they are only let go, so often at most. What
+    // comes near nevertheless is held in the next step.
+    constexpr unsigned int most_changes = 4, most_releases = 6;
   } // namespace
 
 
 
   template <int dim>
   ImplicitPressure<dim>::ImplicitPressure(const RunParts<dim>     &parts,
-                                          BoundaryConditions<dim> &boundaries)
+                                          BoundaryConditions<dim> &boundaries,
+                                          CutCells<dim> *const     cut_cells,
+                                          ObstacleContact<dim> *const obstacles)
     : parts(parts)
-    , cells(parts)
+    , obstacles(obstacles)
+    , cells(parts, cut_cells)
     , system(parts, boundaries, cells)
     , solver(parts.grid.communicator)
   {
@@ -81,27 +89,93 @@ namespace limber
         system.find_columns();
         solver.set_pattern(system.equations);
       }
+    if (obstacles != nullptr)
+      meet_obstacles();
+    const auto before = spent.iterations;
+    solve_equations(end, step, share);
+    if (obstacles != nullptr)
+      for (unsigned int k = 1; k < most_changes + most_releases; ++k)
+        {
+          sum_forces(true);
+          if (!system.release_nodes(step, k < most_changes))
+            break;
+          solve_equations(end, step, share);
+        }
+    sum_forces(false);
+    ++spent.steps;
+    spent.most_iterations =
+      std::max<unsigned int>(spent.most_iterations, spent.iterations - before);
+
+    for (std::size_t l = 0; l < cells.media.size(); ++l)
+      keep_result(l);
+    push_nodes(step);
+    if (obstacles != nullptr)
+      press_on_obstacles(step);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::meet_obstacles()
+  {
+    auto &surfaces = cells.surfaces;
+    surfaces.dry();
+    obstacles->for_each_surface(
+      [&](const std::uint32_t cell,
+          const unsigned int  surface,
+          const double        least,
+          std::size_t) { surfaces.wet(cell, surface, least); });
+    surfaces.finish_wetting();
+    system.meet_nodes(&obstacles->held_nodes());
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::press_on_obstacles(const double step)
+  {
+    auto &surfaces = cells.surfaces;
+    for (std::uint32_t k = 0; k < surfaces.n_of_rank(); ++k)
+      surfaces.pieces[k].pressure =
+        system.pressures[cells.first_of_surfaces() + k];
+    obstacles->expect_given();
+    system.for_each_released([this](const HeldNode &node) {
+      if (node.has_place)
+        obstacles->give(node.place, 0);
+    });
+    obstacles->for_each_surface([&](const std::uint32_t cell,
+                                    const unsigned int  surface,
+                                    double,
+                                    const std::size_t number) {
+      const auto &piece = surfaces.pieces[surfaces.piece_of(cell, surface)];
+      obstacles->give(number,
+                      step * piece.pressure * surfaces.area_of(cell, surface));
+    });
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::solve_equations(const double end,
+                                         const double step,
+                                         const double share)
+  {
     system.assemble(end, step, share);
-    const double residual   = accuracy * system.scale();
-    unsigned int iterations = 0;
-    unsigned int solved     = 0;
+    const double residual = accuracy * system.scale();
+    unsigned int solved   = 0;
     do
       {
-        iterations +=
+        spent.iterations +=
           solver.solve(system.equations, residual, system.pressures);
         ++solved;
       }
     while (system.cuts_tension() && system.cut_tension(solved < most_returns));
     for (std::uint32_t row = 0; row < cells.n; ++row)
       system.pressures[row] *= system.scales[row];
-    ++spent.steps;
     spent.solutions += solved;
-    spent.iterations += iterations;
-    spent.most_iterations = std::max(spent.most_iterations, iterations);
-
-    for (std::size_t l = 0; l < cells.media.size(); ++l)
-      keep_result(l);
-    push_nodes(step);
   }
 
 
@@ -173,13 +247,14 @@ namespace limber
           {
             const std::uint32_t cell = medium.cells[k];
             const std::uint32_t row  = medium.first + k;
-            const double mass = body->cell_sums->view().present_mass(cell);
-            double      &kept = medium.result(cell)[Result::dilation];
-            kept              = 0;
+            const double mass   = body->cell_sums->view().present_mass(cell);
+            double      &kept   = medium.result(cell)[Result::dilation];
+            kept                = 0;
+            const double volume = medium.record(cell)[Record::volume];
             // there points have what their volumes keep taken from them
-            if (!(mass > 0) || (!system.is_cut.empty() && system.is_cut[row]))
+            if (!(mass > 0) || !(volume > 0) ||
+                (!system.is_cut.empty() && system.is_cut[row]))
               continue;
-            const double volume   = medium.record(cell)[Record::volume];
             const double pressure = system.pressures[row];
             const Part   part     = system.part_of(medium, *body, cell, mass);
             const double dilation =
@@ -251,7 +326,7 @@ namespace limber
 
   template <int dim>
   void
-  ImplicitPressure<dim>::push_nodes(const double step)
+  ImplicitPressure<dim>::sum_forces(const bool with_surfaces)
   {
     NodalFields<dim> &nodes = parts.nodes;
     for (const std::uint32_t node : nodes.active_nodes())
@@ -267,9 +342,28 @@ namespace limber
                 medium.record(cell)[Record::rows + a * dim + d] *
                 system.pressures[medium.first + k];
         }
+    if (with_surfaces)
+      for (std::uint32_t k = 0; k < cells.surfaces.n_of_rank(); ++k)
+        {
+          const auto  &piece = cells.surfaces.pieces[k];
+          const double q     = system.pressures[cells.first_of_surfaces() + k];
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            for (int d = 0; d < dim; ++d)
+              nodes.record(
+                cells.node_of(piece.cell, a))[Layout::pressure_force + d] +=
+                piece.entries[a * dim + d] * q;
+        }
     nodes.start_sum(Layout::pressure_force, Layout::pressure_force + dim);
     nodes.finish_sum();
+  }
 
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::push_nodes(const double step)
+  {
+    NodalFields<dim> &nodes = parts.nodes;
     for (const std::uint32_t node : nodes.active_nodes())
       {
         double *const of_node = nodes.record(node);

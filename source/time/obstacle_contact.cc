@@ -136,6 +136,8 @@ namespace limber
   {
     impulses.clear();
     touches.clear();
+    surface_places.clear();
+    nodes_held.clear();
     std::vector<Way> ways;
     for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
       {
@@ -447,7 +449,7 @@ namespace limber
             const double weight = record[Sums::weight];
             const double mass   = parts.nodes.record(field, node)[Layout::mass];
             const Vector normal = vector_in<dim>(record + Sums::normal);
-            if (!(record[Sums::own] > 0) ||
+            if (!(weight > 0) ||
                 !(normal.norm() > 1e-6 * weight) || // met from all sides alike
                 is_met_by_surface(field, node))
               continue;
@@ -456,8 +458,8 @@ namespace limber
               continue;
             const dealii::Point<dim> x(vector_in<dim>(record + Sums::place) /
                                        weight);
-            Place                   &place = impulses.add_place();
-            place.normal                   = normal / normal.norm();
+            Place                    place;
+            place.normal   = normal / normal.norm();
             place.friction = parts.problem.obstacles[obstacle].friction;
             // its part of the impulse of the node
             place.mass = mass * record[Sums::own] / weight;
@@ -472,70 +474,17 @@ namespace limber
                              mass * place.normal -
                            (1 - weight / mass) *
                              (place.velocity * place.normal));
+            const bool is_own = record[Sums::own] > 0;
+            nodes_held.push_back({node,
+                                  place.normal,
+                                  place.least + place.velocity * place.normal,
+                                  is_own,
+                                  impulses.all().size()});
+            if (!is_own)
+              continue;
+            impulses.add_place() = place;
             impulses.add_share(field, node, 1);
             touches.push_back({obstacle, x - ways[obstacle].before.centre()});
-          }
-      }
-  }
-
-
-
-  // Nodes of cells that obstacles cut are held by the surfaces in these.
-  template <int dim>
-  bool
-  ObstacleContact<dim>::is_met_by_surface(const unsigned int  field,
-                                          const std::uint32_t node) const
-  {
-    return cut_cells != nullptr && cut_cells->knows(field) &&
-           cut_cells->is_cut(node);
-  }
-
-
-
-  // The mean flow through each surface, by the means of the functions over it.
-  // A surface in the face of a cell counts where it ends at one that is cut.
-  template <int dim>
-  void
-  ObstacleContact<dim>::add_cut_cells(const std::vector<Way> &ways,
-                                      const double            step)
-  {
-    for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
-      {
-        if (!cut_cells->knows(field))
-          continue;
-        double density = 0; // of the heaviest liquid, kg/m^3
-        for (const auto &body : parts.bodies)
-          if (body->description.is_liquid &&
-              body->description.nodal_field == field)
-            density = std::max(density, body->stress->density());
-        for (const auto &cell : cut_cells->all())
-          {
-            if (cell.number >= parts.grid.n_owned_cells() ||
-                !cut_cells->wets(cell.number, field))
-              continue;
-            const CellGeometry<dim> &geometry =
-              parts.grid.geometry[cell.number];
-            for (const auto &surface : cell.surfaces)
-              {
-                if (!cut_cells->meets_cut(cell, surface))
-                  continue;
-                Place &place = impulses.add_place();
-                place.normal = surface.normal;
-                place.friction =
-                  parts.problem.obstacles[surface.obstacle].friction;
-                place.mass = density * surface.area * parts.grid.smallest_edge;
-                if (parts.problem.obstacles[surface.obstacle].moves())
-                  place.velocity =
-                    ways[surface.obstacle].velocity(surface.place, step);
-                for (unsigned int a = 0; a < 1u << dim; ++a)
-                  if (surface.functions[a] > 0)
-                    impulses.add_share(field,
-                                       geometry.node[a] / Layout::stride,
-                                       surface.functions[a]);
-                touches.push_back(
-                  {surface.obstacle,
-                   surface.place - ways[surface.obstacle].before.centre()});
-              }
           }
       }
   }
@@ -572,8 +521,11 @@ namespace limber
         const Place         &place  = impulses.all()[p];
         const Touch         &touch  = touches[p];
         ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
-        action.impulse += place.impulse;
-        action.moment += moment_of<dim>(touch.arm, place.impulse);
+        const Vector         beyond = touch.beyond * place.normal,
+                     impulse        = place.impulse + beyond;
+        parts.ledger.load_impulse -= beyond; // which is none of a load
+        action.impulse += impulse;
+        action.moment += moment_of<dim>(touch.arm, impulse);
         parts.ledger.boundary_work += place.impulse * place.velocity;
       }
     impulses.for_each_given_to_side([this](const unsigned int side,

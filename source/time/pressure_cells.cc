@@ -16,8 +16,10 @@ namespace limber
 
 
   template <int dim>
-  PressureCells<dim>::PressureCells(const RunParts<dim> &parts)
-    : parts(parts)
+  PressureCells<dim>::PressureCells(const RunParts<dim> &parts,
+                                    CutCells<dim> *const cut_cells)
+    : surfaces(parts, cut_cells)
+    , parts(parts)
   {
     reinit();
   }
@@ -29,6 +31,7 @@ namespace limber
   PressureCells<dim>::reinit()
   {
     shared_cells.emplace(parts.grid.shared_cells);
+    surfaces.reinit();
     media.clear();
     for (auto &body : parts.bodies)
       if (body->implicit)
@@ -61,7 +64,7 @@ namespace limber
   bool
   PressureCells<dim>::update()
   {
-    const bool are_new = !has_cells || !knows_all_cells();
+    const bool are_new = !has_cells || surfaces.are_old() || !knows_all_cells();
     if (are_new)
       choose_cells();
     has_cells = true;
@@ -71,6 +74,11 @@ namespace limber
         exchange(medium);
         look_around(medium);
       }
+    if (are_new && !media.empty() && media.front().is_liquid())
+      surfaces.number(first + first_of_surfaces(),
+                      [this](const std::uint32_t cell) {
+                        return media.front().record(cell)[Record::number] > 0;
+                      });
     return are_new;
   }
 
@@ -117,6 +125,13 @@ namespace limber
         medium.first = n;
         n += medium.cells.size();
       }
+    if (!media.empty() && media.front().is_liquid())
+      {
+        surfaces.choose([this](const std::uint32_t cell) {
+          return media.front().record(cell)[Record::number] > 0;
+        });
+        n += surfaces.n_of_rank();
+      }
 
     const MPI_Comm communicator = parts.grid.communicator;
     MPI_Exscan(&n, &first, 1, MPI_UINT32_T, MPI_SUM, communicator);
@@ -157,6 +172,12 @@ namespace limber
         });
         if (any == nullptr)
           continue;
+        if (surfaces.cells() != nullptr && surfaces.cells()->is_covered(cell))
+          {
+            // what is in there presses on nothing, or thin rests would lock
+            of_cell[Record::volume] = 0;
+            continue;
+          }
         // those of all of them, see LiquidMeans
         const double filling =
           any->volume_shares.size() > 0 ? any->volume_shares[cell] : 1;

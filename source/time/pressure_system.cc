@@ -97,6 +97,9 @@ namespace limber
   {
     mobility.reinit(std::size_t(parts.nodes.table.n()) * dim);
     velocity.reinit(std::size_t(parts.nodes.table.n()) * dim);
+    held_as.reinit(parts.nodes.table.n());
+    held.clear();
+    to_hold = nullptr;
     corners.reinit(parts);
     if (needs_volumes)
       volumes.reinit(parts.nodes.table.n());
@@ -133,24 +136,31 @@ namespace limber
   {
     auto &media            = cells.media;
     in_body                = row_width(dim);
-    equations.width        = in_body * media.size();
+    of_cells               = in_body * media.size();
+    equations.width        = of_cells + most_surfaces_near();
     const std::size_t size = std::size_t(equations.n) * equations.width;
     equations.columns.assign(size, PressureEquations::no_column);
     mates.assign(size, invalid_cell);
-    for (const Medium &medium : media)
-      for (std::size_t k = 0; k < medium.cells.size(); ++k)
-        cells.for_each_near(
-          medium.cells[k], 1, [&](const unsigned int place, const auto near) {
-            for (std::size_t l = 0; l < media.size(); ++l)
-              if (const double number = media[l].record(near)[Record::number];
-                  number > 0)
-                {
-                  const std::size_t at =
-                    (medium.first + k) * equations.width + l * in_body + place;
-                  equations.columns[at] = number - 1;
-                  mates[at]             = near;
-                }
-          });
+    for_each_row([&](const std::uint32_t row, const std::uint32_t cell) {
+      const std::size_t begin   = std::size_t(row) * equations.width;
+      std::size_t       surface = begin + of_cells;
+      cells.for_each_near(
+        cell, 1, [&](const unsigned int place, const auto near) {
+          for (std::size_t l = 0; l < media.size(); ++l)
+            if (const double number = media[l].record(near)[Record::number];
+                number > 0)
+              {
+                const std::size_t at  = begin + l * in_body + place;
+                equations.columns[at] = number - 1;
+                mates[at]             = near;
+              }
+          if (cells.surfaces.any())
+            cells.surfaces.for_each_in(near, [&](const std::uint32_t k) {
+              equations.columns[surface] = cells.surfaces.pieces[k].row;
+              mates[surface++]           = k;
+            });
+        });
+    });
   }
 
 
@@ -178,6 +188,8 @@ namespace limber
                                mobility[std::size_t(node) * dim + d] = 0;
                                velocity[std::size_t(node) * dim + d] = value;
                              });
+    if (to_hold != nullptr)
+      hold_by_obstacles();
   }
 
 
@@ -193,7 +205,7 @@ namespace limber
         for (const std::uint32_t node : parts.nodes.active_nodes())
           {
             double sum = 0;
-            if (is_inside(medium, node))
+            if (is_inside(medium, node) && !is_at_obstacle(node))
               for (unsigned int k = 0; k < n_nodes; ++k)
                 sum += medium.record(medium.cells_around(node)[k] -
                                      1)[Record::pattern];
@@ -230,9 +242,11 @@ namespace limber
                                  const std::uint32_t node,
                                  const double        density) const
   {
-    const double held   = needs_volumes ?
-                            volumes[node] :
-                            parts.nodes.record(node)[Layout::mass] / density;
+    const double held = needs_volumes ?
+                          volumes[node] :
+                          parts.nodes.record(node)[Layout::mass] / density;
+    if (is_at_obstacle(node)) // which takes some of the room
+      return 0;
     const double excess = held / room - 1;
     if (excess < 0 && at_surface[node] > 0)
       return 0; // there is room left
@@ -251,7 +265,7 @@ namespace limber
     const auto    holds   = [&](const std::uint32_t cell) {
       return liquids.record(cell)[Record::volume] > 0;
     };
-    surroundings.find(parts.nodes, holds);
+    surroundings.find(parts.nodes, holds, covered_corners());
     for (const std::uint32_t node : parts.nodes.active_nodes())
       at_surface[node] = 0;
     for (const std::uint32_t cell : liquids.cells)
@@ -336,6 +350,8 @@ namespace limber
     for (std::size_t l = 0; l < media.size(); ++l)
       for (std::size_t k = 0; k < media[l].cells.size(); ++k)
         assemble_row(l, media[l].cells[k], media[l].first + k, step, share);
+    if (cells.surfaces.any())
+      assemble_surfaces(step);
   }
 
 
@@ -375,12 +391,13 @@ namespace limber
           }
         cells.share(medium, Result::scale);
       }
+    if (cells.surfaces.any())
+      squares += scale_surfaces();
     for (std::uint32_t row = 0; row < equations.n; ++row)
       for (unsigned int place = 0; place < equations.width; ++place)
         if (const std::size_t at = std::size_t(row) * equations.width + place;
             mates[at] != invalid_cell)
-          equations.values[at] *= scales[row] * media[place / in_body].result(
-                                                  mates[at])[Result::scale];
+          equations.values[at] *= scales[row] * scale_of(at, place);
     return std::sqrt(
       dealii::Utilities::MPI::sum(squares, parts.grid.communicator));
   }
@@ -442,7 +459,7 @@ namespace limber
                                 });
       }
     if (corners.empty())
-      couple_on_lattice(number, cell, row, step);
+      couple_on_lattice(medium.record(cell) + Record::rows, cell, row, step);
     else
       couple_over_levels(number, cell, row, step);
     equations.right_side[row] += volume * growth[row];
@@ -477,14 +494,13 @@ namespace limber
   // dt^2 B M^-1 B^T, and - dt B v* on the right.
   template <int dim>
   void
-  PressureSystem<dim>::couple_on_lattice(const std::size_t   number,
+  PressureSystem<dim>::couple_on_lattice(const double *const own,
                                          const std::uint32_t cell,
                                          const std::uint32_t row,
                                          const double        step)
   {
-    const auto         &media = cells.media;
-    const double *const own   = media[number].record(cell);
-    double *const       values =
+    const auto   &media = cells.media;
+    double *const values =
       equations.values.data() + std::size_t(row) * equations.width;
     double &right = equations.right_side[row];
     for (unsigned int a = 0; a < n_nodes; ++a)
@@ -494,11 +510,13 @@ namespace limber
         double              scaled[dim];
         for (int d = 0; d < dim; ++d)
           {
-            const double entry = own[Record::rows + a * dim + d];
+            const double entry = own[a * dim + d];
             right -= step * entry * held[d];
             scaled[d] =
               step * step * entry * mobility[std::size_t(node) * dim + d];
           }
+        if (to_hold != nullptr && held_as[node] > 0)
+          move(node, scaled);
         for (std::size_t l = 0; l < media.size(); ++l)
           for (unsigned int b = 0; b < n_nodes; ++b)
             {
@@ -511,6 +529,8 @@ namespace limber
               for (int d = 0; d < dim; ++d)
                 values[place] += scaled[d] * mate[Record::rows + b * dim + d];
             }
+        if (cells.surfaces.any())
+          couple_surfaces(node, scaled, row);
       }
   }
 

@@ -50,7 +50,10 @@ namespace limber
   SemiImplicitIntegrator<dim>::SemiImplicitIntegrator(
     const RunParts<dim> &parts)
     : Base(parts)
-    , pressure(parts, Base::boundaries)
+    , pressure(parts,
+               Base::boundaries,
+               Base::cut_cells ? &*Base::cut_cells : nullptr,
+               Base::obstacles ? &*Base::obstacles : nullptr)
     , hourglass(std::size_t(parts.nodes.table.n()) * dim)
     , viscosity_acts(!this->full_mass && is_viscous())
     , remaps(
@@ -105,6 +108,7 @@ namespace limber
     this->add_loads();
     this->advance_nodes();
     solve_pressure();
+    this->exchange_between_bodies();
     this->apply_boundaries();
     this->interpolate_hanging();
     this->measure_nodes();

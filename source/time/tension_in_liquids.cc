@@ -16,7 +16,8 @@ namespace limber
   bool
   PressureSystem<dim>::cuts_tension() const
   {
-    return std::any_of(parts.bodies.begin(),
+    return cells.surfaces.any() ||
+           std::any_of(parts.bodies.begin(),
                        parts.bodies.end(),
                        [](const auto &body) {
                          return body->description.cuts_tension;
@@ -45,6 +46,11 @@ namespace limber
             pressures[medium.first + k];
         cells.share(medium, Result::pressure);
       }
+    auto      &surfaces      = cells.surfaces;
+    const auto first_surface = cells.first_of_surfaces();
+    for (std::uint32_t k = 0; k < surfaces.n_of_rank(); ++k)
+      surfaces.pieces[k].pressure = pressures[first_surface + k];
+    surfaces.share(&Piece::pressure);
 
     int any = 0;
     for (std::uint32_t row = 0; row < equations.n; ++row)
@@ -72,14 +78,17 @@ namespace limber
   double
   PressureSystem<dim>::opening(const std::uint32_t row) const
   {
-    const auto        &media   = cells.media;
-    const unsigned int in_body = equations.width / media.size();
-    double             result  = -whole_right_side[row];
+    double result = -whole_right_side[row];
     for (unsigned int place = 0; place < equations.width; ++place)
       if (const std::size_t at = std::size_t(row) * equations.width + place;
           mates[at] != invalid_cell)
-        result += whole[at] *
-                  media[place / in_body].result(mates[at])[Result::pressure];
+        result +=
+          whole[at] *
+          of_mate(
+            at,
+            place,
+            [](const double *const result) { return result[Result::pressure]; },
+            [](const Piece &piece) { return piece.pressure; });
     return result;
   }
 
@@ -90,15 +99,18 @@ namespace limber
   void
   PressureSystem<dim>::exclude_cut()
   {
-    auto &media = cells.media;
-    for (Medium &medium : media)
+    for (Medium &medium : cells.media)
       {
         for (std::size_t k = 0; k < medium.cells.size(); ++k)
           medium.result(medium.cells[k])[Result::scale] =
             is_cut[medium.first + k] ? 0 : 1;
         cells.share(medium, Result::scale);
       }
-    const unsigned int in_body = equations.width / media.size();
+    auto      &surfaces      = cells.surfaces;
+    const auto first_surface = cells.first_of_surfaces();
+    for (std::uint32_t k = 0; k < surfaces.n_of_rank(); ++k)
+      surfaces.pieces[k].scale = is_cut[first_surface + k] ? 0 : 1;
+    surfaces.share(&Piece::scale);
     for (std::uint32_t row = 0; row < equations.n; ++row)
       {
         equations.right_side[row] = is_cut[row] ? 0 : whole_right_side[row];
@@ -109,11 +121,10 @@ namespace limber
               continue;
             const bool diagonal =
               equations.columns[at] == equations.first + row;
-            equations.values[at] =
-              diagonal    ? 1 :
-              is_cut[row] ? 0 :
-                            whole[at] * media[place / in_body].result(
-                                          mates[at])[Result::scale];
+            equations.values[at] = diagonal ? 1 :
+                                   is_cut[row] ?
+                                              0 :
+                                              whole[at] * scale_of(at, place);
           }
       }
   }

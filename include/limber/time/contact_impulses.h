@@ -68,7 +68,8 @@ namespace limber
         return impulse * normal > 0;
       }
 
-      double relaxation = 0; // m_p / s_p, kg
+      bool   is_given   = false; // the impulse across the surface
+      double relaxation = 0;     // m_p / s_p, kg
       bool   sticks     = false;
 
       // What ContactLoss wants to know: a, b or r, the new velocity; K
@@ -205,6 +206,22 @@ namespace limber
      */
     void
     finish_adding_nodes();
+
+    /** On all ranks: some places have impulses known from elsewhere. */
+    void
+    expect_given()
+    {
+      gives_some = true;
+    }
+
+    /** That of a place across the surface, kg m/s, after these have ended:
+     * exchange() finds those of the others, and what rubs. */
+    void
+    give(const std::size_t place, const double across)
+    {
+      places[place].is_given = true;
+      places[place].impulse  = across * places[place].normal;
+    }
 
     /** Whether there is any on any rank. */
     bool
@@ -429,6 +446,7 @@ namespace limber
     bool                       any_place    = false;
     bool                       at_nodes     = false; // finish_adding_nodes()
     bool                       holds_before = false; // in this step
+    bool                       gives_some   = false; // in this step
     // With leapfrogs, of the step before
     std::vector<Place> former_places;
     PlaceShares        former_shares;

@@ -45,6 +45,10 @@ namespace limber
       double                      area = 0;    // m^(dim-1)
       std::array<double, n_nodes> functions{}; // means of N_i over it
       std::array<Vector, n_nodes> normals{};   // int N_i n dS, m^(dim-1)
+      // Those of a cell with the same number have one pressure p_s, at their
+      // centroid x_s: each its own in explicit steps
+      unsigned int piece  = 0;
+      double       beyond = 0; // g . (place - x_s), m^2/s^2
     };
 
     /** A cell with surfaces across it or in its faces. */
@@ -83,7 +87,8 @@ namespace limber
 
     /** Share of a cell: where less is open it counts as closed. As thin layers
      * are stiff C^2 / 4, with the Courant number C, and at least .15, as water
-     * that passes the corner of a thin layer is held too much. */
+     * that passes the corner of a thin layer is held too much; .01 where the
+     * pressure is implicit. */
     double
     least_open() const
     {
@@ -212,6 +217,8 @@ namespace limber
     void
     finish_volume(Cell &cell) const;
     void
+    find_pieces(Cell &cell) const;
+    void
     add_surface(const Simplex &simplex,
                 unsigned int   opposite,
                 const Places  &places,
@@ -236,7 +243,8 @@ namespace limber
     // what the obstacles have moved by since
     std::vector<double> distance;
     Places              former;
-    bool                moves       = false;
+    bool                moves = false;
+    const bool          is_implicit; // the pressure
     double              least_share = 0;
     bool                any_cut     = false;
     unsigned int        times_found = 0;

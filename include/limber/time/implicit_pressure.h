@@ -35,6 +35,16 @@ namespace limber
    * Sides that hold a component of a node take the pressure on it: its entry
    * of M^-1 is zero.
    *
+   * A liquid presses on the surface of an obstacle in a cell (CutCells) with a
+   * pressure q of its own, as the mean flow A v over it must not enter:
+   *
+   *   v1 = v* + dt M^-1 (B^T P1 + A^T q),  q >= 0,  A v1 >= A v_o,
+   *
+   * one of both being an equality. Nodes that obstacles hold one by one
+   * (ObstacleContact) keep their velocity along the normal, until the obstacle
+   * would have to pull. The impulses dt q of surfaces are what
+   * ObstacleContact::exchange() starts from, which gives them to the nodes.
+   *
    * Where a body bears no tension, the equation of a cell is that P1 >= 0, that
    * it grows at least as much, and that one of both is an equality.
    */
@@ -43,7 +53,9 @@ namespace limber
   {
   public:
     ImplicitPressure(const RunParts<dim>     &parts,
-                     BoundaryConditions<dim> &boundaries);
+                     BoundaryConditions<dim> &boundaries,
+                     CutCells<dim>           *cut_cells,
+                     ObstacleContact<dim>    *obstacles);
 
     /** Adopt a mesh that has changed. */
     void
@@ -106,11 +118,12 @@ namespace limber
     }
 
   private:
-    using Layout                          = NodeLayout<dim>;
-    using Medium                          = typename PressureCells<dim>::Medium;
-    using Record                          = typename PressureCells<dim>::Record;
-    using Result                          = typename PressureCells<dim>::Result;
-    using Part                            = typename PressureSystem<dim>::Part;
+    using Layout   = NodeLayout<dim>;
+    using Medium   = typename PressureCells<dim>::Medium;
+    using Record   = typename PressureCells<dim>::Record;
+    using Result   = typename PressureCells<dim>::Result;
+    using Part     = typename PressureSystem<dim>::Part;
+    using HeldNode = typename PressureSystem<dim>::HeldNode;
     static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
     void
@@ -124,11 +137,20 @@ namespace limber
                  const Part              &part,
                  double                   pressure) const;
     void
+    meet_obstacles();
+    void
+    solve_equations(double end, double step, double share);
+    void
+    sum_forces(bool with_surfaces);
+    void
     push_nodes(double step);
+    void
+    press_on_obstacles(double step);
 
-    const RunParts<dim> parts;
-    PressureCells<dim>  cells;
-    PressureSystem<dim> system;
+    const RunParts<dim>         parts;
+    ObstacleContact<dim> *const obstacles; // or null
+    PressureCells<dim>          cells;
+    PressureSystem<dim>         system;
     // Of the pressures, by node and component, N
     LazyArray<double> force;
     PressureSolver    solver;

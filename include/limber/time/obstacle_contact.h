@@ -85,6 +85,58 @@ namespace limber
     void
     hold_before(unsigned int slot, double step);
 
+    /** A node that an obstacle holds: its velocity v after the step has
+     * v . normal >= least, m/s. */
+    struct HeldNode
+    {
+      std::uint32_t          node;
+      dealii::Tensor<1, dim> normal;
+      double                 least;
+      bool                   has_place; // an impulse of this rank, number:
+      std::size_t            place;
+    };
+
+    /** Those of liquids that this rank knows, also by points of others. */
+    const std::vector<HeldNode> &
+    held_nodes() const
+    {
+      return nodes_held;
+    }
+
+    /**
+     * Call work(cell, k, least, number) for the surfaces that press a liquid or
+     * may do so: surface k of a cell of this rank (CutCells), which the mean
+     * velocity over it has to leave with at least @p least, m/s.
+     */
+    template <class Work>
+    void
+    for_each_surface(const Work &work) const
+    {
+      for (const SurfacePlace &one : surface_places)
+        {
+          const Place &place = impulses.all()[one.place];
+          work(one.cell,
+               one.surface,
+               place.least + place.velocity * place.normal,
+               one.place);
+        }
+    }
+
+    /** On all ranks: surfaces are going to be given impulses. */
+    void
+    expect_given()
+    {
+      impulses.expect_given();
+    }
+
+    /** What a surface is known to press with in this step, kg m/s, by the
+     * number that for_each_surface() has for it; or a node, by its place. */
+    void
+    give(const std::size_t number, const double impulse)
+    {
+      impulses.give(number, impulse);
+    }
+
     /** Exchange momentum: changes new velocities and increments. */
     void
     exchange();
@@ -110,6 +162,17 @@ namespace limber
     {
       unsigned int obstacle;
       Vector       arm; // from the centre of the obstacle, m
+      // What the pressure there has beyond that of the piece presses, which
+      // acts on the nodes as a load (HydrostaticLoad), kg m/s
+      double beyond = 0;
+    };
+
+    /** A surface in a cell of this rank, and its impulse. */
+    struct SurfacePlace
+    {
+      std::uint32_t cell;
+      unsigned int  surface;
+      std::size_t   place;
     };
 
     /** Where obstacles are at the ends of a step. */
@@ -189,13 +252,15 @@ namespace limber
     bool
     is_met_by_surface(unsigned int field, std::uint32_t node) const;
 
-    const RunParts<dim>  parts;
-    CutCells<dim> *const cut_cells; // or null
-    SideConstraints<dim> sides;
-    std::vector<double>  edge; // largest of the points of a body, m
-    ContactImpulses<dim> impulses;
-    std::vector<Sums>    sums;    // of an obstacle and a field
-    std::vector<Touch>   touches; // of each impulse
+    const RunParts<dim>       parts;
+    CutCells<dim> *const      cut_cells; // or null
+    SideConstraints<dim>      sides;
+    std::vector<double>       edge; // largest of the points of a body, m
+    ContactImpulses<dim>      impulses;
+    std::vector<Sums>         sums;    // of an obstacle and a field
+    std::vector<Touch>        touches; // of each impulse
+    std::vector<SurfacePlace> surface_places;
+    std::vector<HeldNode>     nodes_held;
     // From the middles of what is in cells when they asked, m, 0 where nobody
     // has; and where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;

@@ -3,6 +3,7 @@
 #define limber_time_pressure_cells_h
 
 #include <limber/time/integrator.h>
+#include <limber/time/pressure_surfaces.h>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,8 @@ namespace limber
    * each cell of each medium, those of a rank together and in the order of
    * ranks. All liquids are one medium: those in a cell have one pressure. Each
    * solid is one. Empty cells near the material have numbers too, so that the
-   * same serve for some steps.
+   * same serve for some steps. The rows of a rank end with those of the pieces
+   * of surface of obstacles in the cells of the liquids (PressureSurfaces).
    */
   template <int dim>
   class PressureCells
@@ -118,7 +120,7 @@ namespace limber
       }
     };
 
-    explicit PressureCells(const RunParts<dim> &parts);
+    PressureCells(const RunParts<dim> &parts, CutCells<dim> *cut_cells);
 
     /** Adopt a mesh that has changed. */
     void
@@ -157,10 +159,18 @@ namespace limber
       return parts.grid.geometry[cell].node[corner] / NodeLayout<dim>::stride;
     }
 
-    std::vector<Medium> media;
-    std::uint32_t       n     = 0; // unknowns of this rank
-    std::uint32_t       first = 0; // of them among those of all ranks
-    std::uint32_t       n_all = 0; // of all ranks
+    /** The first row of this rank that belongs to a surface. */
+    std::uint32_t
+    first_of_surfaces() const
+    {
+      return n - surfaces.n_of_rank();
+    }
+
+    std::vector<Medium>   media;
+    PressureSurfaces<dim> surfaces;
+    std::uint32_t         n     = 0; // unknowns of this rank
+    std::uint32_t         first = 0; // of them among those of all ranks
+    std::uint32_t         n_all = 0; // of all ranks
 
   private:
     void

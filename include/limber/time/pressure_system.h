@@ -4,6 +4,7 @@
 
 #include <limber/grid/boundary_conditions.h>
 #include <limber/time/corners_of_nodes.h>
+#include <limber/time/obstacle_contact.h>
 #include <limber/time/pressure_cells.h>
 #include <limber/time/pressure_solver.h>
 #include <limber/time/surroundings.h>
@@ -14,13 +15,16 @@ namespace limber
 {
   /**
    * The equations of the implicit pressure, see ImplicitPressure: their
-   * pattern, C + dt^2 B M^-1 B^T + gamma T, and C P0 - dt B v* + V e.
+   * pattern, C + dt^2 B M^-1 B^T + gamma T, and C P0 - dt B v* + V e; and those
+   * of the pressures on the surfaces of obstacles.
    */
   template <int dim>
   class PressureSystem
   {
   public:
-    using Medium = typename PressureCells<dim>::Medium;
+    using Medium   = typename PressureCells<dim>::Medium;
+    using Vector   = dealii::Tensor<1, dim>;
+    using HeldNode = typename ObstacleContact<dim>::HeldNode;
 
     PressureSystem(const RunParts<dim>     &parts,
                    BoundaryConditions<dim> &boundaries,
@@ -51,7 +55,8 @@ namespace limber
     double
     scale();
 
-    /** Whether tension is cut off in any of the bodies. */
+    /** Whether some pressures must not be negative: tension is cut off in any
+     * of the bodies, or there are surfaces that can only push. */
     bool
     cuts_tension() const;
 
@@ -63,6 +68,29 @@ namespace limber
      */
     bool
     cut_tension(bool may_return);
+
+    /** Of nodes that obstacles hold: what they are to do in a new step. */
+    void
+    meet_nodes(const std::vector<HeldNode> *held);
+
+    /**
+     * Let nodes go that an obstacle would have to pull, and hold those that
+     * come near, if they @p may_return, with the forces of all pressures at
+     * Layout::pressure_force. Returns whether there are any, so that all has to
+     * be assembled and solved anew. Collective.
+     */
+    bool
+    release_nodes(double step, bool may_return);
+
+    /** Call work(node) for those that are let go in this step. */
+    template <class Work>
+    void
+    for_each_released(const Work &work) const
+    {
+      for (std::size_t k = 0; k < is_released.size(); ++k)
+        if (is_released[k])
+          work((*to_hold)[k]);
+    }
 
     /** The part of gamma T P in a cell, m^3, with the pressures that cells
      * know of each other. */
@@ -107,9 +135,10 @@ namespace limber
             double                   mass) const;
 
   private:
-    using Layout                          = NodeLayout<dim>;
-    using Record                          = typename PressureCells<dim>::Record;
-    using Result                          = typename PressureCells<dim>::Result;
+    using Layout = NodeLayout<dim>;
+    using Record = typename PressureCells<dim>::Record;
+    using Result = typename PressureCells<dim>::Result;
+    using Piece  = typename PressureSurfaces<dim>::Piece;
     static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
     void
@@ -121,15 +150,65 @@ namespace limber
                  double        step,
                  double        share);
     void
-    couple_on_lattice(std::size_t   medium,
-                      std::uint32_t cell,
-                      std::uint32_t row,
-                      double        step);
-    void
     couple_over_levels(std::size_t   medium,
                        std::uint32_t cell,
                        std::uint32_t row,
                        double        step);
+    void
+    couple_on_lattice(const double *entries,
+                      std::uint32_t cell,
+                      std::uint32_t row,
+                      double        step);
+    template <class Work>
+    void
+    for_each_row(const Work &work) const
+    {
+      for (const Medium &medium : cells.media)
+        for (std::size_t k = 0; k < medium.cells.size(); ++k)
+          work(medium.first + k, medium.cells[k]);
+      for (std::uint32_t k = 0; k < cells.surfaces.n_of_rank(); ++k)
+        work(cells.first_of_surfaces() + k, cells.surfaces.pieces[k].cell);
+    }
+    unsigned int
+    most_surfaces_near() const;
+    std::size_t
+    surface_entry(std::uint32_t row, std::uint32_t piece) const;
+    void
+    couple_surfaces(std::uint32_t node,
+                    const double *scaled,
+                    std::uint32_t row);
+    void
+    assemble_surfaces(double step);
+    double
+    scale_of(const std::size_t at, const unsigned int place) const
+    {
+      return of_mate(
+        at,
+        place,
+        [](const double *const result) { return result[Result::scale]; },
+        [](const auto &piece) { return piece.scale; });
+    }
+    double
+    scale_surfaces();
+    void
+    hold_by_obstacles();
+    void
+    move(std::uint32_t node, double *vector) const;
+    const double *
+    covered_corners() const;
+    bool
+    is_at_obstacle(std::uint32_t node) const;
+    template <class OfCell, class OfPiece>
+    double
+    of_mate(const std::size_t  at,
+            const unsigned int place,
+            const OfCell      &of_cell,
+            const OfPiece     &of_piece) const
+    {
+      if (place < of_cells)
+        return of_cell(cells.media[place / in_body].result(mates[at]));
+      return of_piece(cells.surfaces.pieces[mates[at]]);
+    }
     void
     find_columns_of_lattice();
     void
@@ -160,13 +239,14 @@ namespace limber
     PressureCells<dim>      &cells;
     CornersOfNodes<dim>      corners;     // where cells have several sizes
     unsigned int             in_body = 0; // places of a medium in a row
+    unsigned int of_cells = 0; // of all media; those of surfaces follow
     // By node and component: 1/m, or 0 where a side holds it; and the velocity
     // without the pressures, or that of the side
     LazyArray<double> mobility, velocity;
     // By medium and node, for T: gamma dt^2 <V^2/m> / 4^(dim - 1) where all
     // cells around are occupied, else 0
     std::vector<LazyArray<double>> pattern_scales;
-    // By place in a row: the cell that it stands for
+    // By place in a row: the cell, or piece of surface, that it stands for
     std::vector<std::uint32_t> mates;
     const bool                 controls_density; // of any body
     // By node, m^3: what liquids take of the room around it; only
@@ -178,6 +258,17 @@ namespace limber
     Surroundings<dim> surroundings;
     LazyArray<double> at_surface;
     RecordExchange    node_exchange{1};
+    // Of a node that obstacles hold: orthogonal directions that are held
+    struct Held
+    {
+      std::uint32_t           node;
+      unsigned int            n = 0;
+      std::array<Vector, dim> directions;
+    };
+    const std::vector<HeldNode> *to_hold = nullptr;
+    std::vector<char>            is_released; // of these
+    std::vector<Held>            held;
+    LazyArray<std::uint32_t>     held_as; // by node, 1 + place in these, or 0
     // By row, whether none of the bodies in the cell bears tension
     std::vector<unsigned char> may_be_cut;
     // Matrix and right side of all cells, where some are cut off

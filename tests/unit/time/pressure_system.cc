@@ -76,7 +76,8 @@ namespace
                              const std::vector<std::string> &changes = {})
       : run(scene, changes)
       , boundaries(run.problem.sides)
-      , cells({run.problem, run.grid, run.nodes, run.bodies, run.ledger})
+      , cells({run.problem, run.grid, run.nodes, run.bodies, run.ledger},
+              nullptr)
       , system({run.problem, run.grid, run.nodes, run.bodies, run.ledger},
                boundaries,
                cells)

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/pressure_surfaces.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  template <int dim>
+  PressureSurfaces<dim>::PressureSurfaces(const RunParts<dim> &parts,
+                                          CutCells<dim> *const cut_cells)
+    : parts(parts)
+    , cut_cells(cut_cells)
+  {
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSurfaces<dim>::reinit()
+  {
+    pieces.clear();
+    n_own = most_in_cell = 0;
+    if (cut_cells == nullptr)
+      return;
+    shared_cells.emplace(parts.grid.shared_cells);
+    first_of.reinit(parts.grid.n_cells());
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSurfaces<dim>::clear()
+  {
+    for (const Piece &piece : pieces)
+      first_of[piece.cell] = 0;
+    pieces.clear();
+    n_own = 0;
+  }
+
+
+
+  // Of the surfaces that the impulses on the nodes know, see ObstacleContact.
+  template <int dim>
+  void
+  PressureSurfaces<dim>::add(const Cell &cell)
+  {
+    const std::size_t first = pieces.size();
+    for (unsigned int s = 0; s < cell.surfaces.size(); ++s)
+      {
+        const auto &surface = cell.surfaces[s];
+        if (!cut_cells->meets_cut(cell, surface))
+          continue;
+        const auto has_same = [&](const Piece &piece) {
+          return piece.place == surface.piece;
+        };
+        auto piece =
+          std::find_if(pieces.begin() + first, pieces.end(), has_same);
+        if (piece == pieces.end())
+          {
+            piece        = pieces.insert(pieces.end(), Piece());
+            piece->cell  = cell.number;
+            piece->place = surface.piece;
+          }
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (int d = 0; d < dim; ++d)
+            piece->entries[a * dim + d] +=
+              surface.area * surface.functions[a] * surface.normal[d];
+      }
+    if (pieces.size() > first)
+      first_of[cell.number] = 1 + first;
+  }
+
+
+
+  // Several ranks tell each other the pieces of a cell in the same order.
+  template <int dim>
+  void
+  PressureSurfaces<dim>::tell_rows()
+  {
+    unsigned int most = 0;
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      most = std::max<unsigned int>(most, k + 2 - first_of[pieces[k].cell]);
+    most_in_cell = dealii::Utilities::MPI::max(most, parts.grid.communicator);
+    if (most_in_cell == 0)
+      return;
+    told.reinit(std::size_t(parts.grid.n_cells()) * most_in_cell);
+    between_ranks.emplace(most_in_cell);
+    exchange([](const Piece &piece) { return piece.row + 1.; },
+             [](Piece &piece, const double value) { piece.row = value - 1; });
+  }
+
+
+
+  // From the owners of cells to all who hold them.
+  template <int dim>
+  template <class Get, class Set>
+  void
+  PressureSurfaces<dim>::exchange(const Get &get, const Set &set)
+  {
+    if (most_in_cell == 0 || shared_cells->neighbours.empty())
+      return;
+    const auto place = [&](const std::size_t k) {
+      return std::size_t(pieces[k].cell) * most_in_cell + k + 1 -
+             first_of[pieces[k].cell];
+    };
+    for (const auto &neighbour : parts.grid.shared_cells.neighbours)
+      for (const std::uint32_t cell : neighbour.records)
+        std::fill_n(told.data() + std::size_t(cell) * most_in_cell,
+                    most_in_cell,
+                    0.);
+    for (std::size_t k = 0; k < n_own; ++k)
+      told[place(k)] = get(pieces[k]);
+    between_ranks->start(*shared_cells, told.data(), 0, most_in_cell);
+    between_ranks->finish(told.data());
+    for (std::size_t k = n_own; k < pieces.size(); ++k)
+      set(pieces[k], told[place(k)]);
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSurfaces<dim>::dry()
+  {
+    for (Piece &piece : pieces)
+      {
+        piece.is_wet  = false;
+        piece.leaving = 0;
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSurfaces<dim>::wet(const std::uint32_t cell,
+                             const unsigned int  surface,
+                             const double        least)
+  {
+    Piece &piece = pieces[piece_of(cell, surface)];
+    piece.is_wet = true;
+    piece.leaving += area_of(cell, surface) * least;
+  }
+
+
+
+  template <int dim>
+  std::uint32_t
+  PressureSurfaces<dim>::piece_of(const std::uint32_t cell,
+                                  const unsigned int  surface) const
+  {
+    std::uint32_t      result = none;
+    const unsigned int place  = cut_cells->cell(cell)->surfaces[surface].piece;
+    for_each_in(cell, [&](const std::uint32_t k) {
+      if (pieces[k].place == place)
+        result = k;
+    });
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSurfaces<dim>::finish_wetting()
+  {
+    exchange([](const Piece &piece) { return piece.is_wet ? 1. : 0.; },
+             [](Piece &piece, const double value) {
+               piece.is_wet = value > 0;
+             });
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSurfaces<dim>::share(double Piece::*const member)
+  {
+    exchange([&](const Piece &piece) { return piece.*member; },
+             [&](Piece &piece, const double value) { piece.*member = value; });
+  }
+
+
+
+  template class PressureSurfaces<2>;
+  template class PressureSurfaces<3>;
+} // namespace limber
