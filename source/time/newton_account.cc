@@ -109,15 +109,16 @@ namespace limber
 
 
 
-#define INSTANTIATE(dim)                                                  \
-  template std::vector<double> NewtonIntegrator<dim>::loads_at(double,    \
-                                                               Values *); \
-  template void NewtonIntegrator<dim>::account(const StepQuestion &,      \
-                                               const Values &,            \
-                                               const Values &,            \
-                                               const Values &,            \
-                                               const Values &,            \
-                                               double,                    \
+#define INSTANTIATE(dim)                                                         \
+  template double              NewtonIntegrator<dim>::load_factor(double) const; \
+  template std::vector<double> NewtonIntegrator<dim>::loads_at(double,           \
+                                                               Values *);        \
+  template void NewtonIntegrator<dim>::account(const StepQuestion &,             \
+                                               const Values &,                   \
+                                               const Values &,                   \
+                                               const Values &,                   \
+                                               const Values &,                   \
+                                               double,                           \
                                                double);
 
   INSTANTIATE(2)

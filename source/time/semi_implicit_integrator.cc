@@ -13,7 +13,7 @@ namespace limber
     // each swing less, five times as much is unstable.
     constexpr double share_of_swing = 0.2;
 
-    constexpr double growth = 1.5; // of steps, from one to the next
+    constexpr double step_growth = 1.5; // of steps, from one to the next
 
     // Of the mass of a full node: less is light
     constexpr double light = 0.3;
@@ -354,7 +354,7 @@ namespace limber
       return std::min(longest, step_of_motion());
     // Nothing says how fast it will become what other loads set in motion.
     return std::min(longest,
-                    this->step > 0 ? growth * this->step :
+                    this->step > 0 ? step_growth * this->step :
                                      pressure.time_of_sound());
   }
 
