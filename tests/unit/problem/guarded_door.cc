@@ -90,8 +90,8 @@ namespace
 
 
   void
-  expect_said(const std::string              &message,
-              const std::vector<std::string> &fragments)
+  expect_short_message(const std::string              &message,
+                       const std::vector<std::string> &fragments)
   {
     expect_short(message);
     for (const std::string &fragment : fragments)
@@ -104,16 +104,19 @@ namespace
 
 TEST(GuardedDoor, ControlCharactersAreNamed)
 {
-  expect_said(said_of(plain_scene + std::string("set End\0 time = 2", 17)),
-              {"'\\x00'", "line 9 of door"});
-  expect_said(said_of("{\"End time\": \"1\x1b\"}", {}, FileFormat::json),
-              {"'\\x1b'", "line 1"});
-  expect_said(said_of("{\"Output\": {\"Directory\": \"a\\nb\"}}",
-                      {},
-                      FileFormat::json),
-              {"'a\\nb'", "control character", "'Directory'"});
-  expect_said(said_of(plain_scene, {"Output/Directory=a\x01z"}),
-              {"'a\\x01z'", "--set"});
+  expect_short_message(said_of(plain_scene +
+                               std::string("set End\0 time = 2", 17)),
+                       {"'\\x00'", "line 9 of door"});
+  expect_short_message(said_of("{\"End time\": \"1\x1b\"}",
+                               {},
+                               FileFormat::json),
+                       {"'\\x1b'", "line 1"});
+  expect_short_message(said_of("{\"Output\": {\"Directory\": \"a\\nb\"}}",
+                               {},
+                               FileFormat::json),
+                       {"'a\\nb'", "control character", "'Directory'"});
+  expect_short_message(said_of(plain_scene, {"Output/Directory=a\x01z"}),
+                       {"'a\\x01z'", "--set"});
 }
 
 
@@ -123,18 +126,18 @@ TEST(GuardedDoor, NestingEnds)
   std::string prm;
   for (unsigned int i = 0; i < 100000; ++i)
     prm += "subsection a\n";
-  expect_said(said_of(prm), {"16 deep", "line 17"});
+  expect_short_message(said_of(prm), {"16 deep", "line 17"});
   for (const std::string level : {"{\"a\":", "["})
     {
       std::string json = "{\"a\":";
       for (unsigned int i = 0; i < 100000; ++i)
         json += level;
-      expect_said(said_of(json, {}, FileFormat::json), {"16 deep"});
+      expect_short_message(said_of(json, {}, FileFormat::json), {"16 deep"});
     }
-  expect_said(said_of("{\"Grid\": {\"Cells\": [[1], [2]]}}",
-                      {},
-                      FileFormat::json),
-              {"'Cells'", "holds an array"});
+  expect_short_message(said_of("{\"Grid\": {\"Cells\": [[1], [2]]}}",
+                               {},
+                               FileFormat::json),
+                       {"'Cells'", "holds an array"});
 }
 
 
@@ -163,11 +166,11 @@ TEST(GuardedDoor, NamesThatFilesCannotHoldAreRefused)
 {
   for (const std::string name :
        {"a/b", "a\\\\b", "a#b", "a [m]", "a\\u0007", "\xff"})
-    expect_said(said_of("{\"Bodies\": \"" + name + "\", \"Body " + name +
-                          "\": {\"Shape\": \"box\"}}",
-                        {},
-                        FileFormat::json),
-                {name == "\xff" ? "JSON" : " "});
+    expect_short_message(said_of("{\"Bodies\": \"" + name + "\", \"Body " +
+                                   name + "\": {\"Shape\": \"box\"}}",
+                                 {},
+                                 FileFormat::json),
+                         {name == "\xff" ? "JSON" : " "});
   for (const std::string name : {"a&b", "<a>", "\"a\"", "'a'", "a=b", "ä"})
     EXPECT_EQ(said_of("{\"Bodies\": \"" +
                         (name == "\"a\"" ? "\\\"a\\\"" : name) + "\", \"Body " +
@@ -184,9 +187,9 @@ TEST(GuardedDoor, RandomNumbersAreRefused)
 {
   for (const std::string formula :
        {"0; rand()", "rand_seed(3); 0", "0; 2*rand ( )"})
-    expect_said(said_of(plain_scene,
-                        {"Body soil & rock/Initial velocity=" + formula}),
-                {"'rand", "Initial velocity", "jittered"});
+    expect_short_message(
+      said_of(plain_scene, {"Body soil & rock/Initial velocity=" + formula}),
+      {"'rand", "Initial velocity", "jittered"});
   EXPECT_EQ(said_of(plain_scene,
                     {"Constants=brand = 2, rand_ = 1",
                      "Body soil & rock/Initial velocity=brand; rand_*x"}),
@@ -222,8 +225,8 @@ TEST(GuardedDoor, PrintedParametersAreReadAgain)
         }
     }
   for (const std::string folder : {"a#b", "a\\", "a\nb", "a\xff"})
-    expect_said(said_of(plain_scene, {"Output/Directory=" + folder}),
-                {"'Directory'", "parameters.prm"});
+    expect_short_message(said_of(plain_scene, {"Output/Directory=" + folder}),
+                         {"'Directory'", "parameters.prm"});
 }
 
 
@@ -232,26 +235,32 @@ TEST(GuardedDoor, WhatDoesNotFitIsRefused)
 {
   EXPECT_EQ(said_of_size({}), "");
   EXPECT_EQ(said_of_size({"Grid/Cells=4000, 4000"}), "");
-  expect_said(said_of_size({"Grid/Cells=100000, 100000"}), {"1e+10 cells"});
-  expect_said(said_of_size({"Grid/Cells=1e9, 1e9"}), {"1e+18 cells"});
-  expect_said(said_of_size({"Grid/Cells=8192, 8192"}),
-              {"6.711e+07 cells", "16 GB", "Grid/Cells = ", "Memory limit"});
-  expect_said(said_of_size({"Body soil & rock/Points per cell edge=100000"}),
-              {"points", "'Body soil & rock', 'Points per cell edge = "});
+  expect_short_message(said_of_size({"Grid/Cells=100000, 100000"}),
+                       {"1e+10 cells"});
+  expect_short_message(said_of_size({"Grid/Cells=1e9, 1e9"}), {"1e+18 cells"});
+  expect_short_message(
+    said_of_size({"Grid/Cells=8192, 8192"}),
+    {"6.711e+07 cells", "16 GB", "Grid/Cells = ", "Memory limit"});
+  expect_short_message(
+    said_of_size({"Body soil & rock/Points per cell edge=100000"}),
+    {"points", "'Body soil & rock', 'Points per cell edge = "});
   // one cell holds more places than the body has points
-  expect_said(said_of_size({"Body soil & rock/Box/Upper corner=1e-9, 1e-9",
-                            "Body soil & rock/Placement=regular",
-                            "Body soil & rock/Points per cell edge=100000"}),
-              {"points", "Points per cell edge"});
+  expect_short_message(said_of_size(
+                         {"Body soil & rock/Box/Upper corner=1e-9, 1e-9",
+                          "Body soil & rock/Placement=regular",
+                          "Body soil & rock/Points per cell edge=100000"}),
+                       {"points", "Points per cell edge"});
   // a lattice of its own has no places in cells
   EXPECT_EQ(said_of_size({"Body soil & rock/Box/Upper corner=1e-9, 1e-9",
                           "Body soil & rock/Placement=fitted",
                           "Body soil & rock/Points per cell edge=100000"}),
             "");
-  expect_said(said_of_size({"Body soil & rock/Placement=fitted",
-                            "Body soil & rock/Points along edges=1e5, 1e5"}),
-              {"1e+10 points", "Points along edges"});
-  expect_said(said_of_size({"Memory limit=0.1"}), {"'Memory limit' is 0.1 GB"});
+  expect_short_message(said_of_size(
+                         {"Body soil & rock/Placement=fitted",
+                          "Body soil & rock/Points along edges=1e5, 1e5"}),
+                       {"1e+10 points", "Points along edges"});
+  expect_short_message(said_of_size({"Memory limit=0.1"}),
+                       {"'Memory limit' is 0.1 GB"});
   EXPECT_EQ(said_of_size({"Memory limit=100", "Grid/Cells=8192, 8192"}), "");
 }
 
@@ -287,14 +296,15 @@ TEST(GuardedDoor, TheRemedyFits)
 TEST(GuardedDoor, ReferencesThatDoNotFitAreRefused)
 {
   EXPECT_EQ(said_of_size({}, Task::reference), "");
-  expect_said(said_of_size({"Reference/Refinements=10"}, Task::reference),
-              {"elements", "Refinements = 0"});
-  expect_said(said_of_size({"Reference/Refinements=1000000000"},
-                           Task::reference),
-              {"elements", "Refinements"});
-  expect_said(said_of_size({"Reference/Elements over depth=100000"},
-                           Task::reference),
-              {"1e+10 elements", "Elements over depth"});
+  expect_short_message(said_of_size({"Reference/Refinements=10"},
+                                    Task::reference),
+                       {"elements", "Refinements = 0"});
+  expect_short_message(said_of_size({"Reference/Refinements=1000000000"},
+                                    Task::reference),
+                       {"elements", "Refinements"});
+  expect_short_message(said_of_size({"Reference/Elements over depth=100000"},
+                                    Task::reference),
+                       {"1e+10 elements", "Elements over depth"});
 }
 
 
@@ -303,14 +313,16 @@ TEST(GuardedDoor, PicturesAndStepsHaveAnEnd)
 {
   for (const Task task : {Task::run, Task::reference})
     {
-      expect_said(said_of_size({"Output/Time interval=1e-9"}, task),
-                  {"1e+09 pictures", "Time interval = 0.01"});
+      expect_short_message(said_of_size({"Output/Time interval=1e-9"}, task),
+                           {"1e+09 pictures", "Time interval = 0.01"});
       EXPECT_EQ(said_of_size({"Output/Time interval=1e-4"}, task), "");
     }
   EXPECT_EQ(said_of_size({"Output/Time interval=1e-9", "End step=10"}), "");
-  expect_said(said_of_size({"Method/Time step=1e-12"}), {"1e+12 steps"});
-  expect_said(said_of_size({"Reference/Time step=1e-12"}, Task::reference),
-              {"1e+12 steps"});
+  expect_short_message(said_of_size({"Method/Time step=1e-12"}),
+                       {"1e+12 steps"});
+  expect_short_message(said_of_size({"Reference/Time step=1e-12"},
+                                    Task::reference),
+                       {"1e+12 steps"});
 }
 
 
