@@ -34,7 +34,8 @@ namespace limber
           of_row.erase(std::unique(of_row.begin(), of_row.end()), of_row.end());
           in_body = std::max<unsigned int>(in_body, of_row.size());
         }
-    equations.width        = in_body * media.size();
+    of_cells               = in_body * media.size();
+    equations.width        = of_cells; // obstacles are for a lattice
     const std::size_t size = std::size_t(equations.n) * equations.width;
     equations.columns.assign(size, PressureEquations::no_column);
     mates.assign(size, invalid_cell);
