@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/adaptation/adaptation.h>
 #include <limber/adaptation/stretched_points.h>
+#include <limber/base/exceptions.h>
 
 #include <gtest/gtest.h>
 #include <support/scene_parts.h>
@@ -329,4 +330,21 @@ TEST(StretchedPoints, HoldTogetherAcrossTheGrid)
   fly_apart<2>(parts, &adaptation, 8);
   EXPECT_LT(stretches(whole).first, 4.5);
   EXPECT_GT(stretches(parts).first, 8);
+}
+
+
+
+TEST(StretchedPoints, AreRefusedInTheInitialFrame)
+{
+  try
+    {
+      SceneRun<2> run(strip<2>(), {"Body strip/Frame=initial"});
+      FAIL() << "The scene was accepted.";
+    }
+  catch (const InputError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("nothing comes apart"),
+                std::string::npos)
+        << error.what();
+    }
 }

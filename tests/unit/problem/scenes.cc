@@ -266,6 +266,7 @@ TEST(Scenes, PlacementFollowsTheFaces)
       set Bodies = block
       subsection Body block
         set Points per cell edge = 2
+        set Material = linear elastic
         subsection Newtonian fluid
           set Bulk modulus = 1e6
         end

@@ -32,6 +32,7 @@ namespace
       set left = free
       set right = free
       set top = free
+      set bottom = slip
       subsection Side bottom
         set Friction coefficient = 0.3
         set Velocity = 0.5; 0

@@ -78,6 +78,7 @@ namespace
       set Pairs = faces
       subsection Pair faces
         set Bodies = block, plate
+        set Law = slip
         set Friction coefficient = 0.3
       end
     end

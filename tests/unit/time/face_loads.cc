@@ -234,6 +234,7 @@ TYPED_TEST(FaceLoads, ABoxAsABlockIsTheSameBody)
                            R"(
     set Bodies = block
     subsection Body block
+      set Shape = box
       set Placement = regular
       subsection Box
         set Lower corner = 1, 1)" +
