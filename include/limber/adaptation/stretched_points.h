@@ -20,7 +20,8 @@ namespace limber
    * the edges s that the point has had at the start, less what divisions have
    * taken. Domains have edges of their own. It becomes longer as the linear
    * function of the place does that fits the velocities of the points in the
-   * weighted with mass. Points are in owned cells. Collective.
+   * cells around best, weighted with mass; not at all where these points are in
+   * one row. Points are in owned cells. Collective.
    */
   template <int dim>
   std::vector<Division<dim>>

@@ -263,10 +263,12 @@ TEST(StretchedPoints, PartAsTheMaterialDoes)
       auto       which  = stretched_points<2>(run.grid, *run.bodies[0], {});
       ASSERT_EQ(which.size(), 2u);
       for (auto &division : which)
-        division.parts = parts;
-      // All points are in one row: of its motion along y nothing is known.
-      for (auto &division : which)
-        division.rate = 1;
+        {
+          division.parts = parts;
+          // All points are in one row, so that nothing is known of it.
+          EXPECT_EQ(division.rate, 0);
+          division.rate = 1;
+        }
       const double more  = run.bodies[0]->points.divide(which, 2);
       const auto   after = sums();
       for (unsigned int k = 0; k < 3; ++k)
