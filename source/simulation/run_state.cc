@@ -95,7 +95,8 @@ namespace limber
   serialize(Archive &archive, IntegratorState<dim> &state, const unsigned int)
   {
     archive &state.wave_speed &state.point_speed &state.displacement &state
-      .largest_mass &state.steps_since_filter &state.step &state.face_pieces;
+      .largest_mass &state.steps_since_filter &state.step &state
+      .way_since_shifting &state.face_pieces;
   }
 
 

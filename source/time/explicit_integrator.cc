@@ -35,6 +35,7 @@ namespace limber
     , liquid_means(parts, cut_cells ? &*cut_cells : nullptr)
     , stabilization(parts)
     , relocation(parts, loads)
+    , shifting(parts, cut_cells ? &*cut_cells : nullptr)
   {
     if (const unsigned int n = n_nodal_fields(parts.problem); n > 1)
       {
@@ -98,6 +99,7 @@ namespace limber
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
     liquid_means.reinit();
+    shifting.reinit();
     loads.reinit();
     relocation.reinit();
   }
@@ -121,6 +123,7 @@ namespace limber
     control_chequerboards();
     do_scheme();
     relocation.end_step(extremes);
+    shifting.follow(extremes.displacement);
     wave_speed  = std::sqrt(extremes.wave_squared);
     point_speed = std::sqrt(extremes.speed_squared);
     lap(Verb::relocate);
@@ -135,8 +138,24 @@ namespace limber
   {
     stopwatch.start();
     const bool exchanged = relocation.reorganise(extremes.displacement);
+    const bool spread    = spread_points();
     lap(Verb::relocate);
-    return exchanged;
+    return exchanged || (spread && parallel);
+  }
+
+
+
+  template <int dim>
+  bool
+  ExplicitIntegrator<dim>::spread_points()
+  {
+    if (!shifting.is_due())
+      return false;
+    if (parallel)
+      relocation.exchange_points();
+    shifting.shift();
+    relocation.adopt_places();
+    return true;
   }
 
 
@@ -244,6 +263,7 @@ namespace limber
             extremes.largest_mass,
             steps_since_filter,
             step,
+            shifting.way_since(),
             loads.pieces()};
   }
 
@@ -259,6 +279,7 @@ namespace limber
     extremes.largest_mass = former.largest_mass;
     steps_since_filter    = former.steps_since_filter;
     step                  = former.step;
+    shifting.restore(former.way_since_shifting);
     unstrained            = 0;
     stress_is_behind      = false;
     loads.restore(former.face_pieces);

@@ -4,10 +4,19 @@
 #include <limber/time/hydrostatic_load.h>
 
 #include <algorithm>
-#include <utility>
+#include <cmath>
 
 namespace limber
 {
+  namespace
+  {
+    // Of the mean pressure of what fills a cell and rests: from there on all of
+    // it counts as borne, so that waves of sound change nothing.
+    constexpr double share_of_rest = 0.5;
+  } // namespace
+
+
+
   template <int dim>
   HydrostaticLoad<dim>::HydrostaticLoad(const Problem<dim>        &problem,
                                         const BackgroundGrid<dim> &grid,
@@ -17,10 +26,9 @@ namespace limber
     , grid(grid)
     , cut_cells(cut_cells)
     , surroundings(grid)
-    , on_nodes(n_nodal_fields(problem))
+    , of_fields(n_nodal_fields(problem))
   {
-    if ((!grid.has_levels() && cut_cells == nullptr) ||
-        problem.loads.gravity.norm() == 0 ||
+    if (problem.loads.gravity.norm() == 0 ||
         grid.description.kernel != KernelKind::linear)
       return;
     for (const auto &body : bodies)
@@ -34,56 +42,34 @@ namespace limber
 
 
   template <int dim>
-  bool
-  HydrostaticLoad<dim>::any() const
-  {
-    return may_be() &&
-           (grid.has_levels() || (cut_cells != nullptr && cut_cells->any()));
-  }
-
-
-
-  template <int dim>
   void
   HydrostaticLoad<dim>::reinit()
   {
     surroundings.reinit();
     sums.reinit(std::size_t(grid.vertices.n()) * dim);
-    find_cells();
+    find_uneven_nodes();
   }
 
 
 
   template <int dim>
   void
-  HydrostaticLoad<dim>::find_cells()
+  HydrostaticLoad<dim>::find_uneven_nodes()
   {
     const NodeTable<dim> &table = grid.vertices;
     if (cut_cells)
       version = cut_cells->version();
-    meeting = table.masters;
-    std::vector<bool> is_uneven(table.n(), false);
+    is_uneven.assign(table.n(), false);
+    marked_in.assign(table.n(), turn);
+    ++turn;
     for (const std::uint32_t node : table.masters)
       is_uneven[node] = true;
     for (const HangingNode &hanging : table.hanging)
       is_uneven[hanging.node] = true;
     if (cut_cells && cut_cells->any())
       for (std::uint32_t node = 0; node < table.n(); ++node)
-        if (cut_cells->is_cut(node) && !is_uneven[node])
-          {
-            meeting.push_back(node);
-            is_uneven[node] = true;
-          }
-    for (auto &forces : on_nodes)
-      forces.assign(meeting.size(), {});
-    cells.clear();
-    for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
-      for (unsigned int a = 0; a < n_corners; ++a)
-        if (is_uneven[surroundings.node_of(cell, a)])
-          {
-            cells.push_back(cell);
-            break;
-          }
+        if (cut_cells->is_cut(node))
+          is_uneven[node] = true;
   }
 
 
@@ -138,6 +124,39 @@ namespace limber
 
 
 
+  // How much of the weight of what is in a cell its pressure bears.
+  template <int dim>
+  double
+  HydrostaticLoad<dim>::borne_share(const unsigned int  field,
+                                    const std::uint32_t cell) const
+  {
+    double volume = 0, mass = 0, pressure = 0; // the last times the volume
+    for (MaterialBody<dim> *const body : liquids)
+      if (body->description.nodal_field == field)
+        if (const auto   view    = body->cell_sums->view();
+            const double of_body = view.present_mass(cell))
+          {
+            const double *const sums = body->cell_sums->record(cell);
+            const double        J    = sums[view.volumetric()] / of_body;
+            const double        part = of_body / body->stress->density();
+            mass += of_body;
+            volume += part;
+            pressure += part * body->stress->volumetric_response(J).pressure;
+          }
+    double rest = 0.5; // that of the weight, times the volume
+    double room = 1, drop = 0;
+    for (unsigned int d = 0; d < dim; ++d)
+      {
+        room /= grid.geometry[cell].inverse_edge[d];
+        drop += std::abs(problem.loads.gravity[d]) /
+                grid.geometry[cell].inverse_edge[d];
+      }
+    rest *= mass * drop * std::min(1., volume / room);
+    return std::min(std::max(pressure / (share_of_rest * rest), 0.), 1.);
+  }
+
+
+
   // V / (12 2^(dim - 2)) sum_(e /= d) s_ad s_ae g_e h_e / h_d, m^(dim+1)/s^2.
   template <int dim>
   double
@@ -165,9 +184,26 @@ namespace limber
   HydrostaticLoad<dim>::find(const NodalFields<dim> &nodes)
   {
     if (cut_cells && version != cut_cells->version())
-      find_cells();
-    for (unsigned int field = 0; field < on_nodes.size(); ++field)
+      find_uneven_nodes();
+    for (unsigned int field = 0; field < of_fields.size(); ++field)
       find(nodes, field);
+  }
+
+
+
+  // Corners of cells at a surface, which may be filled in part, and what the
+  // mesh and obstacles make uneven. Elsewhere all cancels.
+  template <int dim>
+  void
+  HydrostaticLoad<dim>::mark_nodes(const NodalFields<dim> &nodes)
+  {
+    ++turn;
+    for (const auto *const cells :
+         {&nodes.owned_occupied_cells(), &nodes.ghost_occupied_cells()})
+      for (const std::uint32_t cell : *cells)
+        if (!surroundings.is_inside(cell))
+          for (unsigned int a = 0; a < n_corners; ++a)
+            marked_in[surroundings.node_of(cell, a)] = turn;
   }
 
 
@@ -186,28 +222,30 @@ namespace limber
     const auto of_node = [&](const std::uint32_t node) {
       return sums.data() + std::size_t(node) * dim;
     };
-    for (const auto *const all :
-         {&nodes.active_nodes(), &std::as_const(meeting)})
+    for (const auto *const all : {&nodes.active_nodes(), &table.masters})
       for (const std::uint32_t node : *all)
         std::fill_n(of_node(node), dim, 0.);
     for (const HangingNode &hanging : table.hanging)
       std::fill_n(of_node(hanging.node), dim, 0.);
 
-    for (const std::uint32_t cell : cells)
+    mark_nodes(nodes);
+    for (const std::uint32_t cell : nodes.owned_occupied_cells())
       {
-        if (!holds_liquid_alone(field, cell) ||
+        if (!has_marked_node(cell) || !holds_liquid_alone(field, cell) ||
             (knows && cut_cells->is_covered(cell)))
           continue;
         const auto *const cut = knows ? cut_cells->cell(cell) : nullptr;
         if (cut && !cut->surfaces.empty() && !cut_cells->wets(cell, field))
           continue;
-        const double density = density_within(field, cell, cut ? cut->open : 1);
+        const double density = density_within(field, cell, cut ? cut->open : 1) *
+                               (cut ? 1 : borne_share(field, cell));
         for (unsigned int d = 0; d < dim; ++d)
           for (const unsigned int end : {0, 1})
             if (surroundings.has_neighbour(cell, d, end))
               for (unsigned int a = 0; a < n_corners; ++a)
-                if ((a >> d & 1) == end)
-                  of_node(surroundings.node_of(cell, a))[d] +=
+                if (const auto node = surroundings.node_of(cell, a);
+                    (a >> d & 1) == end && is_marked(node))
+                  of_node(node)[d] +=
                     density *
                     (cut ? cut->hydrostatic[a][d] : of_whole_cell(cell, a, d));
       }
@@ -215,9 +253,20 @@ namespace limber
     exchange.start(nodes.node_plan(), sums.data(), 0, dim);
     exchange.finish(sums.data());
 
-    for (std::size_t k = 0; k < meeting.size(); ++k)
-      for (unsigned int d = 0; d < dim; ++d)
-        on_nodes[field][k][d] = of_node(meeting[k])[d];
+    auto &[loaded, on_loaded] = of_fields[field];
+    loaded.clear();
+    on_loaded.clear();
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        dealii::Tensor<1, dim> force;
+        for (unsigned int d = 0; d < dim; ++d)
+          force[d] = of_node(node)[d];
+        if (force.norm_square() > 0)
+          {
+            loaded.push_back(node);
+            on_loaded.push_back(force);
+          }
+      }
   }
 
 
@@ -227,9 +276,10 @@ namespace limber
   HydrostaticLoad<dim>::add(const unsigned int field,
                             LazyArray<double> &forces) const
   {
-    for (std::size_t k = 0; k < meeting.size(); ++k)
+    const auto &[loaded, on_loaded] = of_fields[field];
+    for (std::size_t k = 0; k < loaded.size(); ++k)
       for (unsigned int d = 0; d < dim; ++d)
-        forces[std::size_t(meeting[k]) * dim + d] += on_nodes[field][k][d];
+        forces[std::size_t(loaded[k]) * dim + d] += on_loaded[k][d];
   }
 
 

@@ -12,11 +12,6 @@ namespace limber
     // Limits of what counts as all of a cell over what is in it, in explicit
     // steps: more would make sound faster than the step allows for.
     constexpr double least_share = 0.8, largest_share = 1.25;
-
-    // Where a cell holds too much or too little by @p clumped of it or more,
-    // means over points keep this share: as found with water at rest that has
-    // been stirred.
-    constexpr double share_of_points = 0.3, clumped = 0.1;
   } // namespace
 
 
@@ -173,19 +168,15 @@ namespace limber
     const auto *const cut    = cut_cells ? cut_cells->cell(cell) : nullptr;
     const double      filled = filling(cell) / (cut ? cut->open : 1);
     const bool        inside = surroundings.is_inside(cell);
-    const double      share =
-      inside && !group.is_implicit ?
-             1 - share_of_points * std::min(1., std::abs(filled - 1) / clumped) :
-             1;
     unsigned int n_open = 0, open = 0; // directions that end at a surface
     bool         before = true, behind = true;
     if (inside && cut)
-      fill_open_part(*cut, share);
+      fill_open_part(*cut);
     else
       for (unsigned int d = 0; d < dim; ++d)
         if (inside || (surroundings.is_bounded(cell, d, 0) &&
                        surroundings.is_bounded(cell, d, 1)))
-          approach(d, cut ? cut->monomials[1u << d] : 0.5, share);
+          set_mean(d, cut ? cut->monomials[1u << d] : 0.5);
         else
           {
             ++n_open;
@@ -196,7 +187,7 @@ namespace limber
     if (n_open == 1 && (before || behind))
       {
         const double half = 0.5 * std::min(1., filled);
-        approach(open, before ? half : 1 - half, share);
+        set_mean(open, before ? half : 1 - half);
       }
     if (inside)
       for (const Part &part : in_cell)
@@ -208,19 +199,17 @@ namespace limber
 
 
 
-  // Bring the mean of the coordinate along a direction, and those of all
-  // monomials that have it, a share of the way to this mean.
+  // Give the coordinate along a direction this mean, and with it all monomials
+  // that have it.
   template <int dim>
   void
-  LiquidMeans<dim>::approach(const unsigned int direction,
-                             const double       mean,
-                             const double       share)
+  LiquidMeans<dim>::set_mean(const unsigned int direction, const double mean)
   {
     const unsigned int bit = 1u << direction;
     for (const Part &part : in_cell)
       for (unsigned int k = bit; k < n_nodes - 1; ++k)
         if (k & bit)
-          part.sums[k] += share * (mean * part.sums[k ^ bit] - part.sums[k]);
+          part.sums[k] = mean * part.sums[k ^ bit];
   }
 
 
@@ -228,12 +217,11 @@ namespace limber
   // The same of all monomials, to the means over the open part of a cell.
   template <int dim>
   void
-  LiquidMeans<dim>::fill_open_part(const typename CutCells<dim>::Cell &cut,
-                                   const double                        share)
+  LiquidMeans<dim>::fill_open_part(const typename CutCells<dim>::Cell &cut)
   {
     for (const Part &part : in_cell)
       for (unsigned int k = 1; k < n_nodes - 1; ++k)
-        part.sums[k] += share * (part.mass * cut.monomials[k] - part.sums[k]);
+        part.sums[k] = part.mass * cut.monomials[k];
   }
 
 

@@ -73,10 +73,10 @@ namespace limber
   void
   ExternalLoads<dim>::reinit()
   {
-    if (any() || hydrostatic.may_be())
+    if (any())
       for (LazyArray<double> &of_field : forces)
         of_field.reinit(grid.nodes().n() * dim);
-    if (hydrostatic.may_be())
+    if (hydrostatic.any())
       hydrostatic.reinit();
     exchange_pieces();
   }
@@ -245,7 +245,8 @@ namespace limber
 
     for (unsigned int field = 0; field < forces.size(); ++field)
       {
-        complete(nodes, forces[field]);
+        if (problem.loads.body_force || !faces.empty())
+          complete(nodes, forces[field]);
         if (hydrostatic.any())
           hydrostatic.add(field, forces[field]);
         for (const std::uint32_t node : nodes.active_nodes())

@@ -334,6 +334,15 @@ namespace limber
     loads.exchange_pieces();
     travelled          = 0;
     any_entered_ghosts = 0;
+    adopt_places();
+  }
+
+
+
+  template <int dim>
+  void
+  Relocation<dim>::adopt_places()
+  {
     sort_points(/*agree=*/true);
     gather_cells();
   }

@@ -170,6 +170,8 @@ namespace limber
     // Without dimension; where the pressure is implicit, the share gamma of
     // the compact Laplacian
     double chequerboard_control = 0;
+    // C, without dimension, of liquids (ParticleShifting)
+    double particle_shifting = 0;
     // Found together with the velocity at the end of the step
     bool implicit_pressure = false;
     // Only above zero, with an implicit pressure; otherwise the law sees to it

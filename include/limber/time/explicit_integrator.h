@@ -9,6 +9,7 @@
 #include <limber/time/full_mass_filter.h>
 #include <limber/time/liquid_means.h>
 #include <limber/time/obstacle_contact.h>
+#include <limber/time/particle_shifting.h>
 #include <limber/time/relocation.h>
 #include <limber/time/stabilization.h>
 
@@ -188,6 +189,8 @@ namespace limber
     leapfrogs() const;
     void
     find_speeds();
+    bool
+    spread_points();
     void
     give(GiveToGrid what);
     void
@@ -226,6 +229,7 @@ namespace limber
     std::optional<ObstacleContact<dim>> obstacles; // where the scene has any
     Stabilization<dim>                  stabilization;
     Relocation<dim>                     relocation;
+    ParticleShifting<dim>               shifting;
     std::optional<FullMassFilter<dim>>  full_mass; // for FMPM and XPIC alone
     unsigned long                       steps_since_filter = 0;
 

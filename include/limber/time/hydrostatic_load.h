@@ -16,8 +16,8 @@ namespace limber
 
 
   /**
-   * The part of the hydrostatic pressure that a constant one leaves out, where
-   * cells of several sizes meet, and where obstacles cut them.
+   * The part of the hydrostatic pressure that a constant one leaves out: at
+   * surfaces, where cells of several sizes meet, and where obstacles cut them.
    *
    * In a liquid with the mean divergence of a cell the pressure is constant in
    * it. At rest it is p_c + rho g . (x - x_c), and the second part gives the
@@ -27,12 +27,15 @@ namespace limber
    *        = rho V / (12 2^(dim - 2)) sum_(e /= d) s_ad s_ae g_e h_e / h_d,
    *
    * the shape of hourglass motion. Between equal cells it cancels, so that it
-   * may as well be left out; at the corners of a fine region, and where its
-   * rim meets a side or a surface, leaving it out sets water at rest in motion,
-   * by some g/16. So it is added there: at the masters of hanging nodes, from
-   * cells with a neighbour across d, of which one cancels the other if they are
-   * equal. What a cell at a surface holds counts as filling it from within.
-   * Theory: doc/theory/adaptive_grid.md.
+   * may as well be left out. At each step of a surface that is not level, at
+   * the corners of a fine region, and where its rim meets a side or a surface,
+   * leaving it out sets water at rest in motion, by some g/3 and g/16. So it is
+   * added there: at corners of cells at a surface and at the masters of hanging
+   * nodes, from cells with a neighbour across d, of which one cancels the other
+   * if they are equal. What a cell at a surface holds counts as filling it from
+   * within. Where its pressure is less than half of that of its weight, as in
+   * free fall, it has the less of such a part. Theory:
+   * doc/theory/adaptive_grid.md.
    *
    * The same at the corners of cells that obstacles cut (CutCells), where the
    * integral is that over the open part, and the pressure on the surfaces has
@@ -50,16 +53,12 @@ namespace limber
                     const Bodies              &bodies,
                     CutCells<dim>             *cut_cells);
 
-    /** Whether there may be any: gravity, liquids, and levels or obstacles. */
+    /** Whether there may be any: gravity and liquids. */
     bool
-    may_be() const
+    any() const
     {
       return !liquids.empty();
     }
-
-    /** Whether there may be any now: levels, or cells that are cut. */
-    bool
-    any() const;
 
     /** Adopt a mesh; collective. */
     void
@@ -78,13 +77,33 @@ namespace limber
     static constexpr unsigned int n_corners = 1 << dim;
 
     void
-    find_cells();
+    find_uneven_nodes();
     void
     find(const NodalFields<dim> &nodes, unsigned int field);
     bool
     knows_cut_cells(unsigned int field) const;
     double
     density_within(unsigned int field, std::uint32_t cell, double open) const;
+    double
+    borne_share(unsigned int field, std::uint32_t cell) const;
+    void
+    mark_nodes(const NodalFields<dim> &nodes);
+
+    bool
+    has_marked_node(const std::uint32_t cell) const
+    {
+      for (unsigned int a = 0; a < n_corners; ++a)
+        if (is_marked(surroundings.node_of(cell, a)))
+          return true;
+      return false;
+    }
+
+    bool
+    is_marked(const std::uint32_t node) const
+    {
+      return is_uneven[node] || marked_in[node] == turn;
+    }
+
     double
     of_whole_cell(std::uint32_t cell,
                   unsigned int  corner,
@@ -98,13 +117,21 @@ namespace limber
     CutCells<dim> *const             cut_cells;   // or null
     unsigned int                     version = 0; // of these
     Surroundings<dim>                surroundings;
-    // Masters of the mesh and corners of cells that are cut; cells of this
-    // rank with a corner that is one or hangs on one
-    std::vector<std::uint32_t> meeting, cells;
+    // By node: whether it is a master, hangs on one, or is a corner of a cell
+    // that is cut; in which turn it was last one of a cell at a surface
+    std::vector<unsigned char> is_uneven;
+    std::vector<std::uint32_t> marked_in;
+    std::uint32_t              turn = 0;
     LazyArray<double>          sums; // by node, N
     RecordExchange             exchange{dim};
-    // By field, of the nodes where unequal cells meet
-    std::vector<std::vector<dealii::Tensor<1, dim>>> on_nodes;
+
+    /** Nodes that are loaded, and by what, N. */
+    struct OfField
+    {
+      std::vector<std::uint32_t>          nodes;
+      std::vector<dealii::Tensor<1, dim>> forces;
+    };
+    std::vector<OfField> of_fields;
   };
 } // namespace limber
 

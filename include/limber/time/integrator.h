@@ -36,6 +36,7 @@ namespace limber
     double                              largest_mass       = 0;
     unsigned long                       steps_since_filter = 0;
     double                              step               = 0; // s
+    double                              way_since_shifting = 0; // cells
     typename ExternalLoads<dim>::Pieces face_pieces;
   };
 

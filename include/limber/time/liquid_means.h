@@ -31,11 +31,10 @@ namespace limber
    * divergence is above the mean: they would make way without work against the
    * pressure p, as if by a stiffness of - p against deviations of the
    * divergence, and water at rest would be unstable. In a layer at a surface
-   * the cell counts as filled from within. Where points have clumped in
-   * explicit steps, means over them push clumps apart and keep a share; an
-   * implicit pressure has the density control for that. Where an obstacle cuts
-   * a cell (CutCells), its open part takes the place of the cell. Theory:
-   * doc/theory/treatments.md.
+   * the cell counts as filled from within. What gathers all
+   * the same is kept apart by ParticleShifting, and with an implicit pressure
+   * by the density control. Where an obstacle cuts a cell (CutCells), its open
+   * part takes the place of the cell. Theory: doc/theory/treatments.md.
    */
   template <int dim>
   class LiquidMeans
@@ -83,9 +82,9 @@ namespace limber
     void
     fill(const Group &group, std::uint32_t cell);
     void
-    approach(unsigned int direction, double mean, double share);
+    set_mean(unsigned int direction, double mean);
     void
-    fill_open_part(const typename CutCells<dim>::Cell &cut, double share);
+    fill_open_part(const typename CutCells<dim>::Cell &cut);
     bool
     reaches_surfaces(const typename CutCells<dim>::Cell &cut) const;
     double

@@ -66,6 +66,14 @@ namespace limber
     double
     imbalance() const;
 
+    /** Let ranks exchange points, so that none is in a ghost cell. */
+    void
+    exchange_points();
+
+    /** Adopt points that have been moved between steps, and know their cells. */
+    void
+    adopt_places();
+
     /** Of the cells that hold points, over all ranks, m. */
     double
     smallest_edge() const
@@ -90,8 +98,6 @@ namespace limber
     remove_lost_points();
     void
     sort_points(bool agree);
-    void
-    exchange_points();
     void
     gather_cells();
     double

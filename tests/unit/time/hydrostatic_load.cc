@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <support/scene_run.h>
 
-/** @file Water at rest on cells of several sizes (HydrostaticLoad). */
+#include <cmath>
+
+/** @file Water at rest and in free fall (HydrostaticLoad). */
 
 using namespace limber;
 
@@ -78,4 +80,29 @@ TEST(HydrostaticLoad, KeepsWaterAtRestOnCellsOfSeveralSizes)
     }
   // corners in all directions
   expect_rest<3>("0.3 - sqrt((x - 0.9)^2 + (y - 0.4)^2 + (z - 0.6)^2)");
+}
+
+
+
+// What falls has no pressure: no force may act along its surface, which is a
+// flight of stairs.
+TEST(HydrostaticLoad, LeavesWhatFallsAlone)
+{
+  const std::vector<double> gravity = {2.5, -9.5};
+  SceneRun<2>               run(
+    "set Dimension = 2\nset End time = 10\nset Bodies = drop\n"
+    "subsection Body drop\n set Shape = ball\n subsection Ball\n"
+    " set Centre = 0.5, 0.6\n set Radius = 0.25\n end\n"
+    " set Material = newtonian fluid\n subsection Newtonian fluid\n"
+    " set Density = 1000\n set Bulk modulus = 1e6\n end\nend\n"
+    "subsection Grid\n set Cells = 16, 16\nend\n"
+    "subsection Loads\n set Gravity = 2.5, -9.5\nend\n");
+  run.advance(2e-4, 100);
+  const PointView<2> points = run.points();
+  ASSERT_GT(points.size, 100u);
+  for (std::size_t p = 0; p < points.size; ++p)
+    for (unsigned int d = 0; d < 2; ++d)
+      EXPECT_NEAR(points.velocity[d][p],
+                  gravity[d] * run.time,
+                  1e-9 * std::abs(gravity[d]) * run.time);
 }

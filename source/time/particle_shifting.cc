@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/particle_shifting.h>
+
+#include <algorithm>
+#include <map>
+
+namespace limber
+{
+  namespace
+  {
+    // Way of the fastest point between two times, in cells: so short that what
+    // gathers meanwhile is little, so long that it costs little.
+    constexpr double interval = 0.2;
+
+    // C s: more would throw points beyond where they belong.
+    constexpr double largest_factor = 0.5;
+
+    // Of the excess either way. What flies apart leaves nodes nearly empty, and
+    // shall not be drawn together.
+    constexpr double largest_excess = 0.5;
+
+    // How near to a side of the box points are shifted, in cells.
+    constexpr double least_distance = 1e-3;
+
+    // Arrays of points are written a pack at a time.
+    constexpr std::size_t room_for_pack = 16;
+
+
+
+    template <int dim>
+    double
+    volume_of(const CellGeometry<dim> &cell)
+    {
+      double result = 1;
+      for (const double inverse : cell.inverse_edge)
+        result /= inverse;
+      return result;
+    }
+
+
+
+    /** Natural coordinates of a point in its cell. */
+    template <int dim>
+    std::array<double, dim>
+    natural(const PointView<dim>    &points,
+            const std::size_t        p,
+            const CellGeometry<dim> &cell)
+    {
+      std::array<double, dim> xi;
+      for (int d = 0; d < dim; ++d)
+        xi[d] = (points.position[d][p] - cell.origin[d]) * cell.inverse_edge[d];
+      return xi;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  ParticleShifting<dim>::ParticleShifting(const RunParts<dim>        &parts,
+                                          const CutCells<dim> *const cut_cells)
+    : parts(parts)
+    , cut_cells(cut_cells)
+    , surroundings(parts.grid)
+  {
+    std::map<unsigned int, Group> by_field;
+    for (auto &body : parts.bodies)
+      if (body->description.particle_shifting > 0)
+        by_field[body->description.nodal_field].liquids.push_back(body.get());
+    for (auto &[field, group] : by_field)
+      {
+        for (auto &body : parts.bodies)
+          if (std::find(group.liquids.begin(),
+                        group.liquids.end(),
+                        body.get()) == group.liquids.end())
+            group.others.push_back(body.get());
+        groups.push_back(std::move(group));
+      }
+    reinit();
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::reinit()
+  {
+    if (groups.empty())
+      return;
+    surroundings.reinit();
+    records.reinit(std::size_t(parts.grid.vertices.n()) * Record::stride);
+    find_rooms();
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::find_rooms()
+  {
+    const NodeTable<dim> &table = parts.grid.vertices;
+    rooms.reinit(table.n());
+    std::fill_n(rooms.data(), table.n(), 0.);
+    for (std::uint32_t cell = 0; cell < parts.grid.n_owned_cells(); ++cell)
+      for (unsigned int a = 0; a < n_corners; ++a)
+        rooms[surroundings.node_of(cell, a)] +=
+          volume_of(parts.grid.geometry[cell]) / n_corners;
+    table.give_to_masters(rooms.data(), 1, 0, 1);
+    const ExchangePlan all(table.shared);
+    room_exchange.start(all, rooms.data(), 0, 1);
+    room_exchange.finish(rooms.data());
+  }
+
+
+
+  template <int dim>
+  bool
+  ParticleShifting<dim>::is_due() const
+  {
+    return !groups.empty() && travelled >= interval;
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::shift()
+  {
+    for (const Group &group : groups)
+      {
+        find_excess(group);
+        for (MaterialBody *const body : group.liquids)
+          move_points(*body);
+      }
+    travelled = 0;
+  }
+
+
+
+  template <int dim>
+  bool
+  ParticleShifting<dim>::holds(const std::vector<MaterialBody *> &bodies,
+                               const std::uint32_t                cell) const
+  {
+    return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
+      return body->cell_sums && body->cell_sums->view().present_mass(cell) > 0;
+    });
+  }
+
+
+
+  template <int dim>
+  bool
+  ParticleShifting<dim>::is_at_obstacle(const std::uint32_t node) const
+  {
+    return cut_cells && (cut_cells->is_cut(node) ||
+                         cut_cells->covered_corners()[node] > 0);
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::find_excess(const Group &group)
+  {
+    const NodalFields<dim> &vertices = parts.nodes.vertices();
+    const NodeTable<dim>   &table    = parts.grid.vertices;
+    surroundings.find(
+      vertices,
+      [&](const std::uint32_t cell) {
+        return holds(group.liquids, cell) || holds(group.others, cell);
+      },
+      cut_cells ? cut_cells->covered_corners() : nullptr);
+
+    for (const auto *const all : {&vertices.active_nodes(), &table.masters})
+      for (const std::uint32_t node : *all)
+        std::fill_n(record(node), Record::stride, 0.);
+    for (const HangingNode &hanging : table.hanging)
+      std::fill_n(record(hanging.node), Record::stride, 0.);
+    for (MaterialBody *const body : group.liquids)
+      add_volumes(*body);
+    mark_cells(group);
+    table.give_to_masters(records.data(), Record::stride, 0, Record::stride);
+    exchange.start(vertices.node_plan(), records.data(), 0, Record::stride);
+    exchange.finish(records.data());
+
+    for (const std::uint32_t node : vertices.active_nodes())
+      {
+        double *const of_node = record(node);
+        double        excess  = of_node[Record::excess] / rooms[node] - 1;
+        if (of_node[Record::at_surface] > 0)
+          excess = std::max(excess, 0.);
+        if (of_node[Record::shared] > 0 || is_at_obstacle(node))
+          excess = 0;
+        of_node[Record::excess] =
+          std::min(std::max(excess, -largest_excess), largest_excess);
+      }
+    table.take_from_masters(records.data(),
+                            Record::stride,
+                            Record::excess,
+                            Record::excess + 1);
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::add_volumes(MaterialBody &body)
+  {
+    const PointView<dim> points          = body.points.view();
+    const double         inverse_density = 1 / body.stress->density();
+    volume_ratios.resize(points.size + room_for_pack);
+    body.stress->volume_ratio(points, volume_ratios.data());
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const std::uint32_t cell = points.cell[p];
+        const auto   xi     = natural(points, p, parts.grid.geometry[cell]);
+        const double volume = inverse_density * points.mass[p] *
+                              volume_ratios[p];
+        for (unsigned int a = 0; a < n_corners; ++a)
+          {
+            double part = volume;
+            for (int d = 0; d < dim; ++d)
+              part *= a >> d & 1 ? xi[d] : 1 - xi[d];
+            record(surroundings.node_of(cell, a))[Record::excess] += part;
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::mark_cells(const Group &group)
+  {
+    const auto mark = [&](const std::uint32_t cell, const unsigned int slot) {
+      for (unsigned int a = 0; a < n_corners; ++a)
+        record(surroundings.node_of(cell, a))[slot] += 1;
+    };
+    for (const std::uint32_t cell : parts.nodes.vertices()
+                                      .owned_occupied_cells())
+      if (holds(group.liquids, cell) && !surroundings.is_inside(cell))
+        mark(cell, Record::at_surface);
+    for (const MaterialBody *const body : group.others)
+      {
+        const PointView<dim> points = body->points.view();
+        std::uint32_t        last   = invalid_cell;
+        for (std::size_t p = 0; p < points.size; ++p)
+          if (points.cell[p] != last)
+            mark(last = points.cell[p], Record::shared);
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  ParticleShifting<dim>::move_points(MaterialBody &body)
+  {
+    const double factor =
+      std::min(body.description.particle_shifting * travelled, largest_factor);
+    const PointView<dim>        points  = body.points.view();
+    const BinView<dim>          bins    = parts.nodes.view().bins;
+    const auto                 &box     = parts.problem.grid;
+    const auto                 &gravity = parts.problem.loads.gravity;
+    std::array<double, n_corners> excess;
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const std::uint32_t      number = points.cell[p];
+        const CellGeometry<dim> &cell   = parts.grid.geometry[number];
+        bool                     any    = false;
+        for (unsigned int a = 0; a < n_corners; ++a)
+          {
+            excess[a] = record(surroundings.node_of(number, a))[Record::excess];
+            any       = any || excess[a] != 0;
+          }
+        if (!any)
+          continue;
+        const auto xi   = natural(points, p, cell);
+        double     work = 0;
+        for (int d = 0; d < dim; ++d)
+          {
+            double slope = 0; // over natural coordinates
+            for (unsigned int a = 0; a < n_corners; ++a)
+              {
+                double weight = a >> d & 1 ? 1 : -1;
+                for (int e = 0; e < dim; ++e)
+                  if (e != d)
+                    weight *= a >> e & 1 ? xi[e] : 1 - xi[e];
+                slope += weight * excess[a];
+              }
+            const double edge  = 1 / cell.inverse_edge[d];
+            const double shift = -factor * slope * edge;
+            const double place = points.position[d][p] + shift;
+            if (place < box.lower[d] + least_distance * edge ||
+                place > box.upper[d] - least_distance * edge)
+              continue;
+            points.position[d][p] = place;
+            work += gravity[d] * shift;
+          }
+        parts.ledger.history += points.mass[p] * work;
+        std::array<double, dim> x;
+        for (int d = 0; d < dim; ++d)
+          x[d] = points.position[d][p];
+        points.cell[p] = bins.nearest_cell(x);
+      }
+  }
+
+
+
+  template class ParticleShifting<2>;
+  template class ParticleShifting<3>;
+} // namespace limber

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <gtest/gtest.h>
+#include <limber/time/particle_shifting.h>
+#include <support/scene_run.h>
+
+#include <algorithm>
+#include <cmath>
+
+/** @file Points of liquids that spread evenly (ParticleShifting). */
+
+using namespace limber;
+
+namespace
+{
+  /**
+   * Water that fills the lower half of a box of cells of 1/8 m and is carried
+   * along by a velocity that gathers points: with the step far below that of
+   * sound nothing else happens.
+   */
+  std::string
+  half_full_box(const int dim, const std::string &more = "")
+  {
+    const bool in_3d = dim == 3;
+    return "set Dimension = " + std::to_string(dim) +
+           "\nset End time = 10\nset Bodies = water\nsubsection Body water\n"
+           " set Shape = box\n subsection Box\n set Lower corner = 0, 0" +
+           (in_3d ? ", 0" : "") + "\n set Upper corner = 1, 0.5" +
+           (in_3d ? ", 0.5" : "") +
+           "\n end\n set Points per cell edge = 3\n"
+           " set Material = newtonian fluid\n"
+           " subsection Newtonian fluid\n set Density = 1000\n"
+           " set Bulk modulus = 1e6\n end\n" +
+           more + "end\nsubsection Grid\n set Upper corner = 1, 1" +
+           (in_3d ? ", 0.5" : "") + "\n set Cells = 8, 8" +
+           (in_3d ? ", 4" : "") + "\nend\nsubsection Loads\n" +
+           " set Gravity = 0, -9.81" + (in_3d ? ", 0" : "") + "\nend\n";
+  }
+
+
+
+  /** Places of points that have been drawn together around x = 1/2. */
+  template <int dim>
+  void
+  gather(SceneRun<dim> &run)
+  {
+    const PointView<dim> points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        double &x = points.position[0][p];
+        x += 0.03 / (2 * M_PI) * std::sin(2 * M_PI * x);
+        std::array<double, dim> place;
+        for (int d = 0; d < dim; ++d)
+          place[d] = points.position[d][p];
+        points.cell[p] = run.nodes.view().bins.cell_at(place);
+      }
+    run.integrator.reinit();
+  }
+
+
+
+  /**
+   * Root mean square of what is in columns along x, over the mean, less one;
+   * with hat functions as wide as two cells.
+   */
+  template <int dim>
+  double
+  unevenness(SceneRun<dim> &run)
+  {
+    constexpr unsigned int        n = 8;
+    std::array<double, n + 1>     sums{};
+    const PointView<dim>          points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        const double x = points.position[0][p] * n;
+        const auto   k = static_cast<unsigned int>(x);
+        sums[k] += k + 1 - x;
+        sums[k + 1] += x - k;
+      }
+    double result = 0;
+    for (unsigned int k = 0; k <= n; ++k)
+      {
+        const double room = points.size / double(n) * (k % n == 0 ? 0.5 : 1);
+        result += std::pow(sums[k] / room - 1, 2) / (n + 1);
+      }
+    return std::sqrt(result);
+  }
+
+
+
+  template <int dim>
+  double
+  potential_energy(SceneRun<dim> &run)
+  {
+    const PointView<dim> points = run.points();
+    double               result = 0;
+    for (std::size_t p = 0; p < points.size; ++p)
+      result += 9.81 * points.mass[p] * points.position[1][p];
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  expect_to_spread()
+  {
+    SceneRun<dim> run(half_full_box(dim));
+    gather(run);
+    const RunParts<dim> parts{
+      run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+    const double before = unevenness(run), energy = potential_energy(run);
+    const double removed = run.ledger.history;
+    ASSERT_GT(before, 0.015);
+
+    ParticleShifting<dim> shifting(parts, nullptr);
+    EXPECT_FALSE(shifting.is_due());
+    for (unsigned int time = 0; time < 20; ++time)
+      {
+        shifting.follow(0.25);
+        ASSERT_TRUE(shifting.is_due());
+        shifting.shift();
+        EXPECT_FALSE(shifting.is_due());
+        run.integrator.reinit();
+      }
+    // inside alone: at the surface half of the rows have no say
+    EXPECT_LT(unevenness(run), 0.6 * before);
+    EXPECT_NEAR(run.ledger.history - removed,
+                energy - potential_energy(run),
+                1e-12 * energy);
+    const PointView<dim> points = run.points();
+    EXPECT_EQ(points.size, run.positions().size());
+    for (std::size_t p = 0; p < points.size; ++p)
+      for (int d = 0; d < dim; ++d)
+        {
+          EXPECT_GT(points.position[d][p], 0);
+          EXPECT_LT(points.position[d][p], 1);
+        }
+  }
+} // namespace
+
+
+
+TEST(ParticleShifting, SpreadsWhatHasGathered)
+{
+  expect_to_spread<2>();
+  expect_to_spread<3>();
+}
+
+
+
+// Evenly spread points stay where they are, to the last bit.
+TEST(ParticleShifting, LeavesWhatIsEven)
+{
+  SceneRun<2>         run(half_full_box(2));
+  const RunParts<2>   parts{run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  ParticleShifting<2> shifting(parts, nullptr);
+  const auto          before = run.positions();
+  shifting.follow(1);
+  shifting.shift();
+  const auto after = run.positions();
+  for (std::size_t p = 0; p < before.size(); ++p)
+    EXPECT_LT(after[p].distance(before[p]), 1e-14);
+}
+
+
+
+TEST(ParticleShifting, IsSwitchedOff)
+{
+  SceneRun<2>       run(half_full_box(2, " set Particle shifting = 0\n"));
+  const RunParts<2> parts{run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  ParticleShifting<2> shifting(parts, nullptr);
+  shifting.follow(1);
+  EXPECT_FALSE(shifting.is_due());
+}
+
+
+
+// Water that is stirred for long keeps its volume: without shifting it sinks by
+// more than two percent.
+TEST(ParticleShifting, KeepsTheVolumeOfStirredWater)
+{
+  const std::string stirred =
+    " set Initial velocity = 0.1*sin(29*x+13*y*y); 0.1*cos(31*x*y-9*y)\n"
+    " set Initial pressure = hydrostatic\n";
+  const auto sinks_by = [&](const std::string &more) {
+    SceneRun<2>  run(half_full_box(2, stirred + more));
+    const double before = potential_energy(run);
+    run.advance_to(10);
+    return 1 - potential_energy(run) / before;
+  };
+  EXPECT_GT(sinks_by(" set Particle shifting = 0\n"), 0.02);
+  EXPECT_LT(std::abs(sinks_by("")), 0.005);
+}
