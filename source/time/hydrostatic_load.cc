@@ -10,9 +10,9 @@ namespace limber
 {
   namespace
   {
-    // Of the mean pressure of what fills a cell and rests: from there on all of
-    // it counts as borne, so that waves of sound change nothing.
-    constexpr double share_of_rest = 0.5;
+    // Sum of the pressures around a node over the weight of a cell, from which
+    // on all of it counts as borne; at rest it is two and more below a surface.
+    constexpr double fully_borne = 0.5;
   } // namespace
 
 
@@ -47,6 +47,7 @@ namespace limber
   {
     surroundings.reinit();
     sums.reinit(std::size_t(grid.vertices.n()) * dim);
+    pressures.reinit(grid.vertices.n());
     find_uneven_nodes();
   }
 
@@ -124,35 +125,66 @@ namespace limber
 
 
 
-  // How much of the weight of what is in a cell its pressure bears.
+  // Mean pressure of the liquids in a cell over rho |g_d| h_d, summed over
+  // directions; none where they pull.
   template <int dim>
   double
-  HydrostaticLoad<dim>::borne_share(const unsigned int  field,
-                                    const std::uint32_t cell) const
+  HydrostaticLoad<dim>::pressure_over_weight(const unsigned int  field,
+                                             const std::uint32_t cell) const
   {
-    double volume = 0, mass = 0, pressure = 0; // the last times the volume
+    double mass = 0, pressure = 0; // the last times the volume
     for (MaterialBody<dim> *const body : liquids)
       if (body->description.nodal_field == field)
         if (const auto   view    = body->cell_sums->view();
             const double of_body = view.present_mass(cell))
           {
-            const double *const sums = body->cell_sums->record(cell);
-            const double        J    = sums[view.volumetric()] / of_body;
-            const double        part = of_body / body->stress->density();
+            const double J =
+              body->cell_sums->record(cell)[view.volumetric()] / of_body;
             mass += of_body;
-            volume += part;
-            pressure += part * body->stress->volumetric_response(J).pressure;
+            pressure += of_body / body->stress->density() *
+                        body->stress->volumetric_response(J).pressure;
           }
-    double rest = 0.5; // that of the weight, times the volume
-    double room = 1, drop = 0;
+    double drop = 0;
     for (unsigned int d = 0; d < dim; ++d)
-      {
-        room /= grid.geometry[cell].inverse_edge[d];
-        drop += std::abs(problem.loads.gravity[d]) /
-                grid.geometry[cell].inverse_edge[d];
-      }
-    rest *= mass * drop * std::min(1., volume / room);
-    return std::min(std::max(pressure / (share_of_rest * rest), 0.), 1.);
+      drop += std::abs(problem.loads.gravity[d]) /
+              grid.geometry[cell].inverse_edge[d];
+    return std::max(pressure / (mass * drop), 0.);
+  }
+
+
+
+  // Of the cells around each node, sums of what they bear of their weight.
+  template <int dim>
+  void
+  HydrostaticLoad<dim>::find_pressures(const NodalFields<dim> &nodes,
+                                       const unsigned int      field)
+  {
+    for (const std::uint32_t node : nodes.active_nodes())
+      pressures[node] = 0;
+    for (const std::uint32_t cell : nodes.owned_occupied_cells())
+      if (has_marked_node(cell) && holds_liquid_alone(field, cell))
+        {
+          const double of_cell = pressure_over_weight(field, cell);
+          for (unsigned int a = 0; a < n_corners; ++a)
+            pressures[surroundings.node_of(cell, a)] += of_cell;
+        }
+    pressure_exchange.start(nodes.node_plan(), pressures.data(), 0, 1);
+    pressure_exchange.finish(pressures.data());
+  }
+
+
+
+  // How much of its weight pressure bears around a cell: by that node which
+  // has most. At rest it has several times what is asked for, so that waves of
+  // sound change nothing: a force that followed the pressure would feed them.
+  template <int dim>
+  double
+  HydrostaticLoad<dim>::borne_share(const std::uint32_t cell) const
+  {
+    double most = 0;
+    for (unsigned int a = 0; a < n_corners; ++a)
+      most = std::max(most, pressures[surroundings.node_of(cell, a)]);
+    return std::min(1., most / fully_borne);
   }
 
 
@@ -229,6 +261,7 @@ namespace limber
       std::fill_n(of_node(hanging.node), dim, 0.);
 
     mark_nodes(nodes);
+    find_pressures(nodes, field);
     for (const std::uint32_t cell : nodes.owned_occupied_cells())
       {
         if (!has_marked_node(cell) || !holds_liquid_alone(field, cell) ||
@@ -237,8 +270,8 @@ namespace limber
         const auto *const cut = knows ? cut_cells->cell(cell) : nullptr;
         if (cut && !cut->surfaces.empty() && !cut_cells->wets(cell, field))
           continue;
-        const double density = density_within(field, cell, cut ? cut->open : 1) *
-                               (cut ? 1 : borne_share(field, cell));
+        const double density = density_within(field, cell, cut ? cut->open : 1);
+        const double borne   = borne_share(cell);
         for (unsigned int d = 0; d < dim; ++d)
           for (const unsigned int end : {0, 1})
             if (surroundings.has_neighbour(cell, d, end))
@@ -246,7 +279,7 @@ namespace limber
                 if (const auto node = surroundings.node_of(cell, a);
                     (a >> d & 1) == end && is_marked(node))
                   of_node(node)[d] +=
-                    density *
+                    density * (is_uneven[node] ? 1 : borne) *
                     (cut ? cut->hydrostatic[a][d] : of_whole_cell(cell, a, d));
       }
     table.give_to_masters(sums.data(), dim, 0, dim);

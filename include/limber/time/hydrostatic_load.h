@@ -33,9 +33,8 @@ namespace limber
    * added there: at corners of cells at a surface and at the masters of hanging
    * nodes, from cells with a neighbour across d, of which one cancels the other
    * if they are equal. What a cell at a surface holds counts as filling it from
-   * within. Where its pressure is less than half of that of its weight, as in
-   * free fall, it has the less of such a part. Theory:
-   * doc/theory/adaptive_grid.md.
+   * within. What falls freely has no pressure: along its surface the part fades
+   * with the pressures around the nodes. Theory: doc/theory/adaptive_grid.md.
    *
    * The same at the corners of cells that obstacles cut (CutCells), where the
    * integral is that over the open part, and the pressure on the surfaces has
@@ -85,7 +84,11 @@ namespace limber
     double
     density_within(unsigned int field, std::uint32_t cell, double open) const;
     double
-    borne_share(unsigned int field, std::uint32_t cell) const;
+    pressure_over_weight(unsigned int field, std::uint32_t cell) const;
+    void
+    find_pressures(const NodalFields<dim> &nodes, unsigned int field);
+    double
+    borne_share(std::uint32_t cell) const;
     void
     mark_nodes(const NodalFields<dim> &nodes);
 
@@ -122,8 +125,9 @@ namespace limber
     std::vector<unsigned char> is_uneven;
     std::vector<std::uint32_t> marked_in;
     std::uint32_t              turn = 0;
-    LazyArray<double>          sums; // by node, N
-    RecordExchange             exchange{dim};
+    LazyArray<double>          sums;      // by node, N
+    LazyArray<double>          pressures; // by node, over the weight of a cell
+    RecordExchange             exchange{dim}, pressure_exchange{1};
 
     /** Nodes that are loaded, and by what, N. */
     struct OfField
