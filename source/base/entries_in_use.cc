@@ -39,12 +39,12 @@ namespace limber
 
 
   void
-  Parameters::only_with(const std::string &entry,
-                        const std::string &word,
-                        const std::string &chooser,
-                        const SectionPath &section)
+  Parameters::only_with(const std::string              &entry,
+                        const std::vector<std::string> &words,
+                        const std::string              &chooser,
+                        const SectionPath              &section)
   {
-    conditions.push_back({present, entry, section, chooser, word});
+    conditions.push_back({present, entry, section, chooser, words});
   }
 
 
@@ -65,12 +65,13 @@ namespace limber
                           (declaration.section.empty() ? "" : "/") +
                           declaration.name) > 0;
     };
-    const auto judge = [&](const Declaration &entry,
-                           const std::string &what,
-                           const Declaration &chooser,
-                           const std::string &word) {
+    const auto judge = [&](const Declaration              &entry,
+                           const std::string              &what,
+                           const Declaration              &chooser,
+                           const std::vector<std::string> &words) {
       const std::string chosen = value(chooser.section, chooser.name);
-      if (chosen == word || !is_given(entry))
+      if (std::find(words.begin(), words.end(), chosen) != words.end() ||
+          !is_given(entry))
         return;
       if (!is_given(chooser))
         {
@@ -82,7 +83,7 @@ namespace limber
             in_quotes(chosen) +
             " where nothing else is said. Usually it was forgotten. Write "
             "'set " +
-            chooser.name + " = " + word + "'" +
+            chooser.name + " = " + words.front() + "'" +
             (chooser.section.empty() ?
                "" :
                " in section " + in_quotes(to_text(chooser.section))) +
@@ -105,7 +106,7 @@ namespace limber
           judge(entry,
                 "Section " + in_quotes(to_text(entry.section)),
                 *chooser,
-                word);
+                {word});
       }
     for (const Condition &condition : conditions)
       if (const Declaration &entry = *find(condition.section, condition.entry);
@@ -114,6 +115,6 @@ namespace limber
               in_quotes(entry.name) + " of section " +
                 in_quotes(to_text(entry.section)),
               *find(condition.chooser_section, condition.chooser),
-              condition.word);
+              condition.words);
   }
 } // namespace limber

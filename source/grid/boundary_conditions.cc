@@ -14,17 +14,51 @@ namespace limber
     {
       return side % 2 == 1 ? 1. : -1.;
     }
+
+
+
+    /** Those that act on nodes of solids. */
+    template <int dim>
+    Sides<dim>
+    without_those_that_meet_surfaces(Sides<dim> sides)
+    {
+      for (Side<dim> &side : sides)
+        if (side.meets_surfaces)
+          {
+            side.held      = HeldComponents::none;
+            side.one_sided = false;
+          }
+      return sides;
+    }
+
+
+
+    template <int dim>
+    bool
+    any_one_sided(const Sides<dim> &sides)
+    {
+      return std::any_of(sides.begin(), sides.end(), [](const auto &side) {
+        return side.one_sided;
+      });
+    }
   } // namespace
 
 
 
   template <int dim>
-  BoundaryConditions<dim>::BoundaryConditions(const Sides<dim> &sides)
+  BoundaryConditions<dim>::BoundaryConditions(
+    const Sides<dim>        &sides,
+    const std::vector<bool> &by_surface)
     : sides(sides)
-    , constraints(sides)
-    , one_sided(std::any_of(sides.begin(), sides.end(), [](const auto &side) {
-      return side.one_sided;
-    }))
+    , others(without_those_that_meet_surfaces<dim>(sides))
+    , by_surface(by_surface)
+    , constraints{SideConstraints<dim>(this->sides),
+                  SideConstraints<dim>(this->others)}
+    , one_sided(limber::any_one_sided<dim>(others) ||
+                (limber::any_one_sided<dim>(sides) &&
+                 (by_surface.empty() ||
+                  std::find(by_surface.begin(), by_surface.end(), false) !=
+                    by_surface.end())))
   {}
 
 
@@ -37,7 +71,7 @@ namespace limber
                                          const double            time,
                                          const Work             &work)
   {
-    const std::vector<Constraint> &all = constraints.at(nodes, time);
+    const std::vector<Constraint> &all = constraints[of_field(nodes)].at(nodes, time);
     for (auto first = all.begin(), last = first; first != all.end();
          first = last)
       {
@@ -171,9 +205,9 @@ namespace limber
     using Layout = NodeLayout<dim>;
     std::vector<double> former_values;
     if (step.keeps_points)
-      for (const Constraint &constraint : constraints.at(nodes, step.begin))
+      for (const Constraint &constraint : constraints[of_field(nodes)].at(nodes, step.begin))
         former_values.push_back(constraint.value);
-    const Constraint *const list = constraints.at(nodes, step.end).data();
+    const Constraint *const list = constraints[of_field(nodes)].at(nodes, step.end).data();
     rubbing.erase(std::remove_if(rubbing.begin(),
                                  rubbing.end(),
                                  [&](const Rubbing &entry) {
@@ -335,7 +369,7 @@ namespace limber
       vector_in<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
     std::array<unsigned int, dim> result{};
     for (const HeldComponent &entry :
-         constraints.of_sides(nodes.table.sides[node]))
+         constraints[of_field(nodes)].of_sides(nodes.table.sides[node]))
       {
         const unsigned int direction = 1 << entry.side / 2;
         if (!entry.one_sided || velocity[entry.component] == 0)

@@ -24,12 +24,14 @@ namespace limber
      * what is seen now need not be what began it. It is sound that does it,
      * which semi-implicit steps do not follow.
      */
+    template <int dim>
     Diagnosis
     find_cut_cell(const Symptoms     &symptoms,
                   const BodySymptoms &body,
-                  const Method       &method)
+                  const Problem<dim> &problem)
     {
-      const double courant_number = symptoms.courant_number;
+      const Method &method         = problem.method;
+      const double  courant_number = symptoms.courant_number;
       if (method.order != StressUpdateOrder::usl || courant_number > 0.7 ||
           method.integration == TimeIntegration::semi_implicit)
         return {};
@@ -39,9 +41,11 @@ namespace limber
                 brief(0.5 * courant_number * courant_number) +
                 " edges (body '" + body.body +
                 "' now: " + brief(2 * body.filling) + "). Set " +
-                (filters_velocity(method.transfer) ?
+                (!filters_velocity(method.transfer) ?
+                   "'Method/Stress update = auto'." :
+                 problem.grid.against_splines.empty() ?
                    "'Method/Kernel = quadratic', or 'Transfer = flip'." :
-                   "'Method/Stress update = auto'.")};
+                   "'Method/Transfer = flip'.")};
     }
 
 
@@ -74,7 +78,7 @@ namespace limber
         return found;
       for (const BodySymptoms &body : symptoms.bodies)
         {
-          const auto found = find_cut_cell(symptoms, body, problem.method);
+          const auto found = find_cut_cell(symptoms, body, problem);
           if (!found.mode.empty())
             return found;
         }

@@ -122,6 +122,59 @@ namespace limber
 
 
 
+    // What bodies that are solid and elastic lose where they touch is an error;
+    // water that lands on a floor, and what flows plastically, comes to rest
+    // there.
+    HealthLine
+    judge_impacts(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const bool is_elastic = std::none_of(figures.bodies.begin(),
+                                           figures.bodies.end(),
+                                           [](const BodyFigures &body) {
+                                             return body.is_liquid ||
+                                                    body.is_plastic;
+                                           });
+      HealthLine line;
+      line.entry = "Grid/Cells";
+      if (is_elastic && figures.energy_scale > 0)
+        line.value = figures.contact / figures.energy_scale;
+      line.verdict = check.verdict(line.value);
+      line.text    = is_elastic ?
+                       percent(line.value) +
+                      " of the energy scale was lost where elastic bodies "
+                      "touch each other, obstacles or sides" :
+                       "bodies are not elastic, what contact takes may be meant";
+      if (line.verdict != Verdict::good)
+        line.text += ": points come to rest against what they hit one by one, "
+                     "in each impact those of about half a cell. Take smaller "
+                     "cells, or a smaller 'Courant number'";
+      return line;
+    }
+
+
+
+    HealthLine
+    judge_put_back(const HealthFigures &figures, const HealthCheck &check)
+    {
+      HealthLine line;
+      line.value   = figures.points > 0 ? figures.put_back / figures.points : 0;
+      line.verdict = check.verdict(line.value);
+      line.text =
+        figures.put_back > 0 ?
+          "points were put back " + brief(figures.put_back) +
+            " times that had gone beyond closed sides, by " +
+            brief(figures.put_back_way / figures.put_back) +
+            " cells on average" :
+          "no point went beyond a closed side";
+      if (line.verdict != Verdict::good)
+        line.text += ": nodes of hardly any mass at the side move too fast; "
+                     "take shorter steps";
+      line.entry = "Method/Courant number";
+      return line;
+    }
+
+
+
     HealthLine
     judge_mass(const HealthFigures &figures, const HealthCheck &check)
     {
@@ -187,12 +240,17 @@ namespace limber
 
 
     Remedy
-    remedy_for_creep(const BodyFigures &body)
+    remedy_for_creep(const BodyFigures &body, const HealthFigures &figures)
     {
       const std::string frame =
         body.is_plastic ? "" :
                           "; 'Frame = initial' does not, for a body that is "
                           "alone";
+      if (body.kernel == KernelKind::linear && !figures.against_splines.empty())
+        return {of_body(body, "Points per cell edge"),
+                "More points per cell edge creep somewhat less. 'Kernel = "
+                "quadratic' would by far, but " +
+                  figures.against_splines + frame};
       if (body.kernel == KernelKind::linear)
         return {body.is_plastic ? "Method/Kernel" : of_body(body, "Frame"),
                 "'Method/Kernel = quadratic' with three points per cell edge "
@@ -246,7 +304,7 @@ namespace limber
           std::abs(figures.drift) <= balance_holds &&
           figures.contact <= balance_holds * figures.energy_scale)
         line.verdict = Verdict::look;
-      const Remedy remedy = remedy_for_creep(body);
+      const Remedy remedy = remedy_for_creep(body, figures);
       line.entry          = remedy.entry;
       line.text           = "a point of body '" + body.name + "' has entered " +
                   brief(body.crossings) + " cells on average, " +
@@ -375,6 +433,8 @@ namespace limber
     //            tenths, energies and heights are those of noise.
     // energy     Scenes with a reference keep 1 %; above 5 % amplitudes and
     //            deflections err by as much.
+    // impacts    Elastic scenes with a reference lose up to 3 %.
+    // put back   Water that sloshes along a wall has it once in a while.
     // mass       A frequency changes by half of it; 'cut' errs by < 1 %.
     // overlap    Rounding of surfaces by parts of cells comes to some 0.1 %.
     // crossings  Deflections err by as much, see creep_per_crossing().
@@ -384,6 +444,8 @@ namespace limber
     constexpr HealthCheck checks[] = {
       {"unseen", 0.1, 0.3, judge_unseen},
       {"energy", 0.01, 0.05, judge_energy},
+      {"impacts", 0.03, 0.1, judge_impacts},
+      {"put back", 0.01, 0.1, judge_put_back},
       {"mass", 0.02, 0.05, judge_mass},
       {"overlap", 0.005, 0.05, judge_overlap},
       {"crossings", 0.02, 0.1, judge_crossings},

@@ -208,6 +208,10 @@ namespace limber
     figures.contact      = totals.contact_loss;
     figures.sides        = totals.boundary_work;
     figures.loads        = totals.load_work;
+    figures.points       = totals.points;
+    figures.put_back     = totals.put_back;
+    figures.put_back_way = totals.put_back_way;
+    figures.against_splines = state.problem.grid.against_splines;
 
     const auto unseen = unseen_energy(state);
     for (std::size_t b = 0; b < unseen.size(); ++b)

@@ -59,6 +59,7 @@ namespace limber
               {"steps", json::integer(summary.steps)},
               {"points", json::integer(summary.points)},
               {"lost_points", json::integer(summary.lost_points)},
+              {"points_put_back", json::integer(summary.put_back)},
               {"ranks", json::integer(summary.ranks)},
               {"end_time", json::number(summary.end_time)},
               {"wall_seconds", json::number(summary.wall_seconds)},

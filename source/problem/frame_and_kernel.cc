@@ -379,6 +379,42 @@ namespace limber
 
 
 
+    /** Why splines are not for this scene, whatever solids would gain; empty:
+     * they are. */
+    template <int dim>
+    std::string
+    against_splines(const Section &root, const Problem<dim> &problem)
+    {
+      if (problem.method.integration == TimeIntegration::semi_implicit)
+        return "the time integration is made for linear functions";
+      if (is_solved_by_newton(problem.method.integration) &&
+          any_in_current_frame(problem))
+        return "the time integration knows splines in the initial frame alone";
+      if (problem.grid.levels > 0)
+        return "splines need cells of one size ('Grid/Levels')";
+      for (const auto &body : problem.bodies)
+        {
+          const Section section = root.subsection("Body " + body.name);
+          if (const auto found = misfit_of_splines(section))
+            return found->reason + " (" + section.where(found->entry) + ")";
+        }
+      for (const auto &body : problem.bodies)
+        if (body.is_plastic && !flows_like_metal(body.law, body.material))
+          return "material that flows without end, like body " +
+                 in_quotes(body.name) + ", keeps no strain that could creep";
+      // With splines and FLIP liquids lose volume, and what floats in them
+      // sinks; only affine increments keep it.
+      const std::string transfer = root.subsection("Method").text("Transfer");
+      if (transfer != "apic" && transfer != "aflip")
+        for (const auto &body : problem.bodies)
+          if (body.is_liquid)
+            return "with splines liquids, like body " + in_quotes(body.name) +
+                   ", lose volume";
+      return "";
+    }
+
+
+
     template <int dim>
     void
     choose_kernel(const Section &root, Problem<dim> &problem)
@@ -387,36 +423,8 @@ namespace limber
         problem.notes.push_back("Kernel 'auto' is " + choice + ".");
       };
       problem.grid.kernel = KernelKind::linear;
-      if (problem.method.integration == TimeIntegration::semi_implicit)
-        return say("'linear', which the time integration is made for");
-      if (is_solved_by_newton(problem.method.integration) &&
-          any_in_current_frame(problem))
-        return say("'linear', as the time integration knows splines in the "
-                   "initial frame alone");
-      if (problem.grid.levels > 0)
-        return say("'linear', as splines need cells of one size "
-                   "('Grid/Levels')");
-      for (const auto &body : problem.bodies)
-        {
-          const Section section = root.subsection("Body " + body.name);
-          if (const auto found = misfit_of_splines(section))
-            return say("'linear', as " + found->reason + " (" +
-                       section.where(found->entry) + ")");
-        }
-      for (const auto &body : problem.bodies)
-        if (body.is_plastic && !flows_like_metal(body.law, body.material))
-          return say("'linear', as material that flows without end, like "
-                     "body " +
-                     in_quotes(body.name) +
-                     ", keeps no strain that could creep");
-      // With splines and FLIP liquids lose volume, and what floats in them
-      // sinks; only affine increments keep it.
-      const std::string transfer = root.subsection("Method").text("Transfer");
-      if (transfer != "apic" && transfer != "aflip")
-        for (const auto &body : problem.bodies)
-          if (body.is_liquid)
-            return say("'linear', as with splines liquids, like body " +
-                       in_quotes(body.name) + ", lose volume");
+      if (!problem.grid.against_splines.empty())
+        return say("'linear', as " + problem.grid.against_splines);
       for (const auto &body : problem.bodies)
         if (!body.is_liquid && body.frame == Frame::current)
           {
@@ -462,7 +470,8 @@ namespace limber
             "Body " + in_quotes(body.name) +
             ": where it bends across the cells, linear functions store too "
             "little energy, 20 % two cells deep, 6 % four, 2 % eight. Set " +
-            (body.frame == Frame::current ?
+            (body.frame == Frame::current ||
+                 !problem.grid.against_splines.empty() ?
                "more" :
                "'Method/Kernel = quadratic', or more") +
             " 'Grid/Cells', if it is thin.");
@@ -555,6 +564,7 @@ namespace limber
 
     const Section method = root.subsection("Method");
     problem.grid.kernel  = read_word(method, "Kernel", kernel_words());
+    problem.grid.against_splines = against_splines(root, problem);
     if (problem.grid.kernel == KernelKind::automatic)
       choose_kernel(root, problem);
     for (const auto &body : problem.bodies)

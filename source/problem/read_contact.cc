@@ -77,7 +77,7 @@ namespace limber
           admissible::non_negative_number("0.3").or_empty(),
           "Coulomb's coefficient mu, no unit, for 'friction'.");
         parameters.only_with("Friction coefficient",
-                             "friction",
+                             {"friction"},
                              "Law",
                              parameters.present_section());
         parameters.leave_subsection();
@@ -257,8 +257,10 @@ namespace limber
       problem.notes.push_back(
         "Solids touch with linear functions: what slides across the grid may "
         "lose a quarter of its momentum, what rolls a tenth, and what is "
-        "pressed creeps. 'Method/Kernel = quadratic' keeps it within 1 to 3 "
-        "%.");
+        "pressed creeps. " +
+        (problem.grid.against_splines.empty() ?
+           std::string("'Method/Kernel = quadratic' keeps it within 1 to 3 %.") :
+           "Splines would keep it, but " + problem.grid.against_splines + "."));
   }
 
 

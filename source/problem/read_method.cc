@@ -79,6 +79,14 @@ namespace limber
                        "jumps of the strain (with splines: of its derivative) "
                        "next to a free surface, over Young's modulus, no unit: "
                        "holds the nodes of cells that are hardly filled.");
+    parameters.only_with("Newton tolerance",
+                         {"quasi-static", "implicit"},
+                         "Time integration",
+                         parameters.present_section());
+    parameters.only_with("Ghost penalty",
+                         {"quasi-static"},
+                         "Time integration",
+                         parameters.present_section());
     parameters.declare("Lost points limit",
                        "0",
                        admissible::number_from_to(0, 1, "0.01"),

@@ -112,7 +112,7 @@ namespace limber
                          admissible::non_negative_number("0.3").or_empty(),
                          "Coulomb's coefficient mu, no unit, for 'friction'.");
       parameters.only_with("Friction coefficient",
-                           "friction",
+                           {"friction"},
                            "Law",
                            parameters.present_section());
       declare_constants(parameters);

@@ -4,6 +4,7 @@
 #include <limber/problem/from_file.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/read_problem.h>
+#include <limber/problem/side_contact.h>
 
 #include <algorithm>
 
@@ -140,6 +141,7 @@ namespace limber
     choose_stress_update(problem);
     read_contact(root, problem);
     read_obstacles(root, problem);
+    choose_side_contact(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
     problem.reference  = read_reference(root.subsection("Reference"));

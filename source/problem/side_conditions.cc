@@ -96,8 +96,11 @@ namespace limber
                              std::to_string(dim) + " components, or empty",
                            for_each_direction(dim, "0", "; ")),
           "Velocity of the side, m/s, for 'velocity'.");
-        parameters.only_with("Friction coefficient", "friction", side, around);
-        parameters.only_with("Velocity", "velocity", side, around);
+        parameters.only_with("Friction coefficient",
+                             {"friction"},
+                             side,
+                             around);
+        parameters.only_with("Velocity", {"velocity"}, side, around);
         declare_constants(parameters);
         parameters.leave_subsection();
       }

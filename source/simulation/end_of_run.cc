@@ -222,6 +222,8 @@ namespace limber
     summary.energy_drift    = totals.energy_drift;
     summary.momentum_error  = totals.momentum_error;
     summary.lost_points     = sum(state.ledger.lost_points, communicator);
+    summary.put_back =
+      static_cast<unsigned long>(sum(state.ledger.put_back, communicator));
 
     summary.verbs = integrator->verb_seconds();
     double all    = 0;

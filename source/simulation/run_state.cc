@@ -84,8 +84,8 @@ namespace limber
     archive &ledger.transfer &ledger.boundary_work &ledger.load_work &ledger
       .viscous &ledger.history &ledger.plastic &ledger.friction &ledger
       .contact &ledger.load_impulse &ledger.gravity_impulse &ledger
-      .side_impulse &ledger.lost_mass &ledger.lost_energy &ledger
-      .lost_momentum &ledger.lost_points &ledger.obstacles;
+      .side_impulse &ledger.put_back &ledger.put_back_way &ledger
+      .lost_mass &ledger.lost_energy &ledger.lost_momentum &ledger.lost_points &ledger.obstacles;
   }
 
 

@@ -117,7 +117,7 @@ namespace limber
     bool
     presses_at_points(const Problem<dim> &problem)
     {
-      return !problem.obstacles.empty() ||
+      return problem.has_rigid_contact() ||
              (is_spline(problem.grid.kernel) &&
               std::any_of(problem.contacts.begin(),
                           problem.contacts.end(),

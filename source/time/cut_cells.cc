@@ -17,14 +17,8 @@ namespace limber
     // degrees.
     constexpr double least_cosine = 0.995;
 
-    // Share of a cell below which it counts as closed, where the pressure is
-    // implicit
-    constexpr double least_of_implicit = 0.01;
-
-    // Parts of a cell along an edge, and what of a part is nothing
-    template <int dim>
-    constexpr unsigned int n_parts = dim == 2 ? 4 : 2;
-    constexpr double       nothing = 1e-3;
+    // What of a part of a cell is nothing
+    constexpr double nothing = 1e-3;
 
     template <int dim>
     double
@@ -87,198 +81,27 @@ namespace limber
 
 
 
-  template <int dim>
-  bool
-  CutCells<dim>::may_be(const RunParts<dim> &parts)
-  {
-    return !parts.problem.obstacles.empty() &&
-           parts.problem.grid.kernel == KernelKind::linear &&
-           std::any_of(parts.bodies.begin(),
-                       parts.bodies.end(),
-                       [](const auto &body) {
-                         return body->description.is_liquid &&
-                                body->stress->treatment().kind ==
-                                  Treatment::cell;
-                       });
-  }
-
-
-
-  template <int dim>
-  CutCells<dim>::CutCells(const RunParts<dim> &parts)
-    : parts(parts)
-    , knowing(n_nodal_fields(parts.problem), false)
-    , moves(std::any_of(parts.problem.obstacles.begin(),
-                        parts.problem.obstacles.end(),
-                        [](const auto &obstacle) { return obstacle.moves(); }))
-    , is_implicit(parts.problem.method.integration ==
-                  TimeIntegration::semi_implicit)
-  {
-    for (const auto &body : parts.bodies)
-      if (body->description.is_liquid)
-        knowing[body->description.nodal_field] = true;
-    for (const auto &body : parts.bodies)
-      if (body->description.is_liquid &&
-          body->stress->treatment().kind != Treatment::cell)
-        knowing[body->description.nodal_field] = false;
-    least_share = is_implicit ?
-                    least_of_implicit :
-                    std::max(0.15, courant_number() * courant_number() / 4);
-    reinit(0);
-  }
-
-
-
-  // What a given step is of that in which sound crosses a cell.
-  template <int dim>
-  double
-  CutCells<dim>::courant_number() const
-  {
-    if (!(parts.problem.method.time_step > 0))
-      return parts.problem.method.courant_number;
-    double squared = 0; // of the speed of sound
-    for (const auto &body : parts.bodies)
-      if (knowing[body->description.nodal_field])
-        squared =
-          std::max(squared,
-                   body->stress->wave_speed_squared(body->points.view()));
-    return parts.problem.method.time_step / parts.grid.smallest_edge *
-           std::sqrt(
-             dealii::Utilities::MPI::max(squared, parts.grid.communicator));
-  }
-
-
-
-  template <int dim>
-  void
-  CutCells<dim>::reinit(const double time)
-  {
-    distance.clear();
-    at_cut.reinit(parts.grid.vertices.n());
-    at_covered.reinit(parts.grid.vertices.n());
-    former.clear();
-    Places places;
-    for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
-      places.emplace_back(obstacle, time);
-    find_cells(places);
-  }
-
-
-
-  template <int dim>
-  void
-  CutCells<dim>::find(const double time)
-  {
-    std::fill(wet.begin(), wet.end(), 0);
-    if (!moves)
-      return;
-    Places places;
-    for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
-      places.emplace_back(obstacle, time);
-    find_cells(places);
-  }
-
-
-
-  // Of what is furthest out, as obstacles are rigid.
-  template <int dim>
-  double
-  CutCells<dim>::way_since_found(const Places &places) const
-  {
-    double result = 0;
-    for (std::size_t o = 0; o < former.size(); ++o)
-      for (unsigned int corner = 0; corner < n_nodes; ++corner)
-        {
-          dealii::Point<dim> x;
-          for (unsigned int d = 0; d < dim; ++d)
-            x[d] = corner >> d & 1 ? parts.problem.grid.upper[d] :
-                                     parts.problem.grid.lower[d];
-          result =
-            std::max(result,
-                     places[o].place_of(former[o].start_of(x)).distance(x));
-        }
-    return result;
-  }
-
-
-
-  template <int dim>
-  void
-  CutCells<dim>::find_cells(const Places &places)
-  {
-    const std::uint32_t n = parts.grid.n_cells();
-    if (former.empty())
-      distance.assign(n, 0);
-    else if (const double way = way_since_found(places); way > 0)
-      for (double &of_cell : distance)
-        of_cell -= of_cell > 0 ? std::min(2 * way, of_cell) :
-                                 std::max(-2 * way, of_cell);
-    former = places;
-    cells.clear();
-    kinds.assign(n, open);
-    for (std::uint32_t cell = 0; cell < n; ++cell)
-      look_at(cell, places);
-    for (Cell &cell : cells)
-      find_surfaces(cell, places);
-    wet.assign(cells.size() * knowing.size(), 0);
-
-    const NodeTable<dim> &table = parts.grid.vertices;
-    std::fill_n(at_cut.data(), table.n(), 0.);
-    for (const Cell &cell : cells)
-      if (cell.number < parts.grid.n_owned_cells() && cell.is_cut())
-        for (const std::uint32_t offset : parts.grid.geometry[cell.number].node)
-          at_cut[offset / NodeLayout<dim>::stride] = 1;
-    std::fill_n(at_covered.data(), table.n(), 0.);
-    for (std::uint32_t cell = 0; cell < parts.grid.n_owned_cells(); ++cell)
-      if (is_covered(cell))
-        for (unsigned int a = 0; a < n_nodes; ++a)
-          at_covered[parts.grid.geometry[cell].node[a] /
-                     NodeLayout<dim>::stride] += 1u << a;
-    any_cut = dealii::Utilities::MPI::max<unsigned int>(
-                std::any_of(cells.begin(),
-                            cells.end(),
-                            [](const Cell &cell) { return cell.is_cut(); }),
-                parts.grid.communicator) > 0;
-    ++times_found;
-    const ExchangePlan all(table.shared);
-    for (LazyArray<double> *const of_nodes : {&at_cut, &at_covered})
-      {
-        exchange.start(all, of_nodes->data(), 0, 1);
-        exchange.finish(of_nodes->data());
-      }
-  }
-
-
-
   // Where the middle is further off than the corners are from it, nothing runs
-  // across; twice as far, as the distance from a formula is of first order.
+  // across.
   template <int dim>
   void
   CutCells<dim>::look_at(const std::uint32_t number, const Places &places)
   {
-    const CellGeometry<dim> &geometry = parts.grid.geometry[number];
-    double                   diagonal = 0; // m
-    for (unsigned int d = 0; d < dim; ++d)
-      diagonal += std::pow(geometry.inverse_edge[d], -2);
-    diagonal        = std::sqrt(diagonal);
-    double &of_cell = distance[number];
-    if (std::abs(of_cell) <= diagonal)
+    const double across = diagonal(number),
+                 least  = moves ? std::min(distance_at_rest[number],
+                                          distance[number]) :
+                                  distance_at_rest[number];
+    if (std::abs(least) > across)
       {
-        dealii::Point<dim> middle;
-        for (unsigned int d = 0; d < dim; ++d)
-          middle[d] = 0.5;
-        of_cell = least_distance(places, place_at(middle, geometry));
-      }
-    if (std::abs(of_cell) > diagonal)
-      {
-        kinds[number] = of_cell < 0 ? covered : open;
+        kinds[number] = least < 0 ? covered : open;
         return;
       }
 
     Cell cell;
-    cell.number = number;
-    cell.open   = 0;
-    for_each_open_simplex(number, places, [&](const Simplex &simplex) {
+    cell.number               = number;
+    cell.open                 = 0;
+    const Distances distances = distances_in(number, places);
+    for_each_open_simplex(distances, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
     if (cell.open < least_share)
@@ -289,6 +112,7 @@ namespace limber
     finish_volume(cell);
     kinds[number] = first_cut + static_cast<std::uint32_t>(cells.size());
     cells.push_back(std::move(cell));
+    distances_of_cells.push_back(distances);
   }
 
 
@@ -296,7 +120,9 @@ namespace limber
   // Where the obstacles begin, and in faces behind which there is only a rest.
   template <int dim>
   void
-  CutCells<dim>::find_surfaces(Cell &cell, const Places &places) const
+  CutCells<dim>::find_surfaces(Cell            &cell,
+                               const Distances &distances,
+                               const Places    &places) const
   {
     const auto is_shut = [&](const unsigned int direction,
                              const unsigned int end) {
@@ -328,7 +154,7 @@ namespace limber
           result = result || (in_face[d][end] && shut[d][end]);
       return result;
     };
-    for_each_open_simplex(cell.number, places, [&](const Simplex &simplex) {
+    for_each_open_simplex(distances, [&](const Simplex &simplex) {
       for (unsigned int k = 0; k <= dim; ++k)
         if (is_bound(simplex, k))
           add_surface(simplex, k, places, cell);
@@ -374,33 +200,56 @@ namespace limber
 
 
 
+  template <int dim>
+  typename CutCells<dim>::Distances
+  CutCells<dim>::distances_in(const std::uint32_t number,
+                              const Places       &places) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[number];
+    double                   smallest = 1e300; // edge of a part, m
+    for (unsigned int d = 0; d < dim; ++d)
+      smallest = std::min(smallest, 1 / (n_parts * geometry.inverse_edge[d]));
+    Distances result;
+    for (unsigned int corner = 0; corner < n_corners; ++corner)
+      {
+        dealii::Point<dim> xi;
+        for (unsigned int d = 0, rest = corner; d < dim;
+             ++d, rest /= n_parts + 1)
+          xi[d] = double(rest % (n_parts + 1)) / n_parts;
+        double &least = result[corner] =
+          least_distance(places, place_at(xi, geometry));
+        if (std::abs(least) < nothing * smallest)
+          least = 0;
+      }
+    return result;
+  }
+
+
+
   // Of all parts of the cell: those that are open, work(simplex).
   template <int dim>
   template <class Work>
   void
-  CutCells<dim>::for_each_open_simplex(const std::uint32_t number,
-                                       const Places       &places,
-                                       const Work         &work) const
+  CutCells<dim>::for_each_open_simplex(const Distances &all,
+                                       const Work      &work) const
   {
-    const CellGeometry<dim> &geometry = parts.grid.geometry[number];
-    constexpr unsigned int   n        = n_parts<dim>;
-    double                   smallest = 1e300;
-    for (unsigned int d = 0; d < dim; ++d)
-      smallest = std::min(smallest, 1 / (n * geometry.inverse_edge[d]));
-
-    static const auto simplices = simplices_of_cube<dim>();
+    constexpr unsigned int n         = n_parts;
+    static const auto      simplices = simplices_of_cube<dim>();
     for (unsigned int part = 0; part < (dim == 2 ? n * n : n * n * n); ++part)
       {
         std::array<dealii::Point<dim>, n_nodes> corners;
         std::array<double, n_nodes>             distances;
         for (unsigned int a = 0; a < n_nodes; ++a)
           {
-            for (unsigned int d = 0, rest = part; d < dim; ++d, rest /= n)
-              corners[a][d] = double(rest % n + (a >> d & 1)) / n;
-            double &least = distances[a] =
-              least_distance(places, place_at(corners[a], geometry));
-            if (std::abs(least) < nothing * smallest)
-              least = 0;
+            unsigned int place = 0;
+            for (unsigned int d = 0, rest = part, stride = 1; d < dim;
+                 ++d, rest /= n, stride *= n + 1)
+              {
+                const unsigned int along = rest % n + (a >> d & 1);
+                corners[a][d]            = double(along) / n;
+                place += along * stride;
+              }
+            distances[a] = all[place];
           }
         for (const auto &one : simplices)
           {

@@ -6,6 +6,22 @@
 
 namespace limber
 {
+  namespace
+  {
+    /** Of each nodal field, Problem::meets_sides(). */
+    template <int dim>
+    std::vector<bool>
+    fields_that_meet_sides(const Problem<dim> &problem)
+    {
+      std::vector<bool> result(n_nodal_fields(problem));
+      for (unsigned int field = 0; field < result.size(); ++field)
+        result[field] = problem.meets_sides(field);
+      return result;
+    }
+  } // namespace
+
+
+
   template <int dim>
   ExplicitIntegrator<dim>::ExplicitIntegrator(const RunParts<dim> &parts)
     : parts(parts)
@@ -23,7 +39,7 @@ namespace limber
                                     [](const auto &body) {
                                       return !body->description.is_liquid;
                                     }))
-    , boundaries(parts.problem.sides)
+    , boundaries(parts.problem.sides, fields_that_meet_sides(parts.problem))
     , cut_cells(CutCells<dim>::may_be(parts) ?
                   std::make_optional<CutCells<dim>>(parts) :
                   std::nullopt)
@@ -42,7 +58,7 @@ namespace limber
         parts.nodes.set_n_fields(n);
         contact.emplace(parts);
       }
-    if (!parts.problem.obstacles.empty())
+    if (parts.problem.has_rigid_contact())
       obstacles.emplace(parts, cut_cells ? &*cut_cells : nullptr, leapfrogs());
     if (filters_velocity(parts.problem.method.transfer))
       full_mass.emplace(parts.grid, boundaries);

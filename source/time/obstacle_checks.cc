@@ -50,7 +50,7 @@ namespace limber
                                   const double       time,
                                   const double       step) const
   {
-    const Obstacle<dim> &one = parts.problem.obstacles[obstacle];
+    const Obstacle<dim> &one = rigid[obstacle];
     if (!one.moves())
       return;
     const ObstaclePlace<dim> before(one, time), after(one, time + step);

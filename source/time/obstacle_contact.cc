@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/node_vector.h>
 #include <limber/interpolation/point_support.h>
+#include <limber/problem/side_contact.h>
 #include <limber/time/contact_geometry.h>
 #include <limber/time/obstacle_contact.h>
 #include <limber/transfer/meeting_bodies.h>
@@ -77,12 +78,19 @@ namespace limber
                                         const bool           leapfrogs)
     : parts(parts)
     , cut_cells(cut_cells)
+    , rigid(parts.problem.obstacles)
     , sides(parts.problem.sides)
     , impulses(parts.nodes, leapfrogs)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
-    , cell_distance(parts.problem.obstacles.size())
   {
-    parts.ledger.obstacles.resize(parts.problem.obstacles.size());
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      if (parts.problem.sides[side].meets_surfaces)
+        {
+          rigid.push_back(half_space_beyond(side, parts.problem));
+          sides_that_meet.push_back(side);
+        }
+    cell_distance.resize(rigid.size());
+    parts.ledger.obstacles.resize(n_obstacles());
     for (const auto &body : parts.bodies)
       {
         const PointView<dim> points  = body->points.view();
@@ -114,7 +122,7 @@ namespace limber
       });
     for (const auto &body : parts.bodies)
       if (body->description.is_liquid)
-        for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
+        for (unsigned int o = 0; o < n_obstacles(); ++o)
           sums[o * parts.nodes.n_fields() + body->description.nodal_field]
             .records.reinit(std::size_t(parts.nodes.table.n()) * Sums::stride);
     if (any_liquid && !parts.grid.has_own_nodes())
@@ -139,12 +147,11 @@ namespace limber
     surface_places.clear();
     nodes_held.clear();
     std::vector<Way> ways;
-    for (unsigned int o = 0; o < parts.problem.obstacles.size(); ++o)
+    for (unsigned int o = 0; o < rigid.size(); ++o)
       {
         check_way(o, time, step);
-        ways.push_back(
-          {ObstaclePlace<dim>(parts.problem.obstacles[o], time),
-           ObstaclePlace<dim>(parts.problem.obstacles[o], time + step)});
+        ways.push_back({ObstaclePlace<dim>(rigid[o], time),
+                        ObstaclePlace<dim>(rigid[o], time + step)});
       }
     clear_sums();
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
@@ -248,12 +255,17 @@ namespace limber
     const PointView<dim> points    = parts.bodies[body]->points.view();
     const bool           is_liquid = parts.bodies[body]->description.is_liquid;
     const double inverse_density   = 1 / parts.bodies[body]->stress->density();
+    const unsigned int n_met =
+      parts.problem.meets_sides(
+        parts.bodies[body]->description.nodal_field) ?
+        rigid.size() :
+        n_obstacles();
     std::vector<unsigned int> asked; // obstacles
     for_each_batch(points, [&](const CellBatch &batch) {
       double                   reach;
       const dealii::Point<dim> middle = middle_of(points, batch, reach);
       asked.clear();
-      for (unsigned int o = 0; o < ways.size(); ++o)
+      for (unsigned int o = 0; o < n_met; ++o)
         if (!is_beyond(
               2 * (reach + edge[body]), o, ways[o].before, middle, batch.cell))
           asked.push_back(o);
@@ -330,7 +342,7 @@ namespace limber
                                     const double       step)
   {
     const PointView<dim> points   = parts.bodies[body]->points.view();
-    const Obstacle<dim> &obstacle = parts.problem.obstacles[near.obstacle];
+    const Obstacle<dim> &obstacle = rigid[near.obstacle];
     const Vector        &normal   = near.distance.normal;
     Vector               against, velocity;
     if (obstacle.moves())
@@ -520,6 +532,13 @@ namespace limber
       {
         const Place         &place  = impulses.all()[p];
         const Touch         &touch  = touches[p];
+        if (touch.obstacle >= n_obstacles())
+          {
+            const unsigned int side =
+              sides_that_meet[touch.obstacle - n_obstacles()];
+            parts.ledger.side_impulse[side] += place.impulse;
+            continue;
+          }
         ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
         const Vector         beyond = touch.beyond * place.normal,
                      impulse        = place.impulse + beyond;

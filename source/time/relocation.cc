@@ -15,8 +15,10 @@ namespace limber
     constexpr double travel_limit = 0.9;
 
     // How far beyond a side that holds it a point is put back, and where to,
-    // in cells. Those that go farther are lost, as the motion is unstable.
-    constexpr double put_back_limit = 0.01, put_back_place = 1e-6;
+    // in cells. Those that go farther are lost, as the motion is unstable. What
+    // goes less far than the last has been rounded.
+    constexpr double put_back_limit = 0.01, put_back_place = 1e-6,
+                     round_off = 1e-9;
 
 
 
@@ -31,25 +33,33 @@ namespace limber
 
 
     /** The place inside the box of a point that is hardly beyond closed sides
-     * of it; others keep theirs. */
+     * of it; others keep theirs. @p beyond: how far it was, cells. */
     template <int dim>
     std::array<double, dim>
     place_inside(const Problem<dim>   &problem,
                  const PointView<dim> &points,
-                 const std::size_t     p)
+                 const std::size_t     p,
+                 double               &beyond)
     {
       const GridDescription<dim> &box = problem.grid;
       std::array<double, dim>     x;
+      beyond = 0;
       for (int d = 0; d < dim; ++d)
         {
           x[d]              = points.position[d][p];
           const double edge = box.edge(d), allowed = put_back_limit * edge;
           if (holds_material(problem.sides[2 * d]) && x[d] < box.lower[d] &&
               x[d] > box.lower[d] - allowed)
-            x[d] = box.lower[d] + put_back_place * edge;
+            {
+              beyond = std::max(beyond, (box.lower[d] - x[d]) / edge);
+              x[d]   = box.lower[d] + put_back_place * edge;
+            }
           if (holds_material(problem.sides[2 * d + 1]) &&
               x[d] >= box.upper[d] && x[d] < box.upper[d] + allowed)
-            x[d] = box.upper[d] - put_back_place * edge;
+            {
+              beyond = std::max(beyond, (x[d] - box.upper[d]) / edge);
+              x[d]   = box.upper[d] - put_back_place * edge;
+            }
         }
       return x;
     }
@@ -103,7 +113,8 @@ namespace limber
           for (std::size_t p = 0; p < points.size; ++p)
             if (points.cell[p] == invalid_cell)
               {
-                const auto          x = place_inside(parts.problem, points, p);
+                double     beyond; // cells
+                const auto x = place_inside(parts.problem, points, p, beyond);
                 const std::uint32_t cell = grid.bins.cell_at(x);
                 if (cell == invalid_cell)
                   continue;
@@ -111,6 +122,11 @@ namespace limber
                   points.position[d][p] = x[d];
                 points.cell[p] = cell;
                 enter_cell(grid, *body, points, p);
+                if (beyond > round_off)
+                  {
+                    parts.ledger.put_back += 1;
+                    parts.ledger.put_back_way += beyond;
+                  }
               }
         }
     }

@@ -73,7 +73,7 @@ namespace limber
       for (unsigned int n = 0; n < n_steps; ++n, ++n_done)
         {
           integrator.reorganise();
-          integrator.advance(time, step);
+          last_step = integrator.advance(time, step);
           time += step;
         }
       integrator.synchronise();
@@ -165,7 +165,7 @@ namespace limber
     State<dim>
     state() const
     {
-      return {problem, grid, nodes, bodies, n_done, time, 0, ledger};
+      return {problem, grid, nodes, bodies, n_done, time, last_step, ledger};
     }
 
     Totals<dim>
@@ -181,7 +181,8 @@ namespace limber
     Ledger<dim>                                     ledger;
     const std::unique_ptr<Integrator<dim>>          integrator_of_scene;
     Integrator<dim>                                &integrator;
-    double                                          time   = 0;
+    double                                          time      = 0;
+    double                                          last_step = 0; // s
     unsigned long                                   n_done = 0;
     Balance<dim>                                    balance;
   };

@@ -68,13 +68,13 @@ namespace limber
 
     /**
      * Say that the entry @p entry of the present section only has an effect
-     * with the word @p word of the entry @p chooser of @p section.
+     * with one of the words @p words of the entry @p chooser of @p section.
      */
     void
-    only_with(const std::string &entry,
-              const std::string &word,
-              const std::string &chooser,
-              const SectionPath &section);
+    only_with(const std::string              &entry,
+              const std::vector<std::string> &words,
+              const std::string              &chooser,
+              const SectionPath              &section);
 
     /** Where declare() puts entries. */
     SectionPath
@@ -126,13 +126,14 @@ namespace limber
       std::string entry, prefix;
     };
 
-    /** An entry that only counts with one word of another entry. */
+    /** An entry that only counts with some words of another entry. */
     struct Condition
     {
-      SectionPath section;
-      std::string entry;
-      SectionPath chooser_section;
-      std::string chooser, word;
+      SectionPath              section;
+      std::string              entry;
+      SectionPath              chooser_section;
+      std::string              chooser;
+      std::vector<std::string> words;
     };
 
     const Declaration *

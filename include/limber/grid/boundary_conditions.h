@@ -46,7 +46,17 @@ namespace limber
       bool keeps_points = false;
     };
 
-    explicit BoundaryConditions(const Sides<dim> &sides);
+    /**
+     * On the nodes of fields for which @p by_surface is true, those sides do
+     * not act that meet surfaces (Side), by number of the field; none by
+     * default.
+     */
+    explicit BoundaryConditions(const Sides<dim>        &sides,
+                                const std::vector<bool> &by_surface = {});
+
+    BoundaryConditions(const BoundaryConditions &) = delete;
+    BoundaryConditions &
+    operator=(const BoundaryConditions &) = delete;
 
     /**
      * Change the new velocity of the nodes, and their increment with it, so
@@ -91,7 +101,7 @@ namespace limber
     Action
     action_on_remapped(const NodalFields<dim> &nodes, unsigned int slot) const;
 
-    /** Whether any side lets go. */
+    /** Whether any side lets nodes go that it acts on. */
     bool
     any_one_sided() const
     {
@@ -119,6 +129,14 @@ namespace limber
 
   private:
     using Velocity = dealii::Tensor<1, dim>;
+
+    /** Which of the constraints act on the selected field. */
+    unsigned int
+    of_field(const NodalFields<dim> &nodes) const
+    {
+      const unsigned int field = nodes.selected_field();
+      return field < by_surface.size() && by_surface[field] ? 1 : 0;
+    }
 
     template <class Work>
     void
@@ -154,10 +172,12 @@ namespace limber
       Velocity      impulse;
     };
 
-    const Sides<dim>    &sides;
-    SideConstraints<dim> constraints;
-    std::vector<Rubbing> rubbing;   // of the present step
-    const bool           one_sided; // any side
+    const Sides<dim>       &sides;
+    const Sides<dim>        others; // those that meet surfaces are free
+    const std::vector<bool> by_surface;
+    std::array<SideConstraints<dim>, 2> constraints; // of all, of others
+    std::vector<Rubbing>    rubbing;   // of the present step
+    const bool              one_sided; // any side, of the nodes of any field
   };
 } // namespace limber
 

@@ -81,6 +81,10 @@ namespace limber
     double                   energy_scale = 0; // see Balance
     double                   kinetic      = 0; // energy of all points
     double                   drift        = 0; // over the scale
+    std::string   against_splines; // GridDescription
+    unsigned long points       = 0;
+    double        put_back     = 0; // points, each time; see Ledger
+    double        put_back_way = 0; // of all of them, cells
     // Taken or given on record
     double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
            contact = 0, sides = 0, loads = 0;

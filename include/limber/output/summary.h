@@ -23,6 +23,7 @@ namespace limber
     unsigned long steps             = 0;
     unsigned long points            = 0; // at the end
     unsigned long lost_points       = 0;
+    unsigned long put_back          = 0; // how often a point, see Ledger
     unsigned int  ranks             = 1;
     double        end_time          = 0; // reached, s
     double        wall_seconds      = 0;

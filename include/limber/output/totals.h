@@ -60,6 +60,8 @@ namespace limber
     double        largest_volume  = 1;
     unsigned long points          = 0;
     unsigned long lost_points     = 0;
+    double        put_back        = 0; // points, see Ledger
+    double        put_back_way    = 0; // of all of them, cells
     unsigned long active_nodes    = 0; // nodes with mass
     unsigned long cells           = 0; // of the mesh
   };
@@ -94,7 +96,9 @@ namespace limber
    *       + contact + lost - W_sides - W_loads
    *
    * with T kinetic, U strain and V gravitational energy: the error of the
-   * integration in time and of points that cross cells. The scale is the
+   * integration in time and of points that cross cells, beyond round-off and
+   * what gravity does in half a step where points move by the velocity at the
+   * end of the step, which is that of its middle. The scale is the
    * largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far.
    */
   template <int dim>
@@ -126,7 +130,7 @@ namespace limber
     energy_of_round_off(unsigned long steps) const;
     void
     balance_energy(const Ledger<dim> &ledger,
-                   unsigned long      steps,
+                   const State<dim>  &state,
                    Totals<dim>       &totals);
     void
     balance_momentum(const Ledger<dim> &ledger,

@@ -192,6 +192,10 @@ namespace limber
     // have different ones
     unsigned int nodal_field = 0;
 
+    // Whether it feels one-sided sides where its material ends, as obstacles,
+    // and not at nodes (choose_side_contact())
+    bool meets_sides = false;
+
     /** Mass per volume in the reference state, kg/m^3. */
     double
     density() const
@@ -272,6 +276,8 @@ namespace limber
     dealii::Point<dim>            lower, upper;
     std::array<unsigned int, dim> cells{};
     KernelKind                    kernel = KernelKind::linear;
+    // Why 'Kernel = auto' does not take splines in this scene; empty if it may
+    std::string against_splines;
     // How often cells may be halved; 0: all are as the scene has them
     unsigned int                 levels = 0;
     std::vector<Refinement<dim>> refinements;
@@ -450,6 +456,31 @@ namespace limber
     std::vector<std::string>     notes; // what the reader decided, for the log
     // Entries that a run cannot change on its way, as "name = value"
     std::vector<std::string> fixed_entries;
+
+    /**
+     * Whether the nodes of a field leave one-sided sides to the surfaces of
+     * their bodies, all of which feel them there.
+     */
+    bool
+    meets_sides(const unsigned int nodal_field) const
+    {
+      return std::all_of(bodies.begin(),
+                         bodies.end(),
+                         [nodal_field](const Body<dim> &body) {
+                           return body.meets_sides ||
+                                  body.nodal_field != nodal_field;
+                         });
+    }
+
+    /** Whether there are obstacles, or sides that are felt like them. */
+    bool
+    has_rigid_contact() const
+    {
+      return !obstacles.empty() ||
+             std::any_of(sides.begin(), sides.end(), [](const auto &side) {
+               return side.meets_surfaces;
+             });
+    }
 
     /** Whether points of any body become two where they are stretched. */
     bool

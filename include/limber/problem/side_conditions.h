@@ -37,6 +37,9 @@ namespace limber
     // friction coefficient times J_n against the motion (Coulomb).
     bool         one_sided = false;
     double       friction  = 0;
+    // Felt by bodies with 'meets_sides' where their material ends, as a
+    // half-space would be (ObstacleContact), instead of by their nodes
+    bool         meets_surfaces = false;
     Formula<dim> velocity; // of the side, dim components, m/s; empty: at rest
 
     /** Of a component at a place and a time (s), m/s. */

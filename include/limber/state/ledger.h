@@ -54,6 +54,10 @@ namespace limber
     // From each side of the box on the material, in deal.II's order.
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
 
+    // Points that had gone beyond a closed side further than round-off and
+    // were put back, each time; and by how many cells altogether
+    double put_back = 0, put_back_way = 0;
+
     double                 lost_mass   = 0; // kg
     double                 lost_energy = 0; // kinetic, strain, gravity
     dealii::Tensor<1, dim> lost_momentum;

@@ -198,17 +198,32 @@ namespace limber
 
     using Places = std::vector<ObstaclePlace<dim>>;
 
+    // Parts of a cell along an edge, and the distances of their corners from
+    // the obstacles, m, x fastest
+    static constexpr unsigned int n_parts = dim == 2 ? 4 : 2;
+    static constexpr unsigned int n_corners =
+      (n_parts + 1) * (n_parts + 1) * (dim == 2 ? 1 : n_parts + 1);
+    using Distances = std::array<double, n_corners>;
+
     void
     find_cells(const Places &places);
     void
+    find_distance_at_rest(const Places &places);
+    bool
+    is_as_before(std::uint32_t cell, const Places &places);
+    void
     look_at(std::uint32_t cell, const Places &places);
     void
-    find_surfaces(Cell &cell, const Places &places) const;
+    find_surfaces(Cell            &cell,
+                  const Distances &distances,
+                  const Places    &places) const;
+    Distances
+    distances_in(std::uint32_t cell, const Places &places) const;
     template <class Work>
     void
-    for_each_open_simplex(std::uint32_t cell,
-                          const Places &places,
-                          const Work   &work) const;
+    for_each_open_simplex(const Distances &distances, const Work &work) const;
+    double
+    diagonal(std::uint32_t cell) const;
     template <class Work>
     void
     divide(const Simplex &simplex, const Work &work) const;
@@ -239,11 +254,16 @@ namespace limber
     LazyArray<double>          at_cut, at_covered; // by node
     RecordExchange             exchange{1};
     std::vector<char>          wet; // by cell, field
-    // Where obstacles move: the distances of the middles of cells, m, less
-    // what the obstacles have moved by since
-    std::vector<double> distance;
+    // Of the middles of cells from what is at rest, m; and from what moves,
+    // less what it has moved by since
+    std::vector<double> distance_at_rest, distance;
     Places              former;
     bool                moves = false;
+    // By cell, whether what moves was too far off to do anything to it or to
+    // those around when cells were last found
+    std::vector<char> is_untouched;
+    // Of the cells that are being found anew, in their order
+    std::vector<Distances> distances_of_cells;
     const bool          is_implicit; // the pressure
     double              least_share = 0;
     bool                any_cut     = false;

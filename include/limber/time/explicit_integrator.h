@@ -226,7 +226,8 @@ namespace limber
     LiquidMeans<dim>             liquid_means;
     bool touched = false; // bodies or obstacles, in the step before
     std::optional<Contact<dim>>         contact;   // of bodies that may part
-    std::optional<ObstacleContact<dim>> obstacles; // where the scene has any
+    // Where the scene has any, or sides that meet surfaces
+    std::optional<ObstacleContact<dim>> obstacles;
     Stabilization<dim>                  stabilization;
     Relocation<dim>                     relocation;
     ParticleShifting<dim>               shifting;

@@ -46,6 +46,10 @@ namespace limber
    * What presses in the new velocity does so in every other one of the step.
    * The velocity of the obstacle is that of its way over the step, so that its
    * place and that of what it pushes stay together.
+   *
+   * Sides of the box that meet surfaces (Side) are half-spaces at rest beyond
+   * their faces, for bodies of the nodal fields that feel them so
+   * (Problem::meets_sides()). Their impulses are those of the sides.
    */
   template <int dim>
   class ObstacleContact
@@ -216,6 +220,11 @@ namespace limber
       RecordExchange    exchange{stride};
     };
 
+    unsigned int
+    n_obstacles() const
+    {
+      return parts.problem.obstacles.size();
+    }
     void
     check_start() const;
     void
@@ -252,8 +261,12 @@ namespace limber
     bool
     is_met_by_surface(unsigned int field, std::uint32_t node) const;
 
-    const RunParts<dim>       parts;
-    CutCells<dim> *const      cut_cells; // or null
+    const RunParts<dim>  parts;
+    CutCells<dim> *const cut_cells; // or null
+    // What may be touched: the obstacles of the scene, in its order, and after
+    // them sides, whose numbers are in the second list
+    std::vector<Obstacle<dim>> rigid;
+    std::vector<unsigned int>  sides_that_meet;
     SideConstraints<dim>      sides;
     std::vector<double>       edge; // largest of the points of a body, m
     ContactImpulses<dim>      impulses;

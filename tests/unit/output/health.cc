@@ -83,7 +83,7 @@ namespace limber::test
   TEST(Health, NothingIsSaidAgainstASoundBody)
   {
     const auto lines = judge(sound());
-    EXPECT_EQ(lines.size(), 8u);
+    EXPECT_EQ(lines.size(), 10u);
     for (const HealthLine &line : lines)
       EXPECT_EQ(line.verdict, Verdict::good) << line.name << ": " << line.text;
     const std::string text = health_text(lines);
@@ -104,6 +104,18 @@ namespace limber::test
     figures       = sound();
     figures.drift = -0.2;
     expect_bad("energy", figures, "Courant number");
+
+    figures         = sound();
+    figures.contact = 15;
+    expect_bad("impacts", figures, "Grid/Cells");
+    figures.contact = -15;
+    expect_bad("impacts", figures, "Grid/Cells");
+
+    figures              = sound();
+    figures.points       = 400;
+    figures.put_back     = 50;
+    figures.put_back_way = 0.1;
+    expect_bad("put back", figures, "Courant number");
 
     figures                  = sound();
     figures.bodies[0].volume = 0.904;
@@ -238,6 +250,42 @@ namespace limber::test
     figures.bodies[0].unseen_energy = figures.drift;
     EXPECT_EQ(line("energy", figures).verdict, Verdict::bad);
     EXPECT_EQ(line("unseen", figures).verdict, Verdict::bad);
+  }
+
+
+
+  // Water comes to rest on a floor, clay as well.
+  TEST(Health, ImpactsOfWhatIsNotElasticMayTakeEnergy)
+  {
+    HealthFigures figures        = sound();
+    figures.contact              = 40;
+    figures.bodies[0].is_plastic = true;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
+    figures.bodies[0].is_plastic = false;
+    figures.bodies[0].is_liquid  = true;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
+    figures.bodies[0].is_liquid = false;
+    figures.contact             = 5;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::look);
+  }
+
+
+
+  // Where 'Kernel = auto' does not take splines, they are no remedy.
+  TEST(Health, SplinesAreNoRemedyForScenesWithWater)
+  {
+    HealthFigures figures                    = sound();
+    figures.bodies[0].crossings_under_strain = 1000;
+    const HealthLine alone                   = line("crossings", figures);
+    EXPECT_NE(alone.text.find("'Method/Kernel = quadratic' with three"),
+              std::string::npos);
+    figures.against_splines = "with splines liquids, like body 'water', lose "
+                              "volume";
+    const HealthLine in_water = line("crossings", figures);
+    EXPECT_EQ(in_water.text.find("'Method/Kernel"), std::string::npos);
+    EXPECT_NE(in_water.text.find("lose volume"), std::string::npos);
+    EXPECT_EQ(in_water.entry, "Body beam/Points per cell edge");
+    EXPECT_LT(n_words(in_water.text), 70u) << in_water.text;
   }
 
 

@@ -320,7 +320,7 @@ TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
 
 TEST(Choices, KernelOfScenesWithALiquidIsLinear)
 {
-  const auto kernel = [](const std::vector<std::string> &changes) {
+  const auto grid = [](const std::vector<std::string> &changes) {
     return read_problem<2>(scene_with(R"(
       set Bodies = block, water
       subsection Body block
@@ -338,12 +338,16 @@ TEST(Choices, KernelOfScenesWithALiquidIsLinear)
         set Cells = 10, 10
       end)",
                                       changes))
-      .grid.kernel;
+      .grid;
   };
-  EXPECT_EQ(kernel({}), KernelKind::linear);
+  EXPECT_EQ(grid({}).kernel, KernelKind::linear);
+  // what 'auto' would not take is known of given kernels as well
+  EXPECT_NE(grid({"Method/Kernel=linear"}).against_splines.find("lose volume"),
+            std::string::npos);
+  EXPECT_EQ(grid({"Body water/Material=linear elastic"}).against_splines, "");
   // which keep the volume of liquids with splines
-  EXPECT_EQ(kernel({"Method/Transfer=aflip"}), KernelKind::quadratic);
-  EXPECT_EQ(kernel({"Body water/Material=linear elastic"}),
+  EXPECT_EQ(grid({"Method/Transfer=aflip"}).kernel, KernelKind::quadratic);
+  EXPECT_EQ(grid({"Body water/Material=linear elastic"}).kernel,
             KernelKind::quadratic);
 }
 
@@ -368,6 +372,44 @@ TEST(Choices, EntriesWithoutEffectAreNoted)
   EXPECT_EQ(warnings("neo hookean").front(),
             "Section 'Body block/J2' has no effect, as 'Material' is 'neo "
             "hookean'.");
+}
+
+
+
+// Entries of Newton's method in explicit steps: noted if these were chosen,
+// refused if nothing was.
+TEST(Choices, EntriesOfNewtonStepsAreNotedInExplicitOnes)
+{
+  const auto warnings = [](const std::string &integration,
+                           const std::string &entry) {
+    return SceneFile(ParameterText{"set Bodies = block\nsubsection Method\n" +
+                                     integration + "set " + entry + "\nend\n",
+                                   FileFormat::prm,
+                                   "scene"},
+                     {})
+      .warnings();
+  };
+  const std::string tolerance = "Newton tolerance = 1e-8",
+                    penalty   = "Ghost penalty = 0.1";
+  const auto        chosen    = [](const std::string &word) {
+    return "set Time integration = " + word + "\n";
+  };
+  EXPECT_TRUE(warnings(chosen("quasi-static"), tolerance).empty());
+  EXPECT_TRUE(warnings(chosen("implicit"), tolerance).empty());
+  EXPECT_TRUE(warnings(chosen("quasi-static"), penalty).empty());
+  for (const auto &[word, entry] :
+       {std::make_pair("explicit", tolerance),
+        std::make_pair("semi-implicit", tolerance),
+        std::make_pair("explicit", penalty),
+        std::make_pair("implicit", penalty)})
+    {
+      const auto found = warnings(chosen(word), entry);
+      ASSERT_EQ(found.size(), 1u) << word << entry;
+      EXPECT_NE(found.front().find("has no effect, as 'Time integration' is"),
+                std::string::npos)
+        << found.front();
+    }
+  EXPECT_THROW(warnings("", tolerance), InputError);
 }
 
 

@@ -20,6 +20,7 @@ namespace
     std::size_t lost;
     double      x, y;
     double      mass_of_cells; // in the sums for the next step, kg
+    double      put_back, way; // points; cells
   };
 
 
@@ -55,7 +56,12 @@ namespace
     run.advance(1e-8);
 
     const auto after = run.points();
-    AfterAStep result{n - after.size, 1, 0, 0};
+    AfterAStep result{n - after.size,
+                      1,
+                      0,
+                      0,
+                      run.totals().put_back,
+                      run.totals().put_back_way};
     for (std::size_t p = 0; p < after.size; ++p)
       {
         result.x = std::min(result.x, after.position[0][p]);
@@ -80,12 +86,26 @@ TEST(ClosedSides, PutPointsBack)
       EXPECT_GE(left.x, 0);
       EXPECT_LT(left.x, 1e-5 * edge);
       EXPECT_NEAR(left.mass_of_cells, all, 1e-9);
+      EXPECT_EQ(left.put_back, 1);
+      EXPECT_NEAR(left.way, 0.005, 1e-5);
       const auto top = step_from_beyond("top", 0.005, condition);
       EXPECT_EQ(top.lost, 0u) << condition;
       EXPECT_LT(top.y, 0.5);
       EXPECT_GT(top.y, 0.5 - 1e-5 * edge);
       EXPECT_NEAR(top.mass_of_cells, all, 1e-9);
     }
+}
+
+
+
+// What is as far beyond as round-off makes it is put back and not counted.
+TEST(ClosedSides, DoNotCountRoundOff)
+{
+  const auto rounded = step_from_beyond("left", 1e-12);
+  EXPECT_EQ(rounded.lost, 0u);
+  EXPECT_GE(rounded.x, 0);
+  EXPECT_EQ(rounded.put_back, 0);
+  EXPECT_EQ(step_from_beyond("top", 1e-6).put_back, 1);
 }
 
 

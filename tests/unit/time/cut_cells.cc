@@ -455,3 +455,67 @@ TEST(CutCells, WaterRestsBesideAWall)
       EXPECT_NEAR(-run.totals().obstacles[0].impulse[0], exact, 0.01 * exact);
     }
 }
+
+
+
+// A rock moves through a box with a slope: what is known of all cells step by
+// step is what is found of them at once, to the last bit, near the rock and far
+// from it.
+TEST(CutCells, AreTheSameStepByStepAndAtOnce)
+{
+  SceneRun<2>  run(box_with_obstacle(2, R"(
+    set Shape = ball
+    subsection Ball
+      set Centre = 0.9, 0.4
+      set Radius = 0.08
+    end
+    set Displacement = -0.8*t; 0.03*sin(9*t)
+    set Rotation = t
+  end
+  subsection Obstacle slope
+    set Shape = half-space
+    subsection Half-space
+      set Point = 0.5, 0.31
+      set Normal = 0.1, 1
+    end)"),
+                  {"Obstacles=rock, slope", "Grid/Cells=48, 48"});
+  auto         step_by_step = cut_cells_of(run);
+  unsigned int n_cut = 0, n_of_both = 0;
+  for (unsigned int step = 0; step <= 100; ++step)
+    {
+      const double time = 0.01 * step;
+      step_by_step.find(time);
+      if (step % 10 != 0)
+        continue;
+      SCOPED_TRACE(time);
+      auto at_once = cut_cells_of(run);
+      at_once.reinit(time);
+      ASSERT_EQ(step_by_step.all().size(), at_once.all().size());
+      for (std::size_t k = 0; k < at_once.all().size(); ++k)
+        {
+          const auto &one = step_by_step.all()[k], &other = at_once.all()[k];
+          ASSERT_EQ(one.number, other.number);
+          EXPECT_EQ(one.open, other.open);
+          EXPECT_EQ(one.monomials, other.monomials);
+          EXPECT_EQ(one.hydrostatic, other.hydrostatic);
+          ASSERT_EQ(one.surfaces.size(), other.surfaces.size());
+          n_cut += one.is_cut();
+          n_of_both += one.surfaces.size() > 1 &&
+                       one.surfaces[0].obstacle != one.surfaces[1].obstacle;
+          for (std::size_t s = 0; s < one.surfaces.size(); ++s)
+            {
+              EXPECT_EQ(one.surfaces[s].obstacle, other.surfaces[s].obstacle);
+              EXPECT_EQ(one.surfaces[s].area, other.surfaces[s].area);
+              EXPECT_EQ(one.surfaces[s].normal, other.surfaces[s].normal);
+              EXPECT_EQ(one.surfaces[s].functions, other.surfaces[s].functions);
+            }
+        }
+      for (std::uint32_t cell = 0; cell < run.grid.n_cells(); ++cell)
+        {
+          EXPECT_EQ(step_by_step.is_covered(cell), at_once.is_covered(cell));
+          EXPECT_EQ(step_by_step.is_closed(cell), at_once.is_closed(cell));
+        }
+    }
+  EXPECT_GT(n_cut, 500u);
+  EXPECT_GT(n_of_both, 0u); // it touches the slope on its way
+}

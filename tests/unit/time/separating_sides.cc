@@ -96,6 +96,57 @@ namespace
 
 
 
+  // On a slope of 30 degrees, seen along it; 10 cells over the radius
+  const std::string disc_on_slope = R"(
+    set Bodies = disc
+    subsection Body disc
+      set Shape = ball
+      subsection Ball
+        set Centre = 0.75, 0.5
+        set Radius = 0.5
+      end
+      subsection Linear elastic
+        set Density = 1000
+        set Young's modulus = 1e7
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Grid
+      set Upper corner = 3, 1.2
+      set Cells = 60, 24
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set top = free
+      set bottom = free
+    end
+    subsection Loads
+      set Gravity = 4.905, -8.495709211125343
+    end)";
+
+  const std::string side_with_friction = R"(
+    subsection Boundaries
+      set bottom = friction
+      subsection Side bottom
+        set Friction coefficient = 0.3
+      end
+    end)";
+
+  const std::string half_space_with_friction = R"(
+    set Obstacles = floor
+    subsection Obstacle floor
+      set Shape = half-space
+      subsection Half-space
+        set Point = 0, 0
+        set Normal = 0, 1
+      end
+      set Law = friction
+      set Friction coefficient = 0.3
+    end)";
+
+
+
   std::vector<std::string>
   slope(const double degrees, const double friction)
   {
@@ -258,4 +309,98 @@ TEST(SeparatingSides, ABlockRestsWhereFrictionHoldsIt)
   run.advance_to(2.5);
   // of the way that it would slide freely
   EXPECT_NEAR(run.totals().centre_of_mass[0] - before, 0, 1e-3 * 4.9 / 2);
+}
+
+
+
+// a = 2/3 g sin. Held at its nodes, it would be braked by a quarter: they act
+// up to a cell before the points that touch, where the disc does not roll.
+TEST(SeparatingSides, ADiscRolls)
+{
+  const double exact = 2. / 3 * 4.905 * 0.7;
+  for (const std::string kernel : {"linear", "quadratic", "cubic", "gimp"})
+    {
+      SCOPED_TRACE(kernel);
+      SceneRun<2> run(disc_on_slope + side_with_friction,
+                      {"Method/Kernel=" + kernel});
+      run.advance_to(0.7);
+      const auto totals = run.totals();
+      EXPECT_NEAR(totals.all.momentum[0] / totals.all.mass / exact, 1, 0.025);
+      EXPECT_LT(totals.momentum_error, 1e-12);
+      EXPECT_NEAR(totals.energy_drift, 0, 1e-3);
+      EXPECT_EQ(totals.boundary_work, 0);
+      EXPECT_EQ(totals.lost_points, 0u);
+    }
+}
+
+
+
+// What it is for solids: an obstacle whose face is the side. The impulse is
+// that of the side.
+TEST(SeparatingSides, AreHalfSpacesForSolids)
+{
+  for (const std::string frame : {"current", "initial"})
+    {
+      SCOPED_TRACE(frame);
+      const std::vector<std::string> variant = {"Body disc/Frame=" + frame,
+                                                "Body disc/Material=neo "
+                                                "hookean",
+                                                "Body disc/Placement=regular"};
+      SceneRun<2> side(disc_on_slope + side_with_friction, variant);
+      SceneRun<2> obstacle(disc_on_slope + half_space_with_friction, variant);
+      side.advance(1e-4, 400);
+      obstacle.advance(1e-4, 400);
+      const auto of_side = side.totals(), of_obstacle = obstacle.totals();
+      const double size  = of_side.all.momentum.norm();
+      EXPECT_GT(of_side.side_impulse[2][1], 0.1 * size);
+      for (unsigned int d = 0; d < 2; ++d)
+        {
+          EXPECT_NEAR(of_side.all.momentum[d],
+                      of_obstacle.all.momentum[d],
+                      1e-12 * size);
+          EXPECT_NEAR(of_side.side_impulse[2][d],
+                      of_obstacle.obstacles[0].impulse[d],
+                      1e-12 * size);
+        }
+      EXPECT_EQ(of_side.contact_loss, of_obstacle.contact_loss);
+      EXPECT_EQ(of_side.friction_heat, of_obstacle.friction_heat);
+    }
+}
+
+
+
+// Nodes go on to hold what defines no surface, and where contact with rigid
+// things does not go with the method; the log says so of solids.
+TEST(SeparatingSides, ActAtNodesWhereNothingElseGoes)
+{
+  struct
+  {
+    std::string variant, word;
+  } const cases[] = {{"Method/Transfer=flip", ""},
+                     {"Method/Transfer=fmpm", "'fmpm'"},
+                     {"Body disc/Material=drucker prager", "without end"},
+                     {"Body disc/Material=j2", ""}};
+  for (const auto &expected : cases)
+    {
+      SCOPED_TRACE(expected.variant);
+      const SceneRun<2> run(disc_on_slope + side_with_friction + R"(
+        subsection Body disc
+          subsection J2
+            set Yield stress = 1e5
+          end
+          subsection Drucker prager
+            set Friction angle = 30
+          end
+        end)",
+                            {expected.variant});
+      const bool        at_surface = expected.word.empty();
+      EXPECT_EQ(run.problem.bodies[0].meets_sides, at_surface);
+      EXPECT_EQ(run.problem.sides[2].meets_surfaces, at_surface);
+      EXPECT_EQ(run.problem.sides[0].meets_surfaces, false);
+      bool is_noted = false;
+      for (const std::string &note : run.problem.notes)
+        is_noted = is_noted || (note.find("at nodes") != std::string::npos &&
+                                note.find(expected.word) != std::string::npos);
+      EXPECT_EQ(is_noted, !at_surface);
+    }
 }

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/cut_cells.h>
+
+#include <algorithm>
+#include <cmath>
+
+/**
+ * @file Which cells obstacles cut. Where some obstacles move, only the cells
+ * near these are looked at anew in a step.
+ */
+
+namespace limber
+{
+  namespace
+  {
+    // Share of a cell below which it counts as closed, where the pressure is
+    // implicit
+    constexpr double least_of_implicit = 0.01;
+
+    // In diagonals of a cell: where what moves is further off, neither the cell
+    // nor those around, which may be twice as large, have anything of it.
+    constexpr double far_off = 6;
+
+
+
+    /** From the middle of a cell to the obstacles that do, or do not, move. */
+    template <int dim>
+    double
+    distance_of_middle(const CellGeometry<dim>               &cell,
+                       const std::vector<ObstaclePlace<dim>> &places,
+                       const std::vector<Obstacle<dim>>      &obstacles,
+                       const bool                             that_move)
+    {
+      dealii::Point<dim> middle;
+      for (unsigned int d = 0; d < dim; ++d)
+        middle[d] = cell.origin[d] + 0.5 / cell.inverse_edge[d];
+      double result = 1e300;
+      for (std::size_t o = 0; o < obstacles.size(); ++o)
+        if (obstacles[o].moves() == that_move)
+          result = std::min(result, places[o].distance(middle).value);
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  CutCells<dim>::may_be(const RunParts<dim> &parts)
+  {
+    return !parts.problem.obstacles.empty() &&
+           parts.problem.grid.kernel == KernelKind::linear &&
+           std::any_of(parts.bodies.begin(),
+                       parts.bodies.end(),
+                       [](const auto &body) {
+                         return body->description.is_liquid &&
+                                body->stress->treatment().kind ==
+                                  Treatment::cell;
+                       });
+  }
+
+
+
+  template <int dim>
+  CutCells<dim>::CutCells(const RunParts<dim> &parts)
+    : parts(parts)
+    , knowing(n_nodal_fields(parts.problem), false)
+    , moves(std::any_of(parts.problem.obstacles.begin(),
+                        parts.problem.obstacles.end(),
+                        [](const auto &obstacle) { return obstacle.moves(); }))
+    , is_implicit(parts.problem.method.integration ==
+                  TimeIntegration::semi_implicit)
+  {
+    for (const auto &body : parts.bodies)
+      if (body->description.is_liquid)
+        knowing[body->description.nodal_field] = true;
+    for (const auto &body : parts.bodies)
+      if (body->description.is_liquid &&
+          body->stress->treatment().kind != Treatment::cell)
+        knowing[body->description.nodal_field] = false;
+    least_share = is_implicit ?
+                    least_of_implicit :
+                    std::max(0.15, courant_number() * courant_number() / 4);
+    reinit(0);
+  }
+
+
+
+  // What a given step is of that in which sound crosses a cell.
+  template <int dim>
+  double
+  CutCells<dim>::courant_number() const
+  {
+    if (!(parts.problem.method.time_step > 0))
+      return parts.problem.method.courant_number;
+    double squared = 0; // of the speed of sound
+    for (const auto &body : parts.bodies)
+      if (knowing[body->description.nodal_field])
+        squared =
+          std::max(squared,
+                   body->stress->wave_speed_squared(body->points.view()));
+    return parts.problem.method.time_step / parts.grid.smallest_edge *
+           std::sqrt(
+             dealii::Utilities::MPI::max(squared, parts.grid.communicator));
+  }
+
+
+
+  template <int dim>
+  void
+  CutCells<dim>::reinit(const double time)
+  {
+    distance.clear();
+    at_cut.reinit(parts.grid.vertices.n());
+    at_covered.reinit(parts.grid.vertices.n());
+    former.clear();
+    Places places;
+    for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
+      places.emplace_back(obstacle, time);
+    find_cells(places);
+  }
+
+
+
+  template <int dim>
+  void
+  CutCells<dim>::find(const double time)
+  {
+    std::fill(wet.begin(), wet.end(), 0);
+    if (!moves)
+      return;
+    Places places;
+    for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
+      places.emplace_back(obstacle, time);
+    find_cells(places);
+  }
+
+
+
+  // Of what is furthest out, as obstacles are rigid.
+  template <int dim>
+  double
+  CutCells<dim>::way_since_found(const Places &places) const
+  {
+    double result = 0;
+    for (std::size_t o = 0; o < former.size(); ++o)
+      for (unsigned int corner = 0; corner < n_nodes; ++corner)
+        {
+          dealii::Point<dim> x;
+          for (unsigned int d = 0; d < dim; ++d)
+            x[d] = corner >> d & 1 ? parts.problem.grid.upper[d] :
+                                     parts.problem.grid.lower[d];
+          result =
+            std::max(result,
+                     places[o].place_of(former[o].start_of(x)).distance(x));
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  CutCells<dim>::diagonal(const std::uint32_t cell) const
+  {
+    double square = 0;
+    for (const double inverse : parts.grid.geometry[cell].inverse_edge)
+      square += 1 / (inverse * inverse);
+    return std::sqrt(square);
+  }
+
+
+
+  template <int dim>
+  void
+  CutCells<dim>::find_distance_at_rest(const Places &places)
+  {
+    const std::uint32_t n = parts.grid.n_cells();
+    distance_at_rest.resize(n);
+    for (std::uint32_t cell = 0; cell < n; ++cell)
+      distance_at_rest[cell] =
+        distance_of_middle(parts.grid.geometry[cell],
+                           places,
+                           parts.problem.obstacles,
+                           false);
+    distance.assign(n, 0);
+    is_untouched.assign(n, 0);
+  }
+
+
+
+  // The distance from what moves is asked for where it may matter: twice as
+  // far as the corners are from the middle, as that from a formula is of first
+  // order. Of cells that are cut by what is at rest more has to be known.
+  template <int dim>
+  bool
+  CutCells<dim>::is_as_before(const std::uint32_t cell, const Places &places)
+  {
+    if (!moves)
+      return false;
+    const double across  = diagonal(cell);
+    double      &of_cell = distance[cell];
+    const bool   may_be_cut = std::abs(distance_at_rest[cell]) <= across;
+    if (std::abs(of_cell) <= (may_be_cut ? far_off : 1) * across)
+      of_cell = distance_of_middle(parts.grid.geometry[cell],
+                                   places,
+                                   parts.problem.obstacles,
+                                   true);
+    const bool was_untouched = is_untouched[cell];
+    is_untouched[cell]       = of_cell > far_off * across;
+    return was_untouched && is_untouched[cell];
+  }
+
+
+
+  template <int dim>
+  void
+  CutCells<dim>::find_cells(const Places &places)
+  {
+    const std::uint32_t n = parts.grid.n_cells();
+    if (former.empty())
+      find_distance_at_rest(places);
+    else if (const double way = way_since_found(places); way > 0)
+      for (double &of_cell : distance)
+        of_cell -= of_cell > 0 ? std::min(2 * way, of_cell) :
+                                 std::max(-2 * way, of_cell);
+    former = places;
+    std::vector<Cell>          cells_before;
+    std::vector<std::uint32_t> kinds_before(n, open);
+    cells.swap(cells_before);
+    kinds.swap(kinds_before);
+    distances_of_cells.clear();
+    std::vector<std::size_t> found; // those that are not as before
+    for (std::uint32_t cell = 0; cell < n; ++cell)
+      {
+        if (!is_as_before(cell, places))
+          {
+            const std::size_t before = cells.size();
+            look_at(cell, places);
+            if (cells.size() > before)
+              found.push_back(before);
+            continue;
+          }
+        const std::uint32_t kind = kinds_before[cell];
+        kinds[cell]              = kind;
+        if (kind < first_cut)
+          continue;
+        kinds[cell] = first_cut + static_cast<std::uint32_t>(cells.size());
+        cells.push_back(std::move(cells_before[kind - first_cut]));
+      }
+    for (std::size_t k = 0; k < found.size(); ++k)
+      find_surfaces(cells[found[k]], distances_of_cells[k], places);
+    wet.assign(cells.size() * knowing.size(), 0);
+
+    const NodeTable<dim> &table = parts.grid.vertices;
+    std::fill_n(at_cut.data(), table.n(), 0.);
+    for (const Cell &cell : cells)
+      if (cell.number < parts.grid.n_owned_cells() && cell.is_cut())
+        for (const std::uint32_t offset : parts.grid.geometry[cell.number].node)
+          at_cut[offset / NodeLayout<dim>::stride] = 1;
+    std::fill_n(at_covered.data(), table.n(), 0.);
+    for (std::uint32_t cell = 0; cell < parts.grid.n_owned_cells(); ++cell)
+      if (is_covered(cell))
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          at_covered[parts.grid.geometry[cell].node[a] /
+                     NodeLayout<dim>::stride] += 1u << a;
+    any_cut = dealii::Utilities::MPI::max<unsigned int>(
+                std::any_of(cells.begin(),
+                            cells.end(),
+                            [](const Cell &cell) { return cell.is_cut(); }),
+                parts.grid.communicator) > 0;
+    ++times_found;
+    const ExchangePlan all(table.shared);
+    for (LazyArray<double> *const of_nodes : {&at_cut, &at_covered})
+      {
+        exchange.start(all, of_nodes->data(), 0, 1);
+        exchange.finish(of_nodes->data());
+      }
+  }
+
+
+
+  template bool
+  CutCells<2>::may_be(const RunParts<2> &);
+  template CutCells<2>::CutCells(const RunParts<2> &);
+  template void
+  CutCells<2>::reinit(double);
+  template void
+  CutCells<2>::find(double);
+  template double
+  CutCells<2>::diagonal(std::uint32_t) const;
+  template bool
+  CutCells<3>::may_be(const RunParts<3> &);
+  template CutCells<3>::CutCells(const RunParts<3> &);
+  template void
+  CutCells<3>::reinit(double);
+  template void
+  CutCells<3>::find(double);
+  template double
+  CutCells<3>::diagonal(std::uint32_t) const;
+} // namespace limber
