@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/boundary_conditions.h>
 #include <limber/grid/node_vector.h>
+#include <limber/problem/side_contact.h>
 
 #include <algorithm>
 
@@ -13,22 +14,6 @@ namespace limber
     outward(const unsigned int side)
     {
       return side % 2 == 1 ? 1. : -1.;
-    }
-
-
-
-    /** Those that act on nodes of solids. */
-    template <int dim>
-    Sides<dim>
-    without_those_that_meet_surfaces(Sides<dim> sides)
-    {
-      for (Side<dim> &side : sides)
-        if (side.meets_surfaces)
-          {
-            side.held      = HeldComponents::none;
-            side.one_sided = false;
-          }
-      return sides;
     }
 
 
@@ -50,7 +35,7 @@ namespace limber
     const Sides<dim>        &sides,
     const std::vector<bool> &by_surface)
     : sides(sides)
-    , others(without_those_that_meet_surfaces<dim>(sides))
+    , others(sides_at_nodes<dim>(sides))
     , by_surface(by_surface)
     , constraints{SideConstraints<dim>(this->sides),
                   SideConstraints<dim>(this->others)}

@@ -124,7 +124,8 @@ namespace limber
 
     // What bodies that are solid and elastic lose where they touch is an error;
     // water that lands on a floor, and what flows plastically, comes to rest
-    // there.
+    // there. Where nothing can be hit, it is a clamp that takes it, of a body
+    // whose points cross cells, which has a line of its own.
     HealthLine
     judge_impacts(const HealthFigures &figures, const HealthCheck &check)
     {
@@ -136,18 +137,20 @@ namespace limber
                                            });
       HealthLine line;
       line.entry = "Grid/Cells";
-      if (is_elastic && figures.energy_scale > 0)
+      const bool counts = is_elastic && figures.may_hit;
+      if (counts && figures.energy_scale > 0)
         line.value = figures.contact / figures.energy_scale;
       line.verdict = check.verdict(line.value);
-      line.text    = is_elastic ?
+      line.text    = counts ?
                        percent(line.value) +
-                      " of the energy scale was lost where elastic bodies "
-                      "touch each other, obstacles or sides" :
-                       "bodies are not elastic, what contact takes may be meant";
+                      " of the energy scale was lost where elastic bodies hit "
+                      "each other, obstacles or sides" :
+                       "no elastic bodies that may hit something";
       if (line.verdict != Verdict::good)
         line.text += ": points come to rest against what they hit one by one, "
                      "in each impact those of about half a cell. Take smaller "
-                     "cells, or a smaller 'Courant number'";
+                     "cells, or a smaller 'Courant number'; for what turns on "
+                     "a 'separating' side, a half-space as obstacle";
       return line;
     }
 
@@ -434,7 +437,7 @@ namespace limber
     // energy     Scenes with a reference keep 1 %; above 5 % amplitudes and
     //            deflections err by as much.
     // impacts    Elastic scenes with a reference lose up to 3 %.
-    // put back   Water that sloshes along a wall has it once in a while.
+    // put back   Scenes with a reference have none.
     // mass       A frequency changes by half of it; 'cut' errs by < 1 %.
     // overlap    Rounding of surfaces by parts of cells comes to some 0.1 %.
     // crossings  Deflections err by as much, see creep_per_crossing().
@@ -445,7 +448,7 @@ namespace limber
       {"unseen", 0.1, 0.3, judge_unseen},
       {"energy", 0.01, 0.05, judge_energy},
       {"impacts", 0.03, 0.1, judge_impacts},
-      {"put back", 0.01, 0.1, judge_put_back},
+      {"put back", 0.001, 0.1, judge_put_back},
       {"mass", 0.02, 0.05, judge_mass},
       {"overlap", 0.005, 0.05, judge_overlap},
       {"crossings", 0.02, 0.1, judge_crossings},

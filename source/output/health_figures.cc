@@ -208,6 +208,16 @@ namespace limber
     figures.contact      = totals.contact_loss;
     figures.sides        = totals.boundary_work;
     figures.loads        = totals.load_work;
+    figures.may_hit =
+      !state.problem.obstacles.empty() ||
+      std::any_of(state.problem.sides.begin(),
+                  state.problem.sides.end(),
+                  [](const Side<dim> &side) { return side.one_sided; }) ||
+      std::any_of(state.problem.contacts.begin(),
+                  state.problem.contacts.end(),
+                  [](const ContactPair &pair) {
+                    return pair.law == ContactLaw::separate;
+                  });
     figures.points       = totals.points;
     figures.put_back     = totals.put_back;
     figures.put_back_way = totals.put_back_way;

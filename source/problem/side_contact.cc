@@ -41,34 +41,56 @@ namespace limber
 
 
 
+  // What rolls or slides needs the surface, or its friction has the wrong arm;
+  // an impact on nodes is softer and loses less.
   template <int dim>
   void
   choose_side_contact(Problem<dim> &problem)
   {
-    std::vector<std::string> names;
+    std::vector<std::string> rough, smooth; // names of sides
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (problem.sides[side].one_sided)
-        names.push_back(in_quotes(side_names(dim)[side]));
-    if (names.empty())
-      return;
+        (problem.sides[side].friction > 0 ? rough : smooth)
+          .push_back(in_quotes(side_names(dim)[side]));
     bool any = false;
     for (Body<dim> &body : problem.bodies)
       {
         const std::string reason = why_at_nodes(body, problem);
         body.meets_sides         = reason.empty();
         any                      = any || body.meets_sides;
-        if (!body.meets_sides && !body.is_liquid)
+        if (body.is_liquid)
+          continue;
+        const std::string feels = "Body " + in_quotes(body.name) + " feels ";
+        if (!rough.empty() && !reason.empty())
+          problem.notes.push_back(feels + join(rough, ", ") + " at nodes, as " +
+                                  reason +
+                                  ": it may end up to a cell before the side, "
+                                  "and is braked by a quarter if it rolls (8 "
+                                  "cells over its radius).");
+        if (!smooth.empty())
           problem.notes.push_back(
-            "Body " + in_quotes(body.name) + " feels " +
-            (names.size() > 1 ? "the sides " : "the side ") +
-            join(names, ", ") + " at nodes, as " + reason +
-            ": it ends up to a cell before them; if it rolls, it is braked" +
-            (reason.find("transfer") != std::string::npos ?
-               ". 'Transfer = flip' does better." :
-               "."));
+            feels + join(smooth, ", ") +
+            " at nodes, where impacts lose least: it may end up to a cell "
+            "before the side, and what turns there is braked. For that, a "
+            "'half-space' as obstacle touches its surface.");
       }
     for (Side<dim> &side : problem.sides)
-      side.meets_surfaces = side.one_sided && any;
+      side.meets_surfaces = side.one_sided && side.friction > 0 && any;
+  }
+
+
+
+  template <int dim>
+  Sides<dim>
+  sides_at_nodes(Sides<dim> sides)
+  {
+    for (Side<dim> &side : sides)
+      if (side.meets_surfaces)
+        {
+          side.held      = HeldComponents::none;
+          side.one_sided = false;
+        }
+    return sides;
   }
 
 
@@ -95,6 +117,10 @@ namespace limber
   choose_side_contact(Problem<2> &);
   template void
   choose_side_contact(Problem<3> &);
+  template Sides<2>
+  sides_at_nodes(Sides<2>);
+  template Sides<3>
+  sides_at_nodes(Sides<3>);
   template Obstacle<2>
   half_space_beyond(unsigned int, const Problem<2> &);
   template Obstacle<3>

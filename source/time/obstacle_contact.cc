@@ -80,6 +80,8 @@ namespace limber
     , cut_cells(cut_cells)
     , rigid(parts.problem.obstacles)
     , sides(parts.problem.sides)
+    , other_sides(sides_at_nodes<dim>(parts.problem.sides))
+    , of_other_sides(other_sides)
     , impulses(parts.nodes, leapfrogs)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
   {
@@ -157,6 +159,11 @@ namespace limber
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
       find_points(b, ways, step);
     add_nodes(ways, step);
+    if (!sides_that_meet.empty())
+      for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
+        if (parts.problem.meets_sides(field))
+          impulses.heed_sides(field,
+                              of_other_sides.at(parts.nodes, time + step));
     if (cut_cells)
       {
         add_cut_cells(ways, step);

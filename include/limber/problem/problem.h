@@ -192,8 +192,8 @@ namespace limber
     // have different ones
     unsigned int nodal_field = 0;
 
-    // Whether it feels one-sided sides where its material ends, as obstacles,
-    // and not at nodes (choose_side_contact())
+    // Whether it feels sides with Side::meets_surfaces where its material ends,
+    // as obstacles, and not at nodes (choose_side_contact())
     bool meets_sides = false;
 
     /** Mass per volume in the reference state, kg/m^3. */
@@ -458,8 +458,8 @@ namespace limber
     std::vector<std::string> fixed_entries;
 
     /**
-     * Whether the nodes of a field leave one-sided sides to the surfaces of
-     * their bodies, all of which feel them there.
+     * Whether the nodes of a field leave such sides to the surfaces of their
+     * bodies, all of which feel them there.
      */
     bool
     meets_sides(const unsigned int nodal_field) const

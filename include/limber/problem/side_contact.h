@@ -4,11 +4,11 @@
 
 #include <limber/problem/problem.h>
 
-/** @file One-sided sides of the box that solids feel where they end. */
+/** @file Sides of the box with friction that solids feel where they end. */
 namespace limber
 {
   /**
-   * Let solids feel one-sided sides where their material ends
+   * Let solids feel one-sided sides with friction where their material ends
    * (Body::meets_sides, Side::meets_surfaces); says in the log of which it is
    * the nodes that feel them, and why. Method, bodies and their nodal fields
    * are known.
@@ -16,6 +16,12 @@ namespace limber
   template <int dim>
   void
   choose_side_contact(Problem<dim> &problem);
+
+  /** The sides as they act on the nodes of bodies that meet sides: those that
+   * meet surfaces are free. */
+  template <int dim>
+  Sides<dim>
+  sides_at_nodes(Sides<dim> sides);
 
   /** What is beyond a side of the box, with its friction. */
   template <int dim>

@@ -268,6 +268,9 @@ namespace limber
     std::vector<Obstacle<dim>> rigid;
     std::vector<unsigned int>  sides_that_meet;
     SideConstraints<dim>      sides;
+    // Of fields that meet sides, what is left to their nodes
+    const Sides<dim>          other_sides;
+    SideConstraints<dim>      of_other_sides;
     std::vector<double>       edge; // largest of the points of a body, m
     ContactImpulses<dim>      impulses;
     std::vector<Sums>         sums;    // of an obstacle and a field

@@ -106,6 +106,7 @@ namespace limber::test
     expect_bad("energy", figures, "Courant number");
 
     figures         = sound();
+    figures.may_hit = true;
     figures.contact = 15;
     expect_bad("impacts", figures, "Grid/Cells");
     figures.contact = -15;
@@ -258,6 +259,7 @@ namespace limber::test
   TEST(Health, ImpactsOfWhatIsNotElasticMayTakeEnergy)
   {
     HealthFigures figures        = sound();
+    figures.may_hit              = true;
     figures.contact              = 40;
     figures.bodies[0].is_plastic = true;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
@@ -267,6 +269,8 @@ namespace limber::test
     figures.bodies[0].is_liquid = false;
     figures.contact             = 5;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::look);
+    figures.may_hit = false; // a clamp has taken it
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
   }
 
 
