@@ -88,7 +88,7 @@ namespace limber::test
       EXPECT_EQ(line.verdict, Verdict::good) << line.name << ": " << line.text;
     const std::string text = health_text(lines);
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-    EXPECT_NE(text.find("health good: unseen, energy, mass"),
+    EXPECT_NE(text.find("health good: unseen, energy, impacts"),
               std::string::npos);
   }
 

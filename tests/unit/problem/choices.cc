@@ -382,7 +382,8 @@ TEST(Choices, EntriesOfNewtonStepsAreNotedInExplicitOnes)
 {
   const auto warnings = [](const std::string &integration,
                            const std::string &entry) {
-    return SceneFile(ParameterText{"set Bodies = block\nsubsection Method\n" +
+    return SceneFile(ParameterText{"set Bodies = block\nsubsection Body "
+                                   "block\nend\nsubsection Method\n" +
                                      integration + "set " + entry + "\nend\n",
                                    FileFormat::prm,
                                    "scene"},

@@ -469,7 +469,7 @@ TEST(CutCells, AreTheSameStepByStepAndAtOnce)
       set Centre = 0.9, 0.4
       set Radius = 0.08
     end
-    set Displacement = -0.8*t; 0.03*sin(9*t)
+    set Displacement = -0.8*t; 0.08*sin(9*t)
     set Rotation = t
   end
   subsection Obstacle slope
