@@ -56,7 +56,8 @@ namespace limber
                                          const double            time,
                                          const Work             &work)
   {
-    const std::vector<Constraint> &all = constraints[of_field(nodes)].at(nodes, time);
+    const std::vector<Constraint> &all =
+      constraints[of_field(nodes)].at(nodes, time);
     for (auto first = all.begin(), last = first; first != all.end();
          first = last)
       {
@@ -190,9 +191,11 @@ namespace limber
     using Layout = NodeLayout<dim>;
     std::vector<double> former_values;
     if (step.keeps_points)
-      for (const Constraint &constraint : constraints[of_field(nodes)].at(nodes, step.begin))
+      for (const Constraint &constraint :
+           constraints[of_field(nodes)].at(nodes, step.begin))
         former_values.push_back(constraint.value);
-    const Constraint *const list = constraints[of_field(nodes)].at(nodes, step.end).data();
+    const Constraint *const list =
+      constraints[of_field(nodes)].at(nodes, step.end).data();
     rubbing.erase(std::remove_if(rubbing.begin(),
                                  rubbing.end(),
                                  [&](const Rubbing &entry) {

@@ -129,14 +129,14 @@ namespace limber
     HealthLine
     judge_impacts(const HealthFigures &figures, const HealthCheck &check)
     {
-      const bool is_elastic = std::none_of(figures.bodies.begin(),
-                                           figures.bodies.end(),
-                                           [](const BodyFigures &body) {
-                                             return body.is_liquid ||
-                                                    body.is_plastic;
-                                           });
+      const bool is_elastic =
+        std::none_of(figures.bodies.begin(),
+                     figures.bodies.end(),
+                     [](const BodyFigures &body) {
+                       return body.is_liquid || body.is_plastic;
+                     });
       HealthLine line;
-      line.entry = "Grid/Cells";
+      line.entry        = "Grid/Cells";
       const bool counts = is_elastic && figures.may_hit;
       if (counts && figures.energy_scale > 0)
         line.value = figures.contact / figures.energy_scale;
@@ -144,7 +144,7 @@ namespace limber
       line.text    = counts ?
                        percent(line.value) +
                       " of the energy scale was lost where elastic bodies hit "
-                      "each other, obstacles or sides" :
+                         "each other, obstacles or sides" :
                        "no elastic bodies that may hit something";
       if (line.verdict != Verdict::good)
         line.text += ": points come to rest against what they hit one by one, "
@@ -162,13 +162,12 @@ namespace limber
       HealthLine line;
       line.value   = figures.points > 0 ? figures.put_back / figures.points : 0;
       line.verdict = check.verdict(line.value);
-      line.text =
-        figures.put_back > 0 ?
-          "points were put back " + brief(figures.put_back) +
-            " times that had gone beyond closed sides, by " +
-            brief(figures.put_back_way / figures.put_back) +
-            " cells on average" :
-          "no point went beyond a closed side";
+      line.text    = figures.put_back > 0 ?
+                       "points were put back " + brief(figures.put_back) +
+                      " times that had gone beyond closed sides, by " +
+                      brief(figures.put_back_way / figures.put_back) +
+                      " cells on average" :
+                       "no point went beyond a closed side";
       if (line.verdict != Verdict::good)
         line.text += ": nodes of hardly any mass at the side move too fast; "
                      "take shorter steps";

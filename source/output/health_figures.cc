@@ -218,9 +218,9 @@ namespace limber
                   [](const ContactPair &pair) {
                     return pair.law == ContactLaw::separate;
                   });
-    figures.points       = totals.points;
-    figures.put_back     = totals.put_back;
-    figures.put_back_way = totals.put_back_way;
+    figures.points          = totals.points;
+    figures.put_back        = totals.put_back;
+    figures.put_back_way    = totals.put_back_way;
     figures.against_splines = state.problem.grid.against_splines;
 
     const auto unseen = unseen_energy(state);

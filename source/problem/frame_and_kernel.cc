@@ -562,8 +562,8 @@ namespace limber
     for (auto &body : problem.bodies)
       choose_frame(root, body, problem);
 
-    const Section method = root.subsection("Method");
-    problem.grid.kernel  = read_word(method, "Kernel", kernel_words());
+    const Section method         = root.subsection("Method");
+    problem.grid.kernel          = read_word(method, "Kernel", kernel_words());
     problem.grid.against_splines = against_splines(root, problem);
     if (problem.grid.kernel == KernelKind::automatic)
       choose_kernel(root, problem);

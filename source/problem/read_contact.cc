@@ -259,7 +259,8 @@ namespace limber
         "lose a quarter of its momentum, what rolls a tenth, and what is "
         "pressed creeps. " +
         (problem.grid.against_splines.empty() ?
-           std::string("'Method/Kernel = quadratic' keeps it within 1 to 3 %.") :
+           std::string(
+             "'Method/Kernel = quadratic' keeps it within 1 to 3 %.") :
            "Splines would keep it, but " + problem.grid.against_splines + "."));
   }
 

@@ -104,10 +104,8 @@ namespace limber
     Obstacle<dim> result;
     result.name     = side_names(dim)[side];
     result.friction = problem.sides[side].friction;
-    result.shape =
-      std::make_shared<HalfSpaceShape<dim>>(side % 2 == 0 ? problem.grid.lower :
-                                                            problem.grid.upper,
-                                            inward);
+    result.shape    = std::make_shared<HalfSpaceShape<dim>>(
+      side % 2 == 0 ? problem.grid.lower : problem.grid.upper, inward);
     return result;
   }
 
@@ -116,11 +114,9 @@ namespace limber
   template void
   choose_side_contact(Problem<2> &);
   template void
-  choose_side_contact(Problem<3> &);
-  template Sides<2>
-  sides_at_nodes(Sides<2>);
-  template Sides<3>
-  sides_at_nodes(Sides<3>);
+                    choose_side_contact(Problem<3> &);
+  template Sides<2> sides_at_nodes(Sides<2>);
+  template Sides<3> sides_at_nodes(Sides<3>);
   template Obstacle<2>
   half_space_beyond(unsigned int, const Problem<2> &);
   template Obstacle<3>

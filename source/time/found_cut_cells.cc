@@ -178,11 +178,10 @@ namespace limber
     const std::uint32_t n = parts.grid.n_cells();
     distance_at_rest.resize(n);
     for (std::uint32_t cell = 0; cell < n; ++cell)
-      distance_at_rest[cell] =
-        distance_of_middle(parts.grid.geometry[cell],
-                           places,
-                           parts.problem.obstacles,
-                           false);
+      distance_at_rest[cell] = distance_of_middle(parts.grid.geometry[cell],
+                                                  places,
+                                                  parts.problem.obstacles,
+                                                  false);
     distance.assign(n, 0);
     is_untouched.assign(n, 0);
   }
@@ -198,8 +197,8 @@ namespace limber
   {
     if (!moves)
       return false;
-    const double across  = diagonal(cell);
-    double      &of_cell = distance[cell];
+    const double across     = diagonal(cell);
+    double      &of_cell    = distance[cell];
     const bool   may_be_cut = std::abs(distance_at_rest[cell]) <= across;
     if (std::abs(of_cell) <= (may_be_cut ? far_off : 1) * across)
       of_cell = distance_of_middle(parts.grid.geometry[cell],
@@ -286,16 +285,14 @@ namespace limber
   template void
   CutCells<2>::reinit(double);
   template void
-  CutCells<2>::find(double);
-  template double
-  CutCells<2>::diagonal(std::uint32_t) const;
+                  CutCells<2>::find(double);
+  template double CutCells<2>::diagonal(std::uint32_t) const;
   template bool
   CutCells<3>::may_be(const RunParts<3> &);
   template CutCells<3>::CutCells(const RunParts<3> &);
   template void
   CutCells<3>::reinit(double);
   template void
-  CutCells<3>::find(double);
-  template double
-  CutCells<3>::diagonal(std::uint32_t) const;
+                  CutCells<3>::find(double);
+  template double CutCells<3>::diagonal(std::uint32_t) const;
 } // namespace limber

@@ -263,8 +263,7 @@ namespace limber
     const bool           is_liquid = parts.bodies[body]->description.is_liquid;
     const double inverse_density   = 1 / parts.bodies[body]->stress->density();
     const unsigned int n_met =
-      parts.problem.meets_sides(
-        parts.bodies[body]->description.nodal_field) ?
+      parts.problem.meets_sides(parts.bodies[body]->description.nodal_field) ?
         rigid.size() :
         n_obstacles();
     std::vector<unsigned int> asked; // obstacles
@@ -537,8 +536,8 @@ namespace limber
     parts.ledger.add(impulses.exchange());
     for (std::size_t p = 0; p < touches.size(); ++p)
       {
-        const Place         &place  = impulses.all()[p];
-        const Touch         &touch  = touches[p];
+        const Place &place = impulses.all()[p];
+        const Touch &touch = touches[p];
         if (touch.obstacle >= n_obstacles())
           {
             const unsigned int side =

@@ -183,7 +183,7 @@ namespace limber
     Integrator<dim>                                &integrator;
     double                                          time      = 0;
     double                                          last_step = 0; // s
-    unsigned long                                   n_done = 0;
+    unsigned long                                   n_done    = 0;
     Balance<dim>                                    balance;
   };
 

@@ -176,8 +176,8 @@ namespace limber
     const Sides<dim>        others; // those that meet surfaces are free
     const std::vector<bool> by_surface;
     std::array<SideConstraints<dim>, 2> constraints; // of all, of others
-    std::vector<Rubbing>    rubbing;   // of the present step
-    const bool              one_sided; // any side, of the nodes of any field
+    std::vector<Rubbing>                rubbing;     // of the present step
+    const bool one_sided; // any side, of the nodes of any field
   };
 } // namespace limber
 

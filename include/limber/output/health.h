@@ -81,9 +81,9 @@ namespace limber
     double                   energy_scale = 0; // see Balance
     double                   kinetic      = 0; // energy of all points
     double                   drift        = 0; // over the scale
-    std::string   against_splines; // GridDescription
+    std::string              against_splines;  // GridDescription
     bool          may_hit = false; // obstacles, each other or sides that let go
-    unsigned long points       = 0;
+    unsigned long points  = 0;
     double        put_back     = 0; // points, each time; see Ledger
     double        put_back_way = 0; // of all of them, cells
     // Taken or given on record

@@ -35,8 +35,8 @@ namespace limber
     // Holds only what moves outward, so that the material may part from it; the
     // impulse J_n that it then gives bears a tangential one of at most the
     // friction coefficient times J_n against the motion (Coulomb).
-    bool         one_sided = false;
-    double       friction  = 0;
+    bool   one_sided = false;
+    double friction  = 0;
     // Felt by bodies with 'meets_sides' where their material ends, as a
     // half-space would be (ObstacleContact), instead of by their nodes
     bool         meets_surfaces = false;

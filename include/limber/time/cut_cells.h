@@ -264,10 +264,10 @@ namespace limber
     std::vector<char> is_untouched;
     // Of the cells that are being found anew, in their order
     std::vector<Distances> distances_of_cells;
-    const bool          is_implicit; // the pressure
-    double              least_share = 0;
-    bool                any_cut     = false;
-    unsigned int        times_found = 0;
+    const bool             is_implicit; // the pressure
+    double                 least_share = 0;
+    bool                   any_cut     = false;
+    unsigned int           times_found = 0;
   };
 } // namespace limber
 

@@ -225,7 +225,7 @@ namespace limber
     BodySweeps<dim>              sweeps;
     LiquidMeans<dim>             liquid_means;
     bool touched = false; // bodies or obstacles, in the step before
-    std::optional<Contact<dim>>         contact;   // of bodies that may part
+    std::optional<Contact<dim>> contact; // of bodies that may part
     // Where the scene has any, or sides that meet surfaces
     std::optional<ObstacleContact<dim>> obstacles;
     Stabilization<dim>                  stabilization;

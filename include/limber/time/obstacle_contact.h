@@ -267,7 +267,7 @@ namespace limber
     // them sides, whose numbers are in the second list
     std::vector<Obstacle<dim>> rigid;
     std::vector<unsigned int>  sides_that_meet;
-    SideConstraints<dim>      sides;
+    SideConstraints<dim>       sides;
     // Of fields that meet sides, what is left to their nodes
     const Sides<dim>          other_sides;
     SideConstraints<dim>      of_other_sides;

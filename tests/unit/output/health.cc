@@ -283,8 +283,8 @@ namespace limber::test
     const HealthLine alone                   = line("crossings", figures);
     EXPECT_NE(alone.text.find("'Method/Kernel = quadratic' with three"),
               std::string::npos);
-    figures.against_splines = "with splines liquids, like body 'water', lose "
-                              "volume";
+    figures.against_splines   = "with splines liquids, like body 'water', lose "
+                                "volume";
     const HealthLine in_water = line("crossings", figures);
     EXPECT_EQ(in_water.text.find("'Method/Kernel"), std::string::npos);
     EXPECT_NE(in_water.text.find("lose volume"), std::string::npos);

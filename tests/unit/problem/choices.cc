@@ -392,17 +392,16 @@ TEST(Choices, EntriesOfNewtonStepsAreNotedInExplicitOnes)
   };
   const std::string tolerance = "Newton tolerance = 1e-8",
                     penalty   = "Ghost penalty = 0.1";
-  const auto        chosen    = [](const std::string &word) {
+  const auto chosen           = [](const std::string &word) {
     return "set Time integration = " + word + "\n";
   };
   EXPECT_TRUE(warnings(chosen("quasi-static"), tolerance).empty());
   EXPECT_TRUE(warnings(chosen("implicit"), tolerance).empty());
   EXPECT_TRUE(warnings(chosen("quasi-static"), penalty).empty());
-  for (const auto &[word, entry] :
-       {std::make_pair("explicit", tolerance),
-        std::make_pair("semi-implicit", tolerance),
-        std::make_pair("explicit", penalty),
-        std::make_pair("implicit", penalty)})
+  for (const auto &[word, entry] : {std::make_pair("explicit", tolerance),
+                                    std::make_pair("semi-implicit", tolerance),
+                                    std::make_pair("explicit", penalty),
+                                    std::make_pair("implicit", penalty)})
     {
       const auto found = warnings(chosen(word), entry);
       ASSERT_EQ(found.size(), 1u) << word << entry;

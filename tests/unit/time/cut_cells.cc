@@ -470,7 +470,6 @@ TEST(CutCells, AreTheSameStepByStepAndAtOnce)
       set Radius = 0.08
     end
     set Displacement = -0.8*t; 0.08*sin(9*t)
-    set Rotation = t
   end
   subsection Obstacle slope
     set Shape = half-space

@@ -350,8 +350,8 @@ TEST(SeparatingSides, AreHalfSpacesForSolids)
       SceneRun<2> obstacle(disc_on_slope + half_space_with_friction, variant);
       side.advance(1e-4, 400);
       obstacle.advance(1e-4, 400);
-      const auto of_side = side.totals(), of_obstacle = obstacle.totals();
-      const double size  = of_side.all.momentum.norm();
+      const auto   of_side = side.totals(), of_obstacle = obstacle.totals();
+      const double size = of_side.all.momentum.norm();
       EXPECT_GT(of_side.side_impulse[2][1], 0.1 * size);
       for (unsigned int d = 0; d < 2; ++d)
         {
