@@ -430,6 +430,36 @@ namespace limber
 
 
 
+    HealthLine
+    judge_obstacles(const HealthFigures &figures, const HealthCheck &check)
+    {
+      const ObstacleFigures &deepest =
+        *std::max_element(figures.obstacles.begin(),
+                          figures.obstacles.end(),
+                          [](const auto &a, const auto &b) {
+                            return a.depth < b.depth;
+                          });
+      unsigned long inside = 0;
+      for (const ObstacleFigures &obstacle : figures.obstacles)
+        inside += obstacle.points_inside;
+      HealthLine line;
+      line.value   = deepest.depth;
+      line.verdict = check.verdict(line.value);
+      line.text    = inside > 0 ?
+                       std::to_string(inside) +
+                      " points are inside obstacles, the deepest by " +
+                      brief(deepest.depth) + " of a cell in '" + deepest.name +
+                      "'" :
+                       "no point is inside an obstacle";
+      if (figures.put_out > 0)
+        line.text += "; " + brief(figures.put_out) +
+                     " times points were put out onto a surface";
+      line.entry = "Grid/Cells";
+      return line;
+    }
+
+
+
     // The one list of checks, in the order of their lines. Bounds:
     // unseen     A tenth of the energy is a twentieth of the speed; above three
     //            tenths, energies and heights are those of noise.
@@ -443,6 +473,8 @@ namespace limber
     // gaps       One cell in a hundred may be a crack that is meant.
     // points     The gradient of one point alone carries no rotation.
     // volume     Laws are measured to about a third and three; e^2.3 = 10.
+    // obstacles  Flow past a convex surface cuts its corners by less; what is
+    //            half a cell inside has gone through the surface.
     constexpr HealthCheck checks[] = {
       {"unseen", 0.1, 0.3, judge_unseen},
       {"energy", 0.01, 0.05, judge_energy},
@@ -454,6 +486,7 @@ namespace limber
       {"gaps", 0.01, 0.05, judge_gaps},
       {"points", 0.1, 0.5, judge_points},
       {"volume", 1.1, 2.3, judge_volume},
+      {"obstacles", 0.1, 0.5, judge_obstacles},
     };
   } // namespace
 
@@ -516,6 +549,8 @@ namespace limber
     std::vector<HealthLine> lines;
     for (const HealthCheck &check : checks)
       {
+        if (check.judge == judge_obstacles && figures.obstacles.empty())
+          continue;
         lines.push_back(check.judge(figures, check));
         lines.back().name = check.name;
       }

@@ -238,6 +238,8 @@ namespace limber
       }
     look_at_crossings(state, figures.bodies);
     look_at_cells(state, figures.bodies);
+    figures.obstacles = look_at_obstacles(state);
+    figures.put_out   = totals.put_out;
     return figures;
   }
 

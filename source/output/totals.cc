@@ -235,6 +235,7 @@ namespace limber
     totals.lost_points          = ledger.lost_points;
     totals.put_back             = ledger.put_back;
     totals.put_back_way         = ledger.put_back_way;
+    totals.put_out              = ledger.put_out;
     totals.dissipated           = ledger.viscous;
     totals.removed_with_history = ledger.history;
     totals.plastic_work         = ledger.plastic;

@@ -85,8 +85,8 @@ namespace limber
       .viscous &ledger.history &ledger.plastic &ledger.friction &ledger
       .contact &ledger.load_impulse &ledger.gravity_impulse &ledger
       .side_impulse &ledger.put_back &ledger.put_back_way &ledger
-      .lost_mass &ledger.lost_energy &ledger.lost_momentum &ledger
-      .lost_points                                         &ledger.obstacles;
+      .put_out &ledger.lost_mass &ledger.lost_energy &ledger.lost_momentum
+        &ledger.lost_points &ledger.obstacles;
   }
 
 

@@ -163,6 +163,8 @@ namespace limber
       {
         for (double &mean : surface.functions)
           mean /= surface.area;
+        for (Vector &mean : surface.moments)
+          mean /= surface.area;
         surface.place /= surface.area;
         surface.normal /= surface.normal.norm();
       }
@@ -371,6 +373,7 @@ namespace limber
     // of the third degree, as are the functions
     static const dealii::QGaussSimplex<dim - 1> rule(dim);
     std::array<double, n_nodes>                 functions{};
+    std::array<Vector, n_nodes>                 moments{};
     dealii::Point<dim>                          middle; // times the area
     for (unsigned int q = 0; q < rule.size(); ++q)
       {
@@ -384,6 +387,7 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           {
             functions[a] += weight * at_place.value[a];
+            moments[a] += weight * at_place.value[a] * place_at(xi, geometry);
             cell.hydrostatic[a] +=
               (weight / area * at_place.value[a] * depth) * normal;
           }
@@ -416,6 +420,7 @@ namespace limber
     for (unsigned int a = 0; a < n_nodes; ++a)
       {
         surface->functions[a] += functions[a];
+        surface->moments[a] += moments[a];
         surface->normals[a] += functions[a] / area * normal;
       }
   }

@@ -138,7 +138,11 @@ namespace limber
     lap(Verb::stabilize);
     control_chequerboards();
     do_scheme();
-    relocation.end_step(extremes);
+    const bool put_out =
+      obstacles &&
+      parts.problem.method.integration == TimeIntegration::semi_implicit &&
+      obstacles->put_out(time, step, extremes.displacement);
+    relocation.end_step(extremes, put_out);
     shifting.follow(extremes.displacement);
     wave_speed  = std::sqrt(extremes.wave_squared);
     point_speed = std::sqrt(extremes.speed_squared);

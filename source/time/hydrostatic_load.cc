@@ -211,6 +211,20 @@ namespace limber
 
 
 
+  // Whether a free surface at rest would lie in this face.
+  template <int dim>
+  bool
+  HydrostaticLoad<dim>::is_level(const unsigned int direction,
+                                 const unsigned int end) const
+  {
+    if (problem.method.integration != TimeIntegration::semi_implicit)
+      return false;
+    const double up = -problem.loads.gravity[direction] * (end == 1 ? 1 : -1);
+    return up > 0.99 * problem.loads.gravity.norm();
+  }
+
+
+
   template <int dim>
   void
   HydrostaticLoad<dim>::find(const NodalFields<dim> &nodes)
@@ -274,7 +288,8 @@ namespace limber
         const double borne   = borne_share(cell);
         for (unsigned int d = 0; d < dim; ++d)
           for (const unsigned int end : {0, 1})
-            if (surroundings.has_neighbour(cell, d, end))
+            if (surroundings.has_neighbour(cell, d, end) ||
+                (cut && is_level(d, end)))
               for (unsigned int a = 0; a < n_corners; ++a)
                 if (const auto node = surroundings.node_of(cell, a);
                     (a >> d & 1) == end && is_marked(node))

@@ -12,6 +12,10 @@ namespace limber
     // Limits of what counts as all of a cell over what is in it, in explicit
     // steps: more would make sound faster than the step allows for.
     constexpr double least_share = 0.8, largest_share = 1.25;
+
+    // A cell at a surface that an obstacle cuts is full from this share on, by
+    // degrees.
+    constexpr double nearly_full = 0.9;
   } // namespace
 
 
@@ -170,8 +174,11 @@ namespace limber
     const bool        inside = surroundings.is_inside(cell);
     unsigned int n_open = 0, open = 0; // directions that end at a surface
     bool         before = true, behind = true;
+    const double full = (filled - nearly_full) / (1 - nearly_full);
     if (inside && cut)
-      fill_open_part(*cut);
+      fill_open_part(*cut, 1);
+    else if (cut && group.is_implicit && cut->is_cut())
+      fill_open_part(*cut, std::min(std::max(full, 0.), 1.));
     else
       for (unsigned int d = 0; d < dim; ++d)
         if (inside || (surroundings.is_bounded(cell, d, 0) &&
@@ -214,14 +221,16 @@ namespace limber
 
 
 
-  // The same of all monomials, to the means over the open part of a cell.
+  // Bring the means of all monomials a share of the way to those over the open
+  // part of a cell.
   template <int dim>
   void
-  LiquidMeans<dim>::fill_open_part(const typename CutCells<dim>::Cell &cut)
+  LiquidMeans<dim>::fill_open_part(const typename CutCells<dim>::Cell &cut,
+                                   const double                        share)
   {
     for (const Part &part : in_cell)
       for (unsigned int k = 1; k < n_nodes - 1; ++k)
-        part.sums[k] = part.mass * cut.monomials[k];
+        part.sums[k] += share * (part.mass * cut.monomials[k] - part.sums[k]);
   }
 
 

@@ -51,23 +51,6 @@ namespace limber
           F[d][k] = points.deformation[d * dim + k][p];
       return invert(F) * normal;
     }
-
-
-
-    template <int dim>
-    dealii::Tensor<1, 3>
-    moment_of(const dealii::Tensor<1, dim> &arm,
-              const dealii::Tensor<1, dim> &impulse)
-    {
-      dealii::Tensor<1, 3> result;
-      result[2] = arm[0] * impulse[1] - arm[1] * impulse[0];
-      if constexpr (dim == 3)
-        {
-          result[0] = arm[1] * impulse[2] - arm[2] * impulse[1];
-          result[1] = arm[2] * impulse[0] - arm[0] * impulse[2];
-        }
-      return result;
-    }
   } // namespace
 
 

@@ -203,6 +203,7 @@ namespace limber
                            &extremes.displacement,
                            &extremes.largest_mass,
                            &any_lost,
+                           &any_moved_again,
                            &any_entered_shared,
                            &any_entered_ghosts,
                            &most_points,
@@ -232,8 +233,9 @@ namespace limber
 
   template <int dim>
   void
-  Relocation<dim>::end_step(StepExtremes &extremes)
+  Relocation<dim>::end_step(StepExtremes &extremes, const bool moved_again)
   {
+    any_moved_again = moved_again ? 1 : 0;
     if (n_batches > n_batches_sorted)
       excess_batches += n_batches - n_batches_sorted;
     reduce(extremes);
@@ -253,6 +255,8 @@ namespace limber
     complete_sums(parts.bodies,
                   &MaterialBody<dim>::cell_sums,
                   parts.nodes.cell_plan());
+    if (any_moved_again > 0)
+      gather_cells();
     travelled += extremes.displacement;
   }
 

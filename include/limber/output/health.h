@@ -73,10 +73,21 @@ namespace limber
 
 
 
+  /** Of one obstacle at the end. */
+  struct ObstacleFigures
+  {
+    std::string   name;
+    unsigned long points_inside = 0; // deeper than a thousandth of a cell
+    double        depth         = 0; // of the deepest, in edges of its cell
+  };
+
+
+
   /** Those of a run; energies in J. */
   struct HealthFigures
   {
     std::vector<BodyFigures> bodies;
+    std::vector<ObstacleFigures> obstacles; // in the order of the scene
     unsigned int             dim          = 2;
     double                   energy_scale = 0; // see Balance
     double                   kinetic      = 0; // energy of all points
@@ -86,6 +97,8 @@ namespace limber
     unsigned long points  = 0;
     double        put_back     = 0; // points, each time; see Ledger
     double        put_back_way = 0; // of all of them, cells
+    // Points of liquids that were put out of obstacles, each time
+    double put_out = 0;
     // Taken or given on record
     double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
            contact = 0, sides = 0, loads = 0;

@@ -43,6 +43,13 @@ namespace limber
 
 
 
+  /** Which points are inside obstacles, of all bodies. Collective. */
+  template <int dim>
+  std::vector<ObstacleFigures>
+  look_at_obstacles(const State<dim> &state);
+
+
+
   /** Cells of a lattice that hold points of a body, and how many each. */
   struct CellCounts
   {

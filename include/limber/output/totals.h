@@ -62,6 +62,7 @@ namespace limber
     unsigned long lost_points     = 0;
     double        put_back        = 0; // points, see Ledger
     double        put_back_way    = 0; // of all of them, cells
+    double        put_out         = 0; // points, see Ledger
     unsigned long active_nodes    = 0; // nodes with mass
     unsigned long cells           = 0; // of the mesh
   };

@@ -57,6 +57,8 @@ namespace limber
     // Points that had gone beyond a closed side further than round-off and
     // were put back, each time; and by how many cells altogether
     double put_back = 0, put_back_way = 0;
+    // Points of liquids that were put out of obstacles, each time
+    double put_out = 0;
 
     double                 lost_mass   = 0; // kg
     double                 lost_energy = 0; // kinetic, strain, gravity

@@ -44,6 +44,24 @@ namespace limber
     return gap > 0 ? -gap : std::min(-0.1 * gap, 0.02 * reach);
   }
 
+
+
+  /** Of an impulse (kg m/s) at the end of an arm (m), kg m^2/s; in the plane
+   * the last of three. */
+  template <int dim>
+  inline dealii::Tensor<1, 3>
+  moment_of(const dealii::Tensor<1, dim> &arm,
+            const dealii::Tensor<1, dim> &impulse)
+  {
+    dealii::Tensor<1, 3> result;
+    result[2] = arm[0] * impulse[1] - arm[1] * impulse[0];
+    if constexpr (dim == 3)
+      {
+        result[0] = arm[1] * impulse[2] - arm[2] * impulse[1];
+        result[1] = arm[2] * impulse[0] - arm[0] * impulse[2];
+      }
+    return result;
+  }
 } // namespace limber
 
 #endif

@@ -45,6 +45,7 @@ namespace limber
       double                      area = 0;    // m^(dim-1)
       std::array<double, n_nodes> functions{}; // means of N_i over it
       std::array<Vector, n_nodes> normals{};   // int N_i n dS, m^(dim-1)
+      std::array<Vector, n_nodes> moments{};   // means of N_i x over it, m
       // Those of a cell with the same number have one pressure p_s, at their
       // centroid x_s: each its own in explicit steps
       unsigned int piece  = 0;

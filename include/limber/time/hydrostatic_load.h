@@ -81,6 +81,8 @@ namespace limber
     find(const NodalFields<dim> &nodes, unsigned int field);
     bool
     knows_cut_cells(unsigned int field) const;
+    bool
+    is_level(unsigned int direction, unsigned int end) const;
     double
     density_within(unsigned int field, std::uint32_t cell, double open) const;
     double

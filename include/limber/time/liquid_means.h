@@ -84,7 +84,7 @@ namespace limber
     void
     set_mean(unsigned int direction, double mean);
     void
-    fill_open_part(const typename CutCells<dim>::Cell &cut);
+    fill_open_part(const typename CutCells<dim>::Cell &cut, double share);
     bool
     reaches_surfaces(const typename CutCells<dim>::Cell &cut) const;
     double

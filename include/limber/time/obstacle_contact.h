@@ -156,6 +156,17 @@ namespace limber
     void
     hold_after(unsigned int slot, double flip_share);
 
+    /**
+     * Put points of liquids that a step has left inside an obstacle, as the
+     * surfaces in cells hold the mean flow only, back onto its surface, and
+     * take what of their velocity goes into it: the impact of a point, which is
+     * on record in the ledger. @p displacement (in cells) grows by the longest
+     * way. Returns whether there were any on this rank, whose sums of cells are
+     * then out of date.
+     */
+    bool
+    put_out(double time, double step, double &displacement);
+
   private:
     using Layout = NodeLayout<dim>;
     using Vector = dealii::Tensor<1, dim>;
@@ -200,6 +211,13 @@ namespace limber
       dealii::Point<dim>  x;
       SignedDistance<dim> distance;
       double              reach; // R_p, m
+    };
+
+    /** An obstacle that has put a point back, and its normal there. */
+    struct Wall
+    {
+      unsigned int obstacle;
+      Vector       normal;
     };
 
     /** Sums at nodes over the points of liquids that touch an obstacle. */
@@ -260,6 +278,17 @@ namespace limber
     add_cut_cells(const std::vector<Way> &ways, double step);
     bool
     is_met_by_surface(unsigned int field, std::uint32_t node) const;
+    bool
+    find_outside(const std::vector<Way>          &ways,
+                 const std::vector<unsigned int> &near,
+                 dealii::Point<dim>              &x,
+                 std::vector<Wall>               &met) const;
+    double
+    put_out(const PointView<dim>            &points,
+             std::size_t                      p,
+             const std::vector<Way>          &ways,
+             const std::vector<unsigned int> &near,
+             double                           step);
 
     const RunParts<dim>  parts;
     CutCells<dim> *const cut_cells; // or null
@@ -277,6 +306,7 @@ namespace limber
     std::vector<Touch>        touches; // of each impulse
     std::vector<SurfacePlace> surface_places;
     std::vector<HeldNode>     nodes_held;
+    std::vector<Wall>         walls; // of the point that is put out
     // From the middles of what is in cells when they asked, m, 0 where nobody
     // has; and where these were in the frame of the obstacle then
     std::vector<LazyArray<double>> cell_distance;

@@ -4,6 +4,7 @@
 
 #include <limber/time/explicit_integrator.h>
 #include <limber/time/implicit_pressure.h>
+#include <limber/time/smooth_surfaces.h>
 
 namespace limber
 {
@@ -61,10 +62,11 @@ namespace limber
     double
     energy_of_points() const;
 
-    ImplicitPressure<dim> pressure;
-    LazyArray<double>     hourglass; // forces by node and component, N
-    const bool            viscosity_acts;
-    const bool            remaps; // for solids and viscous liquids
+    ImplicitPressure<dim>              pressure;
+    std::optional<SmoothSurfaces<dim>> surfaces; // where obstacles cut cells
+    LazyArray<double> hourglass; // forces by node and component, N
+    const bool        viscosity_acts;
+    const bool        remaps; // for solids and viscous liquids
     // Its density, kg/m^3; 0 where the pressure of some solid is explicit
     const double lightest_solid;
   };

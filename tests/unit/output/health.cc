@@ -144,6 +144,24 @@ namespace limber::test
 
 
 
+  TEST(Health, PointsInsideObstaclesAreSaid)
+  {
+    HealthFigures figures = sound();
+    figures.obstacles     = {{"wall", 0, 0}, {"disc", 4, 0.96}};
+    expect_bad("obstacles", figures, "Grid/Cells");
+    EXPECT_NE(line("obstacles", figures).text.find("'disc'"),
+              std::string::npos);
+    figures.obstacles[1] = {"disc", 3, 0.2};
+    EXPECT_EQ(line("obstacles", figures).verdict, Verdict::look);
+    figures.obstacles[1] = {"disc", 0, 0};
+    figures.put_out      = 7;
+    EXPECT_EQ(line("obstacles", figures).verdict, Verdict::good);
+    EXPECT_NE(line("obstacles", figures).text.find("7 times"),
+              std::string::npos);
+  }
+
+
+
   TEST(Health, CreepIsBadWhereTheBalanceMissesWhatItTakes)
   {
     HealthFigures figures                    = sound();
