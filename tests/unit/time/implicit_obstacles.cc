@@ -160,7 +160,7 @@ namespace
 
 
 // The points of water that moves stay outside; what happens to those that are
-// put back is on record. The level sinks by .024.
+// put back is on record. The level sinks by .026.
 TEST(ImplicitPressureAtObstacles, PointsOfMovingWaterStayOutside)
 {
   SceneRun<2>  run(pool,
