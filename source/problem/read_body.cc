@@ -93,7 +93,8 @@ namespace limber
         "C, dimensionless: points of a liquid that have gathered move apart by "
         "C s h^2 times the gradient of what nodes hold beyond their room, where "
         "the fastest point has moved by s cells; 'auto' is 2 for liquids with "
-        "'cell' and linear functions, else 0.");
+        "'cell' and linear functions, but 0 in semi-implicit steps beside "
+        "obstacles, and for all others.");
       parameters.declare(
         "Density control",
         "auto",
@@ -345,33 +346,6 @@ namespace limber
 
 
 
-    /** Only with means over cells, of linear functions, clumps weigh more than
-     * they press. */
-    template <int dim>
-    void
-    read_particle_shifting(const Section      &section,
-                           const Problem<dim> &problem,
-                           Body<dim>          &body)
-    {
-      constexpr double found    = 2; // with water that has been stirred
-      const bool       possible = body.is_liquid &&
-                            body.treatment == Treatment::cell &&
-                            problem.grid.kernel == KernelKind::linear;
-      body.particle_shifting = section.text("Particle shifting") != "auto" ?
-                                 section.number("Particle shifting") :
-                               possible ? found :
-                                          0;
-      if (body.particle_shifting > 0 && !possible)
-        throw InputError("The particle shifting " +
-                         section.text("Particle shifting") + " in " +
-                         section.where("Particle shifting") +
-                         " is for liquids with 'Locking treatment = cell' and "
-                         "'Kernel = linear'. Usually one of them was changed "
-                         "alone. Set 'Particle shifting = auto'.");
-    }
-
-
-
     template <int dim>
     void
     read_treatment(const Section &section,
@@ -416,7 +390,6 @@ namespace limber
           in_quotes(section.text("Locking treatment")) +
           ", which has no single pressure per cell. Set 'Chequerboard control "
           "= 0', or 'Locking treatment = cell'.");
-      read_particle_shifting(section, problem, body);
       read_histories(section, fluid, body);
     }
 

@@ -19,6 +19,9 @@ namespace limber
     // of what nodes hold beyond their room, pushed apart in a step
     constexpr double density_control = 0.2;
 
+    // Found with water that has been stirred.
+    constexpr double particle_shifting = 2;
+
 
 
     // Sound over all other speeds, from where 'auto' is semi-implicit: such a
@@ -257,6 +260,39 @@ namespace limber
 
 
     /**
+     * Only with means over cells, of linear functions, clumps weigh more than
+     * they press. In semi-implicit steps beside obstacles water that moves over
+     * a slope would lose more of its volume, not less.
+     */
+    template <int dim>
+    void
+    read_particle_shifting(const Section      &section,
+                           const Problem<dim> &problem,
+                           const bool          has_obstacles,
+                           Body<dim>          &body)
+    {
+      const bool possible = body.is_liquid &&
+                            body.treatment == Treatment::cell &&
+                            problem.grid.kernel == KernelKind::linear;
+      const bool wanted =
+        possible && !(has_obstacles && problem.method.integration ==
+                                         TimeIntegration::semi_implicit);
+      body.particle_shifting = section.text("Particle shifting") != "auto" ?
+                                 section.number("Particle shifting") :
+                               wanted ? particle_shifting :
+                                        0;
+      if (body.particle_shifting > 0 && !possible)
+        throw InputError("The particle shifting " +
+                         section.text("Particle shifting") + " in " +
+                         section.where("Particle shifting") +
+                         " is for liquids with 'Locking treatment = cell' and "
+                         "'Kernel = linear'. Usually one of them was changed "
+                         "alone. Set 'Particle shifting = auto'.");
+    }
+
+
+
+    /**
      * Whether the pressure of a solid is implicit where those of liquids are:
      * it is one for each cell, and the stress follows from the strain.
      */
@@ -311,8 +347,13 @@ namespace limber
   {
     if (root.subsection("Method").text("Time integration") == "auto")
       choose_automatically(root, problem);
+    const bool has_obstacles = !root.list("Obstacles").empty();
     for (auto &body : problem.bodies)
-      read_density_control(root.subsection("Body " + body.name), problem, body);
+      {
+        const Section section = root.subsection("Body " + body.name);
+        read_density_control(section, problem, body);
+        read_particle_shifting(section, problem, has_obstacles, body);
+      }
     if (is_solved_by_newton(problem.method.integration))
       return check_newton_scene(root, problem);
     if (!problem.loads.factor.empty())

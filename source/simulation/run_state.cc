@@ -85,8 +85,8 @@ namespace limber
       .viscous &ledger.history &ledger.plastic &ledger.friction &ledger
       .contact &ledger.load_impulse &ledger.gravity_impulse &ledger
       .side_impulse &ledger.put_back &ledger.put_back_way &ledger
-      .put_out &ledger.lost_mass &ledger.lost_energy &ledger.lost_momentum
-        &ledger.lost_points &ledger.obstacles;
+      .put_out &ledger.lost_mass &ledger.lost_energy &ledger
+      .lost_momentum &ledger.lost_points &ledger.obstacles;
   }
 
 
@@ -97,7 +97,7 @@ namespace limber
   {
     archive &state.wave_speed &state.point_speed &state.displacement &state
       .largest_mass &state.steps_since_filter &state.step &state
-      .way_since_shifting &state.face_pieces;
+      .way_since_shifting                                 &state.face_pieces;
   }
 
 

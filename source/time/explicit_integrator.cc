@@ -300,8 +300,8 @@ namespace limber
     steps_since_filter    = former.steps_since_filter;
     step                  = former.step;
     shifting.restore(former.way_since_shifting);
-    unstrained            = 0;
-    stress_is_behind      = false;
+    unstrained       = 0;
+    stress_is_behind = false;
     loads.restore(former.face_pieces);
     reinit();
   }

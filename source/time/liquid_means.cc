@@ -172,9 +172,9 @@ namespace limber
     const auto *const cut    = cut_cells ? cut_cells->cell(cell) : nullptr;
     const double      filled = filling(cell) / (cut ? cut->open : 1);
     const bool        inside = surroundings.is_inside(cell);
-    unsigned int n_open = 0, open = 0; // directions that end at a surface
-    bool         before = true, behind = true;
-    const double full = (filled - nearly_full) / (1 - nearly_full);
+    unsigned int      n_open = 0, open = 0; // directions that end at a surface
+    bool              before = true, behind = true;
+    const double      full = (filled - nearly_full) / (1 - nearly_full);
     if (inside && cut)
       fill_open_part(*cut, 1);
     else if (cut && group.is_implicit && cut->is_cut())

@@ -56,7 +56,7 @@ namespace limber
 
 
   template <int dim>
-  ParticleShifting<dim>::ParticleShifting(const RunParts<dim>        &parts,
+  ParticleShifting<dim>::ParticleShifting(const RunParts<dim>       &parts,
                                           const CutCells<dim> *const cut_cells)
     : parts(parts)
     , cut_cells(cut_cells)
@@ -152,8 +152,8 @@ namespace limber
   bool
   ParticleShifting<dim>::is_at_obstacle(const std::uint32_t node) const
   {
-    return cut_cells && (cut_cells->is_cut(node) ||
-                         cut_cells->covered_corners()[node] > 0);
+    return cut_cells &&
+           (cut_cells->is_cut(node) || cut_cells->covered_corners()[node] > 0);
   }
 
 
@@ -213,9 +213,9 @@ namespace limber
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const std::uint32_t cell = points.cell[p];
-        const auto   xi     = natural(points, p, parts.grid.geometry[cell]);
-        const double volume = inverse_density * points.mass[p] *
-                              volume_ratios[p];
+        const auto          xi = natural(points, p, parts.grid.geometry[cell]);
+        const double        volume =
+          inverse_density * points.mass[p] * volume_ratios[p];
         for (unsigned int a = 0; a < n_corners; ++a)
           {
             double part = volume;
@@ -236,8 +236,8 @@ namespace limber
       for (unsigned int a = 0; a < n_corners; ++a)
         record(surroundings.node_of(cell, a))[slot] += 1;
     };
-    for (const std::uint32_t cell : parts.nodes.vertices()
-                                      .owned_occupied_cells())
+    for (const std::uint32_t cell :
+         parts.nodes.vertices().owned_occupied_cells())
       if (holds(group.liquids, cell) && !surroundings.is_inside(cell))
         mark(cell, Record::at_surface);
     for (const MaterialBody *const body : group.others)
@@ -258,10 +258,10 @@ namespace limber
   {
     const double factor =
       std::min(body.description.particle_shifting * travelled, largest_factor);
-    const PointView<dim>        points  = body.points.view();
-    const BinView<dim>          bins    = parts.nodes.view().bins;
-    const auto                 &box     = parts.problem.grid;
-    const auto                 &gravity = parts.problem.loads.gravity;
+    const PointView<dim>          points  = body.points.view();
+    const BinView<dim>            bins    = parts.nodes.view().bins;
+    const auto                   &box     = parts.problem.grid;
+    const auto                   &gravity = parts.problem.loads.gravity;
     std::array<double, n_corners> excess;
     for (std::size_t p = 0; p < points.size; ++p)
       {

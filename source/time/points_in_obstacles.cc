@@ -23,8 +23,8 @@ namespace limber
   template <int dim>
   bool
   ObstacleContact<dim>::put_out(const double time,
-                                 const double step,
-                                 double      &displacement)
+                                const double step,
+                                double      &displacement)
   {
     std::vector<Way> ways;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
@@ -111,10 +111,10 @@ namespace limber
   template <int dim>
   double
   ObstacleContact<dim>::put_out(const PointView<dim>            &points,
-                                 const std::size_t                p,
-                                 const std::vector<Way>          &ways,
-                                 const std::vector<unsigned int> &near,
-                                 const double                     step)
+                                const std::size_t                p,
+                                const std::vector<Way>          &ways,
+                                const std::vector<unsigned int> &near,
+                                const double                     step)
   {
     dealii::Point<dim> start;
     for (int d = 0; d < dim; ++d)

@@ -10,8 +10,7 @@ namespace limber
 {
   namespace
   {
-    // More change little: with one, two and eight water around a disc at rest has
-    // 1.5, 1.3 and 1.3 J after four seconds, with density control at cut cells.
+    // More change little, one is less: found with water around a disc at rest.
     constexpr unsigned int n_passes = 2;
 
     /** Unit vectors across a normal. */

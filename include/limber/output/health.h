@@ -86,13 +86,13 @@ namespace limber
   /** Those of a run; energies in J. */
   struct HealthFigures
   {
-    std::vector<BodyFigures> bodies;
+    std::vector<BodyFigures>     bodies;
     std::vector<ObstacleFigures> obstacles; // in the order of the scene
-    unsigned int             dim          = 2;
-    double                   energy_scale = 0; // see Balance
-    double                   kinetic      = 0; // energy of all points
-    double                   drift        = 0; // over the scale
-    std::string              against_splines;  // GridDescription
+    unsigned int                 dim          = 2;
+    double                       energy_scale = 0; // see Balance
+    double                       kinetic      = 0; // energy of all points
+    double                       drift        = 0; // over the scale
+    std::string                  against_splines;  // GridDescription
     bool          may_hit = false; // obstacles, each other or sides that let go
     unsigned long points  = 0;
     double        put_back     = 0; // points, each time; see Ledger

@@ -285,10 +285,10 @@ namespace limber
                  std::vector<Wall>               &met) const;
     double
     put_out(const PointView<dim>            &points,
-             std::size_t                      p,
-             const std::vector<Way>          &ways,
-             const std::vector<unsigned int> &near,
-             double                           step);
+            std::size_t                      p,
+            const std::vector<Way>          &ways,
+            const std::vector<unsigned int> &near,
+            double                           step);
 
     const RunParts<dim>  parts;
     CutCells<dim> *const cut_cells; // or null

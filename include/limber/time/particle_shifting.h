@@ -38,7 +38,8 @@ namespace limber
   {
   public:
     /** Cells that obstacles cut, or null. */
-    ParticleShifting(const RunParts<dim> &parts, const CutCells<dim> *cut_cells);
+    ParticleShifting(const RunParts<dim> &parts,
+                     const CutCells<dim> *cut_cells);
 
     /** Adopt a mesh; collective. */
     void
@@ -115,15 +116,15 @@ namespace limber
       return records.data() + std::size_t(node) * Record::stride;
     }
 
-    const RunParts<dim>         parts;
-    const CutCells<dim> *const  cut_cells; // or null
-    std::vector<Group>          groups;
-    Surroundings<dim>           surroundings;
-    LazyArray<double>           rooms;   // by vertex, m^3
-    LazyArray<double>           records; // by vertex
-    RecordExchange              room_exchange{1}, exchange{Record::stride};
-    std::vector<double>         volume_ratios; // of the points of a body
-    double                      travelled = 0; // in cells
+    const RunParts<dim>        parts;
+    const CutCells<dim> *const cut_cells; // or null
+    std::vector<Group>         groups;
+    Surroundings<dim>          surroundings;
+    LazyArray<double>          rooms;   // by vertex, m^3
+    LazyArray<double>          records; // by vertex
+    RecordExchange             room_exchange{1}, exchange{Record::stride};
+    std::vector<double>        volume_ratios; // of the points of a body
+    double                     travelled = 0; // in cells
   };
 } // namespace limber
 

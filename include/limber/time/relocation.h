@@ -71,7 +71,8 @@ namespace limber
     void
     exchange_points();
 
-    /** Adopt points that have been moved between steps, and know their cells. */
+    /** Adopt points that have been moved between steps, and know their cells.
+     */
     void
     adopt_places();
 

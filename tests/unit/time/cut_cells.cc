@@ -479,7 +479,7 @@ TEST(CutCells, AreTheSameStepByStepAndAtOnce)
     end)"),
                   {"Obstacles=rock, slope", "Grid/Cells=48, 48"});
   auto         step_by_step = cut_cells_of(run);
-  unsigned int n_cut = 0;
+  unsigned int n_cut        = 0;
   for (unsigned int step = 0; step <= 100; ++step)
     {
       const double time = 0.01 * step;

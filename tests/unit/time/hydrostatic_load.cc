@@ -91,12 +91,12 @@ TEST(HydrostaticLoad, LeavesWhatFallsAlone)
   const std::vector<double> gravity = {2.5, -9.5};
   SceneRun<2>               run(
     "set Dimension = 2\nset End time = 10\nset Bodies = drop\n"
-    "subsection Body drop\n set Shape = ball\n subsection Ball\n"
-    " set Centre = 0.5, 0.6\n set Radius = 0.25\n end\n"
-    " set Material = newtonian fluid\n subsection Newtonian fluid\n"
-    " set Density = 1000\n set Bulk modulus = 1e6\n end\nend\n"
-    "subsection Grid\n set Cells = 16, 16\nend\n"
-    "subsection Loads\n set Gravity = 2.5, -9.5\nend\n");
+                  "subsection Body drop\n set Shape = ball\n subsection Ball\n"
+                  " set Centre = 0.5, 0.6\n set Radius = 0.25\n end\n"
+                  " set Material = newtonian fluid\n subsection Newtonian fluid\n"
+                  " set Density = 1000\n set Bulk modulus = 1e6\n end\nend\n"
+                  "subsection Grid\n set Cells = 16, 16\nend\n"
+                  "subsection Loads\n set Gravity = 2.5, -9.5\nend\n");
   run.advance(2e-4, 100);
   const PointView<2> points = run.points();
   ASSERT_GT(points.size, 100u);

@@ -216,6 +216,7 @@ TEST(ImplicitPressure, TendsToExplicitSteps)
                       "Body water/Newtonian fluid/Bulk modulus=1e6",
                       "Body water/Hourglass control=0",
                       "Body water/Chequerboard control=0",
+                      "Body water/Particle shifting=0",
                       "Body water/Density control=" +
                         std::string(integration == "explicit" ? "auto" : "0"),
                       "Body water/Initial pressure=hydrostatic",

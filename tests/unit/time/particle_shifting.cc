@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <gtest/gtest.h>
 #include <limber/time/particle_shifting.h>
+
+#include <gtest/gtest.h>
 #include <support/scene_run.h>
 
 #include <algorithm>
@@ -62,9 +63,9 @@ namespace
   double
   unevenness(SceneRun<dim> &run)
   {
-    constexpr unsigned int        n = 8;
-    std::array<double, n + 1>     sums{};
-    const PointView<dim>          points = run.points();
+    constexpr unsigned int    n = 8;
+    std::array<double, n + 1> sums{};
+    const PointView<dim>      points = run.points();
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const double x = points.position[0][p] * n;
@@ -147,8 +148,9 @@ TEST(ParticleShifting, SpreadsWhatHasGathered)
 // Evenly spread points stay where they are, to the last bit.
 TEST(ParticleShifting, LeavesWhatIsEven)
 {
-  SceneRun<2>         run(half_full_box(2));
-  const RunParts<2>   parts{run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  SceneRun<2>       run(half_full_box(2));
+  const RunParts<2> parts{
+    run.problem, run.grid, run.nodes, run.bodies, run.ledger};
   ParticleShifting<2> shifting(parts, nullptr);
   const auto          before = run.positions();
   shifting.follow(1);
@@ -163,7 +165,8 @@ TEST(ParticleShifting, LeavesWhatIsEven)
 TEST(ParticleShifting, IsSwitchedOff)
 {
   SceneRun<2>       run(half_full_box(2, " set Particle shifting = 0\n"));
-  const RunParts<2> parts{run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  const RunParts<2> parts{
+    run.problem, run.grid, run.nodes, run.bodies, run.ledger};
   ParticleShifting<2> shifting(parts, nullptr);
   shifting.follow(1);
   EXPECT_FALSE(shifting.is_due());

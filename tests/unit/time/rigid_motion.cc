@@ -50,10 +50,12 @@ namespace
 
 
 
+  // Shifted points would have velocities of where they have been.
   std::vector<std::string>
   overrides(const Variant &v)
   {
     return {"Body block/Material=" + v.law,
+            "Body block/Particle shifting=0",
             "Body block/Locking treatment=" + v.treatment,
             "Method/Stress update=" + v.order,
             "Method/Transfer=" + v.transfer,
