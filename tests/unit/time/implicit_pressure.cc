@@ -220,7 +220,9 @@ TEST(ImplicitPressure, TendsToExplicitSteps)
                       "Body water/Density control=" +
                         std::string(integration == "explicit" ? "auto" : "0"),
                       "Body water/Initial pressure=hydrostatic",
-                      "Method/Stress update=usl",
+                      // of a node that is hardly filled usl makes too much
+                      std::string("Method/Stress update=") +
+                        (integration == "explicit" ? "musl" : "usl"),
                       "Method/Time integration=" + integration});
     run.advance(step, static_cast<unsigned int>(std::lround(0.2 / step)));
     double sum = 0;
