@@ -47,6 +47,7 @@ namespace limber
   {
     surroundings.reinit();
     sums.reinit(std::size_t(grid.vertices.n()) * dim);
+    at_surface.reinit(grid.vertices.n());
     pressures.reinit(grid.vertices.n());
     find_uneven_nodes();
   }
@@ -61,8 +62,6 @@ namespace limber
     if (cut_cells)
       version = cut_cells->version();
     is_uneven.assign(table.n(), false);
-    marked_in.assign(table.n(), turn);
-    ++turn;
     for (const std::uint32_t node : table.masters)
       is_uneven[node] = true;
     for (const HangingNode &hanging : table.hanging)
@@ -168,8 +167,8 @@ namespace limber
           for (unsigned int a = 0; a < n_corners; ++a)
             pressures[surroundings.node_of(cell, a)] += of_cell;
         }
-    pressure_exchange.start(nodes.node_plan(), pressures.data(), 0, 1);
-    pressure_exchange.finish(pressures.data());
+    exchange_of_one.start(nodes.node_plan(), pressures.data(), 0, 1);
+    exchange_of_one.finish(pressures.data());
   }
 
 
@@ -243,13 +242,14 @@ namespace limber
   void
   HydrostaticLoad<dim>::mark_nodes(const NodalFields<dim> &nodes)
   {
-    ++turn;
-    for (const auto *const cells :
-         {&nodes.owned_occupied_cells(), &nodes.ghost_occupied_cells()})
-      for (const std::uint32_t cell : *cells)
-        if (!surroundings.is_inside(cell))
-          for (unsigned int a = 0; a < n_corners; ++a)
-            marked_in[surroundings.node_of(cell, a)] = turn;
+    for (const std::uint32_t node : nodes.active_nodes())
+      at_surface[node] = 0;
+    for (const std::uint32_t cell : nodes.owned_occupied_cells())
+      if (!surroundings.is_inside(cell))
+        for (unsigned int a = 0; a < n_corners; ++a)
+          at_surface[surroundings.node_of(cell, a)] += 1;
+    exchange_of_one.start(nodes.node_plan(), at_surface.data(), 0, 1);
+    exchange_of_one.finish(at_surface.data());
   }
 
 

@@ -106,7 +106,7 @@ namespace limber
     bool
     is_marked(const std::uint32_t node) const
     {
-      return is_uneven[node] || marked_in[node] == turn;
+      return is_uneven[node] || at_surface[node] > 0;
     }
 
     double
@@ -123,13 +123,12 @@ namespace limber
     unsigned int                     version = 0; // of these
     Surroundings<dim>                surroundings;
     // By node: whether it is a master, hangs on one, or is a corner of a cell
-    // that is cut; in which turn it was last one of a cell at a surface
+    // that is cut; of how many cells at a surface it is one
     std::vector<unsigned char> is_uneven;
-    std::vector<std::uint32_t> marked_in;
-    std::uint32_t              turn = 0;
+    LazyArray<double>          at_surface;
     LazyArray<double>          sums;      // by node, N
     LazyArray<double>          pressures; // by node, over the weight of a cell
-    RecordExchange             exchange{dim}, pressure_exchange{1};
+    RecordExchange             exchange{dim}, exchange_of_one{1};
 
     /** Nodes that are loaded, and by what, N. */
     struct OfField
