@@ -75,10 +75,7 @@ namespace limber
         look_around(medium);
       }
     if (are_new && !media.empty() && media.front().is_liquid())
-      surfaces.number(first + first_of_surfaces(),
-                      [this](const std::uint32_t cell) {
-                        return media.front().record(cell)[Record::number] > 0;
-                      });
+      surfaces.number(first + first_of_surfaces());
     return are_new;
   }
 

@@ -75,21 +75,81 @@ namespace limber
 
 
 
-  // Several ranks tell each other the pieces of a cell in the same order.
   template <int dim>
   void
-  PressureSurfaces<dim>::tell_rows()
+  PressureSurfaces<dim>::number(const std::uint32_t first_row)
   {
-    unsigned int most = 0;
-    for (std::size_t k = 0; k < pieces.size(); ++k)
-      most = std::max<unsigned int>(most, k + 2 - first_of[pieces[k].cell]);
-    most_in_cell = dealii::Utilities::MPI::max(most, parts.grid.communicator);
-    if (most_in_cell == 0)
+    if (cut_cells == nullptr)
       return;
-    told.reinit(std::size_t(parts.grid.n_cells()) * most_in_cell);
-    between_ranks.emplace(most_in_cell);
-    exchange([](const Piece &piece) { return piece.row + 1.; },
-             [](Piece &piece, const double value) { piece.row = value - 1; });
+    unsigned int most = 0;
+    for (std::uint32_t k = 0; k < n_own; ++k)
+      {
+        pieces[k].row = first_row + k;
+        most = std::max<unsigned int>(most, k + 2 - first_of[pieces[k].cell]);
+      }
+    most_in_cell = dealii::Utilities::MPI::max(most, parts.grid.communicator);
+    if (most_in_cell > 0 && !shared_cells->neighbours.empty())
+      learn_of_neighbours();
+  }
+
+
+
+  // The owner of a cell alone knows which of the cells around it are closed,
+  // and so all of its surfaces: it tells the others.
+  template <int dim>
+  void
+  PressureSurfaces<dim>::learn_of_neighbours()
+  {
+    constexpr unsigned int n_entries = n_nodes * dim;
+    const unsigned int     n_numbers = most_in_cell * (1 + n_entries);
+    told.reinit(std::size_t(parts.grid.n_cells()) * n_numbers);
+    between_ranks.emplace(n_numbers);
+    for (std::uint32_t k = 0; k < n_own; ++k)
+      {
+        const Piece  &piece   = pieces[k];
+        double *const of_cell = told_in(piece.cell);
+        of_cell[place_of(k)]  = piece.row + 1.;
+        std::copy(piece.entries.begin(),
+                  piece.entries.end(),
+                  of_cell + most_in_cell + place_of(k) * n_entries);
+      }
+    between_ranks->start(*shared_cells, told.data(), 0, n_numbers);
+    between_ranks->finish(told.data());
+
+    for (const std::uint32_t cell : shared_cells->received)
+      for (unsigned int k = 0; cell >= parts.grid.n_owned_cells() &&
+                               k < most_in_cell && told_in(cell)[k] > 0;
+           ++k)
+        {
+          if (k == 0)
+            first_of[cell] = 1 + pieces.size();
+          Piece piece;
+          piece.cell = cell;
+          piece.row  = told_in(cell)[k] - 1;
+          std::copy_n(told_in(cell) + most_in_cell + k * n_entries,
+                      n_entries,
+                      piece.entries.begin());
+          pieces.push_back(piece);
+        }
+  }
+
+
+
+  template <int dim>
+  double *
+  PressureSurfaces<dim>::told_in(const std::uint32_t cell)
+  {
+    return told.data() + std::size_t(cell) * told.size() / parts.grid.n_cells();
+  }
+
+
+
+  // Among those of its cell.
+  template <int dim>
+  unsigned int
+  PressureSurfaces<dim>::place_of(const std::size_t piece) const
+  {
+    return piece + 1 - first_of[pieces[piece].cell];
   }
 
 
@@ -102,21 +162,14 @@ namespace limber
   {
     if (most_in_cell == 0 || shared_cells->neighbours.empty())
       return;
-    const auto place = [&](const std::size_t k) {
-      return std::size_t(pieces[k].cell) * most_in_cell + k + 1 -
-             first_of[pieces[k].cell];
-    };
-    for (const auto &neighbour : parts.grid.shared_cells.neighbours)
-      for (const std::uint32_t cell : neighbour.records)
-        std::fill_n(told.data() + std::size_t(cell) * most_in_cell,
-                    most_in_cell,
-                    0.);
+    for (const Piece &piece : pieces)
+      told_in(piece.cell)[place_of(&piece - pieces.data())] = 0;
     for (std::size_t k = 0; k < n_own; ++k)
-      told[place(k)] = get(pieces[k]);
+      told_in(pieces[k].cell)[place_of(k)] = get(pieces[k]);
     between_ranks->start(*shared_cells, told.data(), 0, most_in_cell);
     between_ranks->finish(told.data());
     for (std::size_t k = n_own; k < pieces.size(); ++k)
-      set(pieces[k], told[place(k)]);
+      set(pieces[k], told_in(pieces[k].cell)[place_of(k)]);
   }
 
 

@@ -34,7 +34,7 @@ namespace limber
     struct Piece
     {
       std::uint32_t cell  = 0;
-      unsigned int  place = 0; // among those of the cell
+      unsigned int  place = 0; // among those of the cell, on its rank
       std::uint32_t row   = 0; // of all ranks
       // By node and component, m^(dim-1)
       std::array<double, n_nodes * dim> entries{};
@@ -74,21 +74,10 @@ namespace limber
       n_own = pieces.size();
     }
 
-    /** Those of this rank have rows from here on; learn of those in
-     * shared cells for which is_asked(cell). Collective. */
-    template <class IsAsked>
+    /** Those of this rank have rows from here on; learn of those that other
+     * ranks have in shared cells. Collective. */
     void
-    number(const std::uint32_t first_row, const IsAsked &is_asked)
-    {
-      if (cut_cells == nullptr)
-        return;
-      for (std::uint32_t k = 0; k < n_own; ++k)
-        pieces[k].row = first_row + k;
-      for (const auto &cell : cut_cells->all())
-        if (cell.number >= parts.grid.n_owned_cells() && is_asked(cell.number))
-          add(cell);
-      tell_rows();
-    }
+    number(std::uint32_t first_row);
 
     /** Nothing is wet; for a new step. */
     void
@@ -158,7 +147,11 @@ namespace limber
     void
     add(const Cell &cell);
     void
-    tell_rows();
+    learn_of_neighbours();
+    double *
+    told_in(std::uint32_t cell);
+    unsigned int
+    place_of(std::size_t piece) const;
     template <class Get, class Set>
     void
     exchange(const Get &get, const Set &set);
@@ -169,7 +162,8 @@ namespace limber
     std::uint32_t            n_own        = 0;
     unsigned int             most_in_cell = 0; // of all ranks
     LazyArray<std::uint32_t> first_of; // by cell, 1 + its first piece, or 0
-    LazyArray<double>        told;     // by cell and piece in it
+    // By cell: a number for each piece in it, and their entries
+    LazyArray<double>             told;
     std::optional<RecordExchange> between_ranks;
     std::optional<ExchangePlan>   shared_cells;
   };
