@@ -141,6 +141,7 @@ namespace limber
     choose_stress_update(problem);
     read_contact(root, problem);
     read_obstacles(root, problem);
+    choose_spread_of_points(root, problem);
     choose_side_contact(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));

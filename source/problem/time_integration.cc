@@ -16,14 +16,6 @@ namespace limber
     // grow with the grid, too little to be seen in motions
     constexpr double compact_share = 0.1;
 
-    // of what nodes hold beyond their room, pushed apart in a step
-    constexpr double density_control = 0.2;
-
-    // Found with water that has been stirred.
-    constexpr double particle_shifting = 2;
-
-
-
     // Sound over all other speeds, from where 'auto' is semi-implicit: such a
     // run takes about a quarter of the time
     constexpr double fast_sound = 30;
@@ -204,94 +196,6 @@ namespace limber
 
 
 
-    /** Whether bodies may take all of the box, so that there is no surface. */
-    template <int dim>
-    bool
-    fill_box(const std::vector<Body<dim>> &bodies,
-             const GridDescription<dim>   &grid)
-    {
-      for (unsigned int d = 0; d < dim; ++d)
-        {
-          double lower = 1e300, upper = -1e300;
-          for (const auto &body : bodies)
-            {
-              const auto box = body.shape->bounding_box();
-              lower          = std::min(lower, box.first[d]);
-              upper          = std::max(upper, box.second[d]);
-            }
-          if (lower > grid.lower[d] + 1e-6 * grid.edge(d) ||
-              upper < grid.upper[d] - 1e-6 * grid.edge(d))
-            return false;
-        }
-      return true;
-    }
-
-
-
-    /**
-     * Solids may have less volume than at first; and what is pushed apart in a
-     * full box presses on all of it.
-     */
-    template <int dim>
-    void
-    read_density_control(const Section      &section,
-                         const Problem<dim> &problem,
-                         Body<dim>          &body)
-    {
-      const bool possible =
-        problem.method.integration == TimeIntegration::semi_implicit &&
-        std::all_of(problem.bodies.begin(),
-                    problem.bodies.end(),
-                    [](const auto &other) { return other.is_liquid; });
-      const bool automatic = section.text("Density control") == "auto";
-      body.density_control =
-        !automatic ? section.number("Density control") :
-        possible && !fill_box(problem.bodies, problem.grid) ? density_control :
-                                                              0;
-      if (body.density_control > 0 && !possible)
-        throw InputError("The entry 'Density control' in " +
-                         section.where("Density control") +
-                         " is for a scene of liquids alone, with time "
-                         "integration 'semi-implicit'. Usually one of "
-                         "them was changed alone. Set 'Density control = "
-                         "auto'.");
-    }
-
-
-
-    /**
-     * Only with means over cells, of linear functions, clumps weigh more than
-     * they press. In semi-implicit steps beside obstacles water that moves over
-     * a slope would lose more of its volume, not less.
-     */
-    template <int dim>
-    void
-    read_particle_shifting(const Section      &section,
-                           const Problem<dim> &problem,
-                           const bool          has_obstacles,
-                           Body<dim>          &body)
-    {
-      const bool possible = body.is_liquid &&
-                            body.treatment == Treatment::cell &&
-                            problem.grid.kernel == KernelKind::linear;
-      const bool wanted =
-        possible && !(has_obstacles && problem.method.integration ==
-                                         TimeIntegration::semi_implicit);
-      body.particle_shifting = section.text("Particle shifting") != "auto" ?
-                                 section.number("Particle shifting") :
-                               wanted ? particle_shifting :
-                                        0;
-      if (body.particle_shifting > 0 && !possible)
-        throw InputError("The particle shifting " +
-                         section.text("Particle shifting") + " in " +
-                         section.where("Particle shifting") +
-                         " is for liquids with 'Locking treatment = cell' and "
-                         "'Kernel = linear'. Usually one of them was changed "
-                         "alone. Set 'Particle shifting = auto'.");
-    }
-
-
-
     /**
      * Whether the pressure of a solid is implicit where those of liquids are:
      * it is one for each cell, and the stress follows from the strain.
@@ -347,13 +251,6 @@ namespace limber
   {
     if (root.subsection("Method").text("Time integration") == "auto")
       choose_automatically(root, problem);
-    const bool has_obstacles = !root.list("Obstacles").empty();
-    for (auto &body : problem.bodies)
-      {
-        const Section section = root.subsection("Body " + body.name);
-        read_density_control(section, problem, body);
-        read_particle_shifting(section, problem, has_obstacles, body);
-      }
     if (is_solved_by_newton(problem.method.integration))
       return check_newton_scene(root, problem);
     if (!problem.loads.factor.empty())

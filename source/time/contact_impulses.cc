@@ -139,11 +139,18 @@ namespace limber
   ContactImpulses<dim>::find_relaxation()
   {
     find_held();
-    bears.assign(seen.size(), 0.);
+    bears.assign(seen.size() * Borne::stride, 0.);
     for (std::size_t p = 0; p < places.size(); ++p)
       for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
-        bears[shares.all[k].node] +=
-          free_share(places[p], shares.all[k]) * places[p].mass;
+        {
+          const Place  &place   = places[p];
+          const double  mass    = free_share(place, shares.all[k]) * place.mass;
+          double *const of_node = &bears[shares.all[k].node * Borne::stride];
+          of_node[Borne::all] += mass;
+          for (int d = 0; d < dim; ++d) // what rubs acts along all of them
+            of_node[Borne::along + d] +=
+              mass * (place.friction > 0 ? 1 : std::abs(place.normal[d]));
+        }
     if (!at_nodes && shares_nodes())
       {
         see_those_of_others();
@@ -172,7 +179,8 @@ namespace limber
             // node no mass.
             if (inverse_mass[share.node] == 0)
               share.value = 0;
-            sum += free_share(places[p], share) * bears[share.node] *
+            sum += free_share(places[p], share) *
+                   borne_along(places[p], share.node) *
                    inverse_mass[share.node];
           }
       }
@@ -180,6 +188,24 @@ namespace limber
     for (std::size_t p = 0; p < places.size(); ++p)
       places[p].relaxation =
         relative[p * lanes] > 0 ? places[p].mass / relative[p * lanes] : 0;
+  }
+
+
+
+  // Of the mass that places bear at a node, sum m_q |n_q . n_p| at most: those
+  // across do not know of each other.
+  template <int dim>
+  double
+  ContactImpulses<dim>::borne_along(const Place        &place,
+                                    const std::uint32_t node) const
+  {
+    const double *const of_node = &bears[node * Borne::stride];
+    if (place.friction > 0)
+      return of_node[Borne::all];
+    double along = 0;
+    for (int d = 0; d < dim; ++d)
+      along += std::abs(place.normal[d]) * of_node[Borne::along + d];
+    return std::min(of_node[Borne::all], along);
   }
 
 
@@ -246,29 +272,35 @@ namespace limber
   void
   ContactImpulses<dim>::see_those_of_others()
   {
+    const auto record_of = [this](const unsigned int  field,
+                                  const std::uint32_t node) {
+      return given[field].records.data() + node * Given::stride + Given::borne;
+    };
     for (std::size_t i = 0; i < seen.size(); ++i)
-      given[seen[i].field]
-        .records[seen[i].number * Given::stride + Given::mass] = bears[i];
+      std::copy_n(&bears[i * Borne::stride],
+                  Borne::stride,
+                  record_of(seen[i].field, seen[i].number));
     for (unsigned int field = 0; field < given.size(); ++field)
       {
-        double *const records = given[field].records.data();
-        for (const auto &neighbour : nodes.node_plan().neighbours)
-          for (const std::uint32_t node : neighbour.send)
+        const auto clear_unseen = [&](const std::vector<std::uint32_t> &some) {
+          for (const std::uint32_t node : some)
             if (seen_as[field][node] == 0)
-              records[node * Given::stride + Given::mass] = 0;
-        for (const std::uint32_t node : nodes.node_plan().received)
-          if (seen_as[field][node] == 0)
-            records[node * Given::stride + Given::mass] = 0;
+              std::fill_n(record_of(field, node), Borne::stride, 0.);
+        };
+        for (const auto &neighbour : nodes.node_plan().neighbours)
+          clear_unseen(neighbour.send);
+        clear_unseen(nodes.node_plan().received);
       }
-    sum_given(Given::mass, Given::mass + 1);
+    sum_given(Given::borne, Given::borne + Borne::stride);
     for (unsigned int field = 0; field < given.size(); ++field)
       for (const std::uint32_t node : nodes.node_plan().received)
-        if (given[field].records[node * Given::stride + Given::mass] > 0)
+        if (record_of(field, node)[Borne::all] > 0)
           see(field, node);
-    bears.resize(seen.size());
+    bears.resize(seen.size() * Borne::stride);
     for (std::size_t i = 0; i < seen.size(); ++i)
-      bears[i] = given[seen[i].field]
-                   .records[seen[i].number * Given::stride + Given::mass];
+      std::copy_n(record_of(seen[i].field, seen[i].number),
+                  Borne::stride,
+                  &bears[i * Borne::stride]);
   }
 
 

@@ -139,9 +139,7 @@ namespace limber
     control_chequerboards();
     do_scheme();
     const bool put_out =
-      obstacles &&
-      parts.problem.method.integration == TimeIntegration::semi_implicit &&
-      obstacles->put_out(time, step, extremes.displacement);
+      obstacles && obstacles->put_out(time, step, extremes.displacement);
     relocation.end_step(extremes, put_out);
     shifting.follow(extremes.displacement);
     wave_speed  = std::sqrt(extremes.wave_squared);

@@ -113,6 +113,7 @@ namespace limber
     distance.clear();
     at_cut.reinit(parts.grid.vertices.n());
     at_covered.reinit(parts.grid.vertices.n());
+    open_rooms.reinit(parts.grid.vertices.n());
     former.clear();
     Places places;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
@@ -263,18 +264,62 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           at_covered[parts.grid.geometry[cell].node[a] /
                      NodeLayout<dim>::stride] += 1u << a;
+    find_rooms();
     any_cut = dealii::Utilities::MPI::max<unsigned int>(
                 std::any_of(cells.begin(),
                             cells.end(),
                             [](const Cell &cell) { return cell.is_cut(); }),
                 parts.grid.communicator) > 0;
     ++times_found;
-    const ExchangePlan all(table.shared);
-    for (LazyArray<double> *const of_nodes : {&at_cut, &at_covered})
+    sum_over_ranks(at_cut);
+    sum_over_ranks(at_covered);
+  }
+
+
+
+  template <int dim>
+  void
+  CutCells<dim>::sum_over_ranks(LazyArray<double> &of_nodes)
+  {
+    const ExchangePlan all(parts.grid.vertices.shared);
+    exchange.start(all, of_nodes.data(), 0, 1);
+    exchange.finish(of_nodes.data());
+  }
+
+
+
+  template <int dim>
+  void
+  CutCells<dim>::find_rooms()
+  {
+    std::fill_n(open_rooms.data(), parts.grid.vertices.n(), 0.);
+    for (std::uint32_t number = 0; number < parts.grid.n_owned_cells();
+         ++number)
       {
-        exchange.start(all, of_nodes->data(), 0, 1);
-        exchange.finish(of_nodes->data());
+        if (is_covered(number))
+          continue;
+        const CellGeometry<dim> &geometry = parts.grid.geometry[number];
+        double                   volume   = 1;
+        for (const double inverse : geometry.inverse_edge)
+          volume /= inverse;
+        const Cell *const cut = cell(number);
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          {
+            double mean = 1. / n_nodes; // of N_a over the cell
+            if (cut != nullptr)
+              {
+                auto means = cut->monomials;
+                for (unsigned int d = 0; d < dim; ++d)
+                  for (unsigned int k = 0; k < n_nodes; ++k)
+                    if (!(k >> d & 1) && !(a >> d & 1))
+                      means[k] -= means[k | 1u << d];
+                mean = cut->open * means[a];
+              }
+            open_rooms[geometry.node[a] / NodeLayout<dim>::stride] +=
+              mean * volume;
+          }
       }
+    sum_over_ranks(open_rooms);
   }
 
 

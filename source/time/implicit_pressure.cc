@@ -93,14 +93,19 @@ namespace limber
       meet_obstacles();
     const auto before = spent.iterations;
     solve_equations(end, step, share);
+    std::vector<double> impulses; // of nodes that obstacles hold
     if (obstacles != nullptr)
-      for (unsigned int k = 1; k < most_changes + most_releases; ++k)
-        {
-          sum_forces(true);
-          if (!system.release_nodes(step, k < most_changes))
-            break;
-          solve_equations(end, step, share);
-        }
+      {
+        sum_forces(true);
+        for (unsigned int k = 1; k < most_changes + most_releases &&
+                                 system.release_nodes(step, k < most_changes);
+             ++k)
+          {
+            solve_equations(end, step, share);
+            sum_forces(true);
+          }
+        impulses = system.impulses_on_nodes(step);
+      }
     sum_forces(false);
     ++spent.steps;
     spent.most_iterations =
@@ -110,7 +115,7 @@ namespace limber
       keep_result(l);
     push_nodes(step);
     if (obstacles != nullptr)
-      press_on_obstacles(step);
+      press_on_obstacles(step, impulses);
   }
 
 
@@ -134,17 +139,19 @@ namespace limber
 
   template <int dim>
   void
-  ImplicitPressure<dim>::press_on_obstacles(const double step)
+  ImplicitPressure<dim>::press_on_obstacles(
+    const double               step,
+    const std::vector<double> &impulses_on_nodes)
   {
     auto &surfaces = cells.surfaces;
     for (std::uint32_t k = 0; k < surfaces.n_of_rank(); ++k)
       surfaces.pieces[k].pressure =
         system.pressures[cells.first_of_surfaces() + k];
     obstacles->expect_given();
-    system.for_each_released([this](const HeldNode &node) {
-      if (node.has_place)
-        obstacles->give(node.place, 0);
-    });
+    const auto &nodes = obstacles->held_nodes();
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      if (nodes[k].share > 0)
+        obstacles->give(nodes[k].place, nodes[k].share * impulses_on_nodes[k]);
     obstacles->for_each_surface([&](const std::uint32_t cell,
                                     const unsigned int  surface,
                                     double,

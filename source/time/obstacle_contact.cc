@@ -18,24 +18,6 @@ namespace limber
 
 
 
-    // Of the mass of a node that holds a liquid, what has to touch. Splines see
-    // more points beyond those that touch.
-    double
-    least_touching_share(const KernelKind kernel)
-    {
-      switch (kernel)
-        {
-          case KernelKind::quadratic:
-            return 0.35;
-          case KernelKind::cubic:
-            return 0.2;
-          default:
-            return 0.5;
-        }
-    }
-
-
-
     // n . grad N = d . grad_X N with d = F^-1 n in the initial frame.
     template <int dim>
     dealii::Tensor<1, dim>
@@ -87,6 +69,13 @@ namespace limber
                 dealii::Utilities::MPI::max(largest, parts.grid.communicator) /
                 body->stress->density()));
       }
+    liquid_density.assign(parts.nodes.n_fields(), 0);
+    for (const auto &body : parts.bodies)
+      if (body->description.is_liquid)
+        {
+          double &density = liquid_density[body->description.nodal_field];
+          density         = std::max(density, body->stress->density());
+        }
     check_start();
     reinit();
   }
@@ -409,85 +398,6 @@ namespace limber
           record[Sums::weight] += weight;
           record[Sums::own] += weight;
         });
-  }
-
-
-
-  // Or in its surface, to a thousandth of a cell.
-  template <int dim>
-  bool
-  ObstacleContact<dim>::is_in(const std::uint32_t       node,
-                              const ObstaclePlace<dim> &obstacle) const
-  {
-    return !vertices.empty() && obstacle.distance(vertices[node]).value <=
-                                  1e-3 * parts.grid.smallest_edge;
-  }
-
-
-
-  template <int dim>
-  void
-  ObstacleContact<dim>::add_nodes(const std::vector<Way> &ways,
-                                  const double            step)
-  {
-    const double least_share = least_touching_share(parts.problem.grid.kernel);
-    for (unsigned int s = 0; s < sums.size(); ++s)
-      {
-        if (sums[s].records.size() == 0)
-          continue;
-        double *const records = sums[s].records.data();
-        sums[s].exchange.start(parts.nodes.node_plan(),
-                               records,
-                               0,
-                               Sums::n_summed);
-        sums[s].exchange.finish(records);
-        const unsigned int obstacle = s / parts.nodes.n_fields(),
-                           field    = s % parts.nodes.n_fields();
-        for (const std::uint32_t node : parts.nodes.active_nodes())
-          {
-            const double *const record =
-              records + std::size_t(node) * Sums::stride;
-            const double weight = record[Sums::weight];
-            const double mass   = parts.nodes.record(field, node)[Layout::mass];
-            const Vector normal = vector_in<dim>(record + Sums::normal);
-            if (!(weight > 0) ||
-                !(normal.norm() > 1e-6 * weight) || // met from all sides alike
-                is_met_by_surface(field, node))
-              continue;
-            const bool is_held = weight >= least_share * mass;
-            if (!is_held && !is_in(node, ways[obstacle].before))
-              continue;
-            const dealii::Point<dim> x(vector_in<dim>(record + Sums::place) /
-                                       weight);
-            Place                    place;
-            place.normal   = normal / normal.norm();
-            place.friction = parts.problem.obstacles[obstacle].friction;
-            // its part of the impulse of the node
-            place.mass = mass * record[Sums::own] / weight;
-            if (parts.problem.obstacles[obstacle].moves())
-              place.velocity = ways[obstacle].velocity(x, step);
-            if (!is_held)
-              place.least =
-                std::min(0.,
-                         (vector_in<dim>(parts.nodes.record(field, node) +
-                                         Layout::momentum) -
-                          vector_in<dim>(record + Sums::momentum)) /
-                             mass * place.normal -
-                           (1 - weight / mass) *
-                             (place.velocity * place.normal));
-            const bool is_own = record[Sums::own] > 0;
-            nodes_held.push_back({node,
-                                  place.normal,
-                                  place.least + place.velocity * place.normal,
-                                  is_own,
-                                  impulses.all().size()});
-            if (!is_own)
-              continue;
-            impulses.add_place() = place;
-            impulses.add_share(field, node, 1);
-            touches.push_back({obstacle, x - ways[obstacle].before.centre()});
-          }
-      }
   }
 
 

@@ -19,6 +19,10 @@ namespace limber
     // shall not be drawn together.
     constexpr double largest_excess = 0.5;
 
+    // Of the room around a node: where obstacles leave less, a single point
+    // would be far too much.
+    constexpr double least_room = 0.1;
+
     // How near to a side of the box points are shifted, in cells.
     constexpr double least_distance = 1e-3;
 
@@ -60,6 +64,12 @@ namespace limber
                                           const CutCells<dim> *const cut_cells)
     : parts(parts)
     , cut_cells(cut_cells)
+    , controls_density(std::any_of(parts.bodies.begin(),
+                                   parts.bodies.end(),
+                                   [](const auto &body) {
+                                     return body->description.density_control >
+                                            0;
+                                   }))
     , surroundings(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
@@ -148,12 +158,17 @@ namespace limber
 
 
 
+  // Of which obstacles take some, m^3; 0 where it does not count. In cells that
+  // they cut the control of semi-implicit steps alone keeps the volume better.
   template <int dim>
-  bool
-  ParticleShifting<dim>::is_at_obstacle(const std::uint32_t node) const
+  double
+  ParticleShifting<dim>::room_at(const std::uint32_t node) const
   {
-    return cut_cells &&
-           (cut_cells->is_cut(node) || cut_cells->covered_corners()[node] > 0);
+    if (cut_cells == nullptr ||
+        !(cut_cells->is_cut(node) || cut_cells->covered_corners()[node] > 0))
+      return rooms[node];
+    const double left = cut_cells->rooms()[node];
+    return left < least_room * rooms[node] || controls_density ? 0 : left;
   }
 
 
@@ -186,10 +201,11 @@ namespace limber
     for (const std::uint32_t node : vertices.active_nodes())
       {
         double *const of_node = record(node);
-        double        excess  = of_node[Record::excess] / rooms[node] - 1;
+        const double  room    = room_at(node);
+        double        excess  = of_node[Record::excess] / room - 1;
         if (of_node[Record::at_surface] > 0)
           excess = std::max(excess, 0.);
-        if (of_node[Record::shared] > 0 || is_at_obstacle(node))
+        if (of_node[Record::shared] > 0 || !(room > 0))
           excess = 0;
         of_node[Record::excess] =
           std::min(std::max(excess, -largest_excess), largest_excess);

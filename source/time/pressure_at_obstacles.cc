@@ -90,10 +90,13 @@ namespace limber
           velocity[first + d] += approach / norm * left[d];
         if (as == 0)
           {
-            held.push_back({contact.node, 0, {}});
+            held.push_back({contact.node, 0, {}, {}, {}});
             as = held.size();
           }
-        held[as - 1].directions[held[as - 1].n++] = left;
+        Held &of_node                 = held[as - 1];
+        of_node.directions[of_node.n] = left;
+        of_node.along[of_node.n]      = norm;
+        of_node.contacts[of_node.n++] = k;
       }
   }
 
@@ -113,6 +116,43 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           vector[d] -= along[d];
       }
+  }
+
+
+
+  // The change of velocity is known along orthogonal directions, impulses act
+  // along normals: from the last one on, each has parts along those before.
+  template <int dim>
+  std::vector<double>
+  PressureSystem<dim>::impulses_on_nodes(const double step) const
+  {
+    std::vector<double> result(to_hold->size(), 0.);
+    for (const Held &one : held)
+      {
+        const double *const record = parts.nodes.record(one.node);
+        Vector              v      = vector_in<dim>(record + Layout::velocity) +
+                   step / record[Layout::mass] *
+                     vector_in<dim>(record + Layout::pressure_force);
+        for (int d = 0; d < dim; ++d)
+          if (mobility[std::size_t(one.node) * dim + d] == 0)
+            v[d] = velocity[std::size_t(one.node) * dim + d];
+        std::array<double, dim> change{};
+        for (unsigned int i = 0; i < one.n; ++i)
+          {
+            const HeldNode &contact = (*to_hold)[one.contacts[i]];
+            change[i] = (contact.least - contact.normal * v) / one.along[i];
+            v += change[i] * one.directions[i];
+          }
+        for (unsigned int i = one.n; i-- > 0;)
+          {
+            const HeldNode &contact = (*to_hold)[one.contacts[i]];
+            const double    across  = change[i] / one.along[i];
+            for (unsigned int k = 0; k < i; ++k)
+              change[k] -= across * (contact.normal * one.directions[k]);
+            result[one.contacts[i]] = record[Layout::mass] * across;
+          }
+      }
+    return result;
   }
 
 
@@ -265,6 +305,8 @@ namespace limber
   PressureSystem<2>::hold_by_obstacles();
   template void
   PressureSystem<2>::move(std::uint32_t, double *) const;
+  template std::vector<double>
+  PressureSystem<2>::impulses_on_nodes(double) const;
   template bool
   PressureSystem<2>::release_nodes(double, bool);
   template const double                      *
@@ -288,6 +330,8 @@ namespace limber
   PressureSystem<3>::hold_by_obstacles();
   template void
   PressureSystem<3>::move(std::uint32_t, double *) const;
+  template std::vector<double>
+  PressureSystem<3>::impulses_on_nodes(double) const;
   template bool
   PressureSystem<3>::release_nodes(double, bool);
   template const double                      *

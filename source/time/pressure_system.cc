@@ -12,6 +12,10 @@ namespace limber
     // points show no volume more exactly.
     constexpr double excess_allowed = 0.02;
 
+    // Of the room around a node: where obstacles leave less, a single point
+    // would be far too much.
+    constexpr double least_room = 0.1;
+
 
 
     /** The signs of places around a node multiplied over the directions in
@@ -235,18 +239,23 @@ namespace limber
 
 
 
-  // Of a room, m^3.
+  // Of a room, m^3, of which obstacles may take some.
   template <int dim>
   double
-  PressureSystem<dim>::excess_in(const double        room,
+  PressureSystem<dim>::excess_in(double              room,
                                  const std::uint32_t node,
                                  const double        density) const
   {
     const double held = needs_volumes ?
                           volumes[node] :
                           parts.nodes.record(node)[Layout::mass] / density;
-    if (is_at_obstacle(node)) // which takes some of the room
-      return 0;
+    if (is_at_obstacle(node))
+      {
+        const double left = cells.surfaces.cells()->rooms()[node];
+        if (left < least_room * room)
+          return 0;
+        room = left;
+      }
     const double excess = held / room - 1;
     if (excess < 0 && at_surface[node] > 0)
       return 0; // there is room left

@@ -263,6 +263,12 @@ namespace limber
   void
   choose_time_integration(const Section &root, Problem<dim> &problem);
 
+  /** How points of liquids are kept from gathering: Body::density_control and
+   * particle_shifting. Time integration, bodies and obstacles are known. */
+  template <int dim>
+  void
+  choose_spread_of_points(const Section &root, Problem<dim> &problem);
+
   // Steps that Newton's method solves (source/problem/newton_scene.cc)
 
   /** Whether they can do all that the scene asks for; else InputError. */

@@ -299,13 +299,21 @@ namespace limber
       const Constraint *constraint;
     };
 
+    // The masses of places that bear on a node: of all of them, M_i, and times
+    // |n_d| by direction
+    struct Borne
+    {
+      static constexpr unsigned int all = 0, along = 1;
+      static constexpr unsigned int stride = 1 + dim;
+    };
+
     // What ranks tell each other of the nodes of a field: momentum that places
-    // give in a pass, or the mass M_i; a record has both
+    // give in a pass, or the masses; a record has both
     struct Given
     {
       static constexpr unsigned int momentum = 0;
-      static constexpr unsigned int mass     = dim;
-      static constexpr unsigned int stride   = dim + 1;
+      static constexpr unsigned int borne    = dim;
+      static constexpr unsigned int stride   = dim + Borne::stride;
 
       LazyArray<double> records;
       RecordExchange    exchange{stride};
@@ -387,6 +395,8 @@ namespace limber
     see_what_sides_leave(Seen seen_as);
     void
     find_held();
+    double
+    borne_along(const Place &place, std::uint32_t node) const;
     double
     free_share(const Place &place, const PlaceShare &share) const;
     void

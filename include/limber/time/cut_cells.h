@@ -161,6 +161,13 @@ namespace limber
       return at_cut[node] > 0;
     }
 
+    /** By vertex, the integral of N_i over what obstacles leave open, m^dim. */
+    const double *
+    rooms() const
+    {
+      return open_rooms.data();
+    }
+
     /** Whether a surface ends at a cell that is cut, as those across one do;
      * others in faces of cells need not. */
     bool
@@ -209,6 +216,10 @@ namespace limber
     void
     find_cells(const Places &places);
     void
+    find_rooms();
+    void
+    sum_over_ranks(LazyArray<double> &of_nodes);
+    void
     find_distance_at_rest(const Places &places);
     bool
     is_as_before(std::uint32_t cell, const Places &places);
@@ -251,8 +262,8 @@ namespace limber
     const RunParts<dim>        parts;
     std::vector<char>          knowing; // by field
     std::vector<Cell>          cells;
-    std::vector<std::uint32_t> kinds;              // by cell
-    LazyArray<double>          at_cut, at_covered; // by node
+    std::vector<std::uint32_t> kinds;                          // by cell
+    LazyArray<double>          at_cut, at_covered, open_rooms; // by node
     RecordExchange             exchange{1};
     std::vector<char>          wet; // by cell, field
     // Of the middles of cells from what is at rest, m; and from what moves,

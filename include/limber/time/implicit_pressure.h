@@ -145,7 +145,8 @@ namespace limber
     void
     push_nodes(double step);
     void
-    press_on_obstacles(double step);
+    press_on_obstacles(double                     step,
+                       const std::vector<double> &impulses_on_nodes);
 
     const RunParts<dim>         parts;
     ObstacleContact<dim> *const obstacles; // or null

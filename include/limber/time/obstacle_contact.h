@@ -7,6 +7,7 @@
 #include <limber/time/cut_cells.h>
 #include <limber/time/integrator.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace limber
@@ -96,8 +97,9 @@ namespace limber
       std::uint32_t          node;
       dealii::Tensor<1, dim> normal;
       double                 least;
-      bool                   has_place; // an impulse of this rank, number:
-      std::size_t            place;
+      // Of its impulse, the part that is one of this rank, number:
+      double      share;
+      std::size_t place;
     };
 
     /** Those of liquids that this rank knows, also by points of others. */
@@ -238,6 +240,25 @@ namespace limber
       RecordExchange    exchange{stride};
     };
 
+    /** Faces at a node between cells that obstacles take and open ones. */
+    struct Walls
+    {
+      // By direction, towards what is open: -1 or 1; 0: none
+      std::array<int, dim> across{};
+      // Share of the open cells around the node that have such a face
+      double open_at_walls = 1;
+
+      bool
+      any() const
+      {
+        return std::any_of(across.begin(), across.end(), [](const int is) {
+          return is != 0;
+        });
+      }
+    };
+
+    Walls
+    walls_at(unsigned int field, std::uint32_t node) const;
     unsigned int
     n_obstacles() const
     {
@@ -275,6 +296,13 @@ namespace limber
     void
     add_nodes(const std::vector<Way> &ways, double step);
     void
+    add_node(unsigned int  obstacle,
+             unsigned int  field,
+             std::uint32_t node,
+             const double *touching,
+             const Way    &way,
+             double        step);
+    void
     add_cut_cells(const std::vector<Way> &ways, double step);
     bool
     is_met_by_surface(unsigned int field, std::uint32_t node) const;
@@ -301,6 +329,7 @@ namespace limber
     const Sides<dim>          other_sides;
     SideConstraints<dim>      of_other_sides;
     std::vector<double>       edge; // largest of the points of a body, m
+    std::vector<double>       liquid_density; // of a field, the largest, kg/m^3
     ContactImpulses<dim>      impulses;
     std::vector<Sums>         sums;    // of an obstacle and a field
     std::vector<Touch>        touches; // of each impulse

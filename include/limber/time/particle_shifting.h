@@ -23,12 +23,12 @@ namespace limber
    *
    *   g_i = sum_p N_i(x_p) V_p / R_i - 1,   delta_p = - C s h^2 grad g(x_p),
    *
-   * with the room R_i of a node, the integral of N_i over the box; s, in cells,
-   * is how far the fastest point has moved since the last time, and C the
-   * body's 'Particle shifting'. Next to cells at a surface R_i is not known to
-   * be filled: only an excess counts there. Nothing is done beside solids,
-   * other fields and obstacles. Velocities stay; the potential energy that this
-   * takes is on record as removed with histories.
+   * with the room R_i of a node, the integral of N_i over what obstacles leave
+   * of the box; s, in cells, is how far the fastest point has moved since the
+   * last time, and C the body's 'Particle shifting'. Next to cells at a surface
+   * R_i is not known to be filled: only an excess counts there. Nothing is done
+   * beside solids and other fields. Velocities stay; the potential energy that
+   * this takes is on record as removed with histories.
    *
    * For linear functions, with means over cells. Theory:
    * doc/theory/treatments.md.
@@ -107,8 +107,8 @@ namespace limber
     bool
     holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
 
-    bool
-    is_at_obstacle(std::uint32_t node) const;
+    double
+    room_at(std::uint32_t node) const;
 
     double *
     record(const std::uint32_t node)
@@ -118,6 +118,7 @@ namespace limber
 
     const RunParts<dim>        parts;
     const CutCells<dim> *const cut_cells; // or null
+    const bool                 controls_density;
     std::vector<Group>         groups;
     Surroundings<dim>          surroundings;
     LazyArray<double>          rooms;   // by vertex, m^3

@@ -82,15 +82,11 @@ namespace limber
     bool
     release_nodes(double step, bool may_return);
 
-    /** Call work(node) for those that are let go in this step. */
-    template <class Work>
-    void
-    for_each_released(const Work &work) const
-    {
-      for (std::size_t k = 0; k < is_released.size(); ++k)
-        if (is_released[k])
-          work((*to_hold)[k]);
-    }
+    /** What holds the nodes of meet_nodes() across the surface, kg m/s, with
+     * the forces of all pressures at Layout::pressure_force; nothing where they
+     * are let go. */
+    std::vector<double>
+    impulses_on_nodes(double step) const;
 
     /** The part of gamma T P in a cell, m^3, with the pressures that cells
      * know of each other. */
@@ -264,6 +260,10 @@ namespace limber
       std::uint32_t           node;
       unsigned int            n = 0;
       std::array<Vector, dim> directions;
+      // By direction: of what has to be met, the part along it of the normal,
+      // and the number
+      std::array<double, dim>      along;
+      std::array<std::size_t, dim> contacts;
     };
     const std::vector<HeldNode> *to_hold = nullptr;
     std::vector<char>            is_released; // of these

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/problem/read_parts.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    // of what nodes hold beyond their room, pushed apart in a step
+    constexpr double density_control = 0.2;
+
+    // Found with water that has been stirred.
+    constexpr double particle_shifting = 2;
+
+
+
+    /** Whether nothing is left for bodies to move into: the middles of all
+     * cells are in bodies or obstacles at the start. */
+    template <int dim>
+    bool
+    is_full(const Problem<dim> &problem)
+    {
+      std::vector<ObstaclePlace<dim>> places;
+      for (const auto &obstacle : problem.obstacles)
+        places.emplace_back(obstacle, 0);
+      const auto is_in_any = [&](const dealii::Point<dim> &x) {
+        return std::any_of(problem.bodies.begin(),
+                           problem.bodies.end(),
+                           [&](const auto &body) {
+                             return body.shape->contains(x);
+                           }) ||
+               std::any_of(places.begin(),
+                           places.end(),
+                           [&](const auto &place) {
+                             return place.distance(x).value < 0;
+                           });
+      };
+      const auto   &grid = problem.grid;
+      unsigned long n    = 1;
+      for (const unsigned int cells : grid.cells)
+        n *= cells;
+      // from the last one on: what is empty is most often above
+      for (unsigned long cell = n; cell-- > 0;)
+        {
+          dealii::Point<dim> middle;
+          unsigned long      rest = cell;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              middle[d] =
+                grid.lower[d] + (rest % grid.cells[d] + 0.5) * grid.edge(d);
+              rest /= grid.cells[d];
+            }
+          if (!is_in_any(middle))
+            return false;
+        }
+      return true;
+    }
+
+
+
+    /**
+     * Solids may have less volume than at first; and what is pushed apart in a
+     * full box presses on all of it.
+     */
+    template <int dim>
+    void
+    read_density_control(const Section      &section,
+                         const Problem<dim> &problem,
+                         Body<dim>          &body)
+    {
+      const bool possible =
+        problem.method.integration == TimeIntegration::semi_implicit &&
+        std::all_of(problem.bodies.begin(),
+                    problem.bodies.end(),
+                    [](const auto &other) { return other.is_liquid; });
+      const bool automatic = section.text("Density control") == "auto";
+      body.density_control = !automatic ? section.number("Density control") :
+                             possible && !is_full(problem) ? density_control :
+                                                             0;
+      if (body.density_control > 0 && !possible)
+        throw InputError("The entry 'Density control' in " +
+                         section.where("Density control") +
+                         " is for a scene of liquids alone, with time "
+                         "integration 'semi-implicit'. Usually one of "
+                         "them was changed alone. Set 'Density control = "
+                         "auto'.");
+    }
+
+
+
+    /** Only with means over cells, of linear functions, clumps weigh more than
+     * they press. */
+    template <int dim>
+    void
+    read_particle_shifting(const Section      &section,
+                           const Problem<dim> &problem,
+                           Body<dim>          &body)
+    {
+      const bool possible = body.is_liquid &&
+                            body.treatment == Treatment::cell &&
+                            problem.grid.kernel == KernelKind::linear;
+      body.particle_shifting = section.text("Particle shifting") != "auto" ?
+                                 section.number("Particle shifting") :
+                               possible ? particle_shifting :
+                                          0;
+      if (body.particle_shifting > 0 && !possible)
+        throw InputError("The particle shifting " +
+                         section.text("Particle shifting") + " in " +
+                         section.where("Particle shifting") +
+                         " is for liquids with 'Locking treatment = cell' and "
+                         "'Kernel = linear'. Usually one of them was changed "
+                         "alone. Set 'Particle shifting = auto'.");
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  choose_spread_of_points(const Section &root, Problem<dim> &problem)
+  {
+    for (auto &body : problem.bodies)
+      {
+        const Section section = root.subsection("Body " + body.name);
+        read_density_control(section, problem, body);
+        read_particle_shifting(section, problem, body);
+      }
+  }
+
+
+
+  template void
+  choose_spread_of_points(const Section &, Problem<2> &);
+  template void
+  choose_spread_of_points(const Section &, Problem<3> &);
+} // namespace limber
