@@ -115,7 +115,11 @@ namespace limber
              "") +
           (figures.contact > 0 ? ", " + brief(figures.contact) +
                                    " J where bodies or sides are hit" :
-                                 "");
+                                 "") +
+          (figures.adaptation != 0 ?
+             ", " + brief(figures.adaptation) +
+               " J where points were joined or divided" :
+             "");
       line.entry = "Method/Courant number";
       return line;
     }

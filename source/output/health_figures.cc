@@ -206,6 +206,7 @@ namespace limber
     figures.plastic      = totals.plastic_work;
     figures.friction     = totals.friction_heat;
     figures.contact      = totals.contact_loss;
+    figures.adaptation   = totals.removed_by_adaptation;
     figures.sides        = totals.boundary_work;
     figures.loads        = totals.load_work;
     figures.may_hit =

@@ -217,6 +217,8 @@ namespace limber
       columns.push_back({"friction heat", "J"});
     if (may_part(problem))
       columns.push_back({"contact loss", "J"});
+    if (problem.adapts())
+      columns.push_back({"energy removed by adaptation", "J"});
 
     for (const Observable<dim> &observable : problem.observables)
       columns.push_back({observable.name, observable.kind->unit});
@@ -261,6 +263,8 @@ namespace limber
       row.push_back(totals.friction_heat);
     if (may_part(state.problem))
       row.push_back(totals.contact_loss);
+    if (state.problem.adapts())
+      row.push_back(totals.removed_by_adaptation);
     row.insert(row.end(), observed.begin(), observed.end());
     return row;
   }

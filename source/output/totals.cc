@@ -231,20 +231,21 @@ namespace limber
     RowSums<dim>      sums = sum_all(state);
     const Ledger<dim> ledger =
       state.ledger.sum_over_ranks(state.grid.communicator);
-    Totals<dim> totals          = totals_from(sums, state);
-    totals.lost_points          = ledger.lost_points;
-    totals.put_back             = ledger.put_back;
-    totals.put_back_way         = ledger.put_back_way;
-    totals.put_out              = ledger.put_out;
-    totals.dissipated           = ledger.viscous;
-    totals.removed_with_history = ledger.history;
-    totals.plastic_work         = ledger.plastic;
-    totals.friction_heat        = ledger.friction;
-    totals.contact_loss         = ledger.contact;
-    totals.boundary_work        = ledger.boundary_work;
-    totals.load_work            = ledger.load_work;
-    totals.side_impulse         = ledger.side_impulse;
-    totals.obstacles            = ledger.obstacles;
+    Totals<dim> totals           = totals_from(sums, state);
+    totals.lost_points           = ledger.lost_points;
+    totals.put_back              = ledger.put_back;
+    totals.put_back_way          = ledger.put_back_way;
+    totals.put_out               = ledger.put_out;
+    totals.dissipated            = ledger.viscous;
+    totals.removed_with_history  = ledger.history;
+    totals.plastic_work          = ledger.plastic;
+    totals.friction_heat         = ledger.friction;
+    totals.contact_loss          = ledger.contact;
+    totals.removed_by_adaptation = ledger.adaptation;
+    totals.boundary_work         = ledger.boundary_work;
+    totals.load_work             = ledger.load_work;
+    totals.side_impulse          = ledger.side_impulse;
+    totals.obstacles             = ledger.obstacles;
     start.energy_scale =
       std::max(start.energy_scale, energy_of_round_off(state.step));
     balance_energy(ledger, state, totals);
@@ -279,12 +280,12 @@ namespace limber
     // Differences from the start first: potentials can be large numbers.
     const double potential_change =
       all.gravitational_energy - start.gravitational_energy;
-    const double gain = (all.kinetic_energy - start.kinetic_energy) +
-                        (all.strain_energy - start.strain_energy) +
-                        potential_change + ledger.transfer + ledger.viscous +
-                        ledger.history + ledger.plastic + ledger.friction +
-                        ledger.contact + ledger.lost_energy -
-                        ledger.boundary_work - ledger.load_work;
+    const double gain =
+      (all.kinetic_energy - start.kinetic_energy) +
+      (all.strain_energy - start.strain_energy) + potential_change +
+      ledger.transfer + ledger.viscous + ledger.history + ledger.plastic +
+      ledger.friction + ledger.contact + ledger.adaptation +
+      ledger.lost_energy - ledger.boundary_work - ledger.load_work;
     start.energy_scale =
       std::max(start.energy_scale,
                all.kinetic_energy + std::abs(all.strain_energy) +

@@ -50,7 +50,7 @@ namespace limber
                        "Whether points that are finer than their cells become "
                        "one where that changes little: inside a body, in slow "
                        "and even motion and stress. The energy that goes is "
-                       "'energy removed with history'.");
+                       "'energy removed by adaptation'.");
     for (const std::string &name : refinements)
       {
         parameters.enter_subsection("Refine " + name);

@@ -244,6 +244,10 @@ namespace limber
           summary.adaptation.insert(summary.adaptation.end() - 1,
                                     {"points joined",
                                      double(adapted.points_joined)});
+        if (problem.grid.joins_points || problem.splits_stretched_points())
+          summary.adaptation.insert(summary.adaptation.end() - 1,
+                                    {"energy removed",
+                                     totals.removed_by_adaptation});
         if (grid.has_levels())
           summary.levels = adaptation.report();
       }

@@ -101,7 +101,7 @@ namespace limber
     double put_out = 0;
     // Taken or given on record
     double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
-           contact = 0, sides = 0, loads = 0;
+           contact = 0, adaptation = 0, sides = 0, loads = 0;
   };
 
 

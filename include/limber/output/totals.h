@@ -41,16 +41,17 @@ namespace limber
     BodyTotals<dim>              all;
     dealii::Tensor<1, dim>       centre_of_mass; // m
 
-    double dissipated           = 0; // by viscosity, J
-    double removed_with_history = 0; // with volumetric history or tension, J
-    double plastic_work         = 0; // on plastic strain, J
-    double friction_heat        = 0; // J
-    double contact_loss         = 0; // in impacts on bodies and sides, J
-    double removed_by_transfer  = 0; // between points and grid, J
-    double boundary_work        = 0; // done on the material, J
-    double load_work            = 0; // J
-    double energy_drift         = 0; // gain over the scale of energy
-    double momentum_error       = 0; // over the scale of momentum
+    double dissipated            = 0; // by viscosity, J
+    double removed_with_history  = 0; // with volumetric history or tension, J
+    double plastic_work          = 0; // on plastic strain, J
+    double friction_heat         = 0; // J
+    double contact_loss          = 0; // in impacts on bodies and sides, J
+    double removed_by_adaptation = 0; // where points were joined or divided, J
+    double removed_by_transfer   = 0; // between points and grid, J
+    double boundary_work         = 0; // done on the material, J
+    double load_work             = 0; // J
+    double energy_drift          = 0; // gain over the scale of energy
+    double momentum_error        = 0; // over the scale of momentum
     // Impulse of each side of the box on the material so far, kg m/s
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
     std::vector<ObstacleAction<dim>>            obstacles; // the same of each
@@ -89,12 +90,12 @@ namespace limber
   /**
    * Holds the present state against that at the start. The ledger knows what
    * the sides, obstacles, loads, damping transfers, viscosity, plastic flow,
-   * friction and lost points have done to energy and momentum; what it cannot
-   * account for is
+   * friction, adaptation and lost points have done to energy and momentum; what
+   * it cannot account for is
    *
    *   drift = (E - E_0) / scale,
    *   E = T + U + V + transfer + viscous + plastic + history + friction
-   *       + contact + lost - W_sides - W_loads
+   *       + contact + adaptation + lost - W_sides - W_loads
    *
    * with T kinetic, U strain and V gravitational energy: the error of the
    * integration in time and of points that cross cells, beyond round-off and

@@ -47,6 +47,7 @@ namespace limber
     double plastic       = 0; // work on plastic strain
     double friction      = 0; // turned into heat where bodies slide
     double contact       = 0; // lost where they touch, or land on a side
+    double adaptation    = 0; // removed where points were joined or divided
 
     // Body force formulas, face loads and damping
     dealii::Tensor<1, dim> load_impulse;
