@@ -106,6 +106,9 @@ namespace limber
     if (has_levels())
       triangulation.repartition();
     rebuild();
+    // Refinement and numbering need for a while twice what stays. What adapts
+    // needs it again.
+    malloc_trim(0);
   }
 
 
@@ -137,8 +140,6 @@ namespace limber
         cubics = find_cubic_cells(*this);
         set_inward_vertices(*this, vertices);
       }
-    // Refinement and numbering need for a while twice what stays.
-    malloc_trim(0);
   }
 
 
@@ -431,6 +432,17 @@ namespace limber
     vertices.masters.clear();
     if (dealii::Utilities::MPI::max(vertices.hanging.size(), communicator) == 0)
       return;
+    if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
+      {
+        for (const HangingNode &hanging : vertices.hanging)
+          for (const auto &[master, weight] : hanging.masters)
+            vertices.masters.push_back(master);
+        std::sort(vertices.masters.begin(), vertices.masters.end());
+        vertices.masters.erase(std::unique(vertices.masters.begin(),
+                                           vertices.masters.end()),
+                               vertices.masters.end());
+        return;
+      }
     constexpr unsigned int hangs = 1 + dim, leads = 2 + dim, stride = 3 + dim;
     LazyArray<double>      values(vertices.n() * stride);
     for (const auto &[node, place] : vertices.places)

@@ -25,6 +25,20 @@ namespace limber
     // steps, when ranks have waited for that long for the one with most points.
     constexpr double steps_to_balance = 200;
 
+    // So many bytes for empty cells are worth a line.
+    constexpr double worth_telling = 2e8;
+
+    // Points of a full cell
+    template <int dim>
+    double
+    number_of_points(const std::array<unsigned int, dim> &per_edge)
+    {
+      double result = 1;
+      for (const unsigned int n : per_edge)
+        result *= n;
+      return result;
+    }
+
     // A step shorter than this share of the first one will never arrive.
     constexpr double smallest_step = 1e-6;
 
@@ -78,6 +92,25 @@ namespace limber
          << integrator->longest_step() << " s, to end time " << problem.end_time
          << " s";
     console.say(text.str());
+
+    // Empty cells take no time, but they may take most of the memory.
+    if (grid.has_levels())
+      return;
+    double filled = 0;
+    for (const auto &body : bodies)
+      filled += body->points.n_global() /
+                number_of_points<dim>(body->description.points_per_cell_edge);
+    const auto all_ranks = [&](const double bytes) {
+      return dealii::Utilities::MPI::sum(bytes, communicator);
+    };
+    const double all  = all_ranks(resident_memory());
+    const double room = all_ranks(memory_with_grid - memory_of_program) *
+                        (1 - std::min(1., filled / totals.cells));
+    if (room > worth_telling && room > 0.5 * all)
+      console.say("Empty cells of the box take " + brief(room / 1e6) +
+                  " of the " + brief(all / 1e6) +
+                  " MB of memory, and no time: 'limber advise' says how "
+                  "'Grid/Levels' makes them coarse.");
   }
 
 
@@ -362,7 +395,7 @@ namespace limber
             kept[b].insert(piece.carrier);
 
     const bool changed = adaptation.adapt(state.time, kept);
-    state.ledger.history += adaptation.energy_removed();
+    state.ledger.adaptation += adaptation.energy_removed();
     if (!changed)
       return;
     integrator->reinit();

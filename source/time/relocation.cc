@@ -161,12 +161,14 @@ namespace limber
 
 
 
-  // Fine cells without points do not limit the step.
+  // Fine cells without points do not limit the step. Most often the first cell
+  // looked at is a finest one.
   template <int dim>
   double
   Relocation<dim>::find_largest_inverse_edge() const
   {
-    double result = 0;
+    const double largest = 1 / parts.grid.smallest_edge;
+    double       result  = 0;
     for (const auto &body : parts.bodies)
       {
         const PointView<dim> points = body->points.view();
@@ -175,7 +177,11 @@ namespace limber
               (p == 0 || points.cell[p] != points.cell[p - 1]))
             for (const double inverse :
                  parts.grid.geometry[points.cell[p]].inverse_edge)
-              result = std::max(result, inverse);
+              {
+                result = std::max(result, inverse);
+                if (result > (1 - 1e-10) * largest)
+                  return largest;
+              }
       }
     return result;
   }
