@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/adaptation/cell_values.h>
 #include <limber/adaptation/joining.h>
+#include <limber/points/single_point.h>
 
 #include <algorithm>
 #include <numeric>
+#include <unordered_map>
 
 namespace limber
 {
@@ -231,14 +233,20 @@ namespace limber
   {
     if (sets.empty())
       return 0;
-    const auto strain_energy = [&]() {
-      return body.stress->summarize(body.points.view()).strain_energy;
+    const auto strain_energy = [&](const std::size_t p) {
+      return body.stress->summarize(only(body.points.view(), p)).strain_energy;
     };
-    const double         strain  = strain_energy();
-    const PointView<dim> points  = body.points.view();
-    double               kinetic = 0;
-    for (const Set &set : sets)
+    const PointView<dim> points = body.points.view();
+    // Set by set: of all points together the difference would be round-off.
+    std::vector<double>                            strain(sets.size(), 0.);
+    std::unordered_map<std::uint64_t, std::size_t> set_of; // by its first one
+    double                                         kinetic = 0;
+    for (std::size_t s = 0; s < sets.size(); ++s)
       {
+        const Set &set = sets[s];
+        set_of.emplace(body.points.id(set[0]), s);
+        for (const std::size_t p : set)
+          strain[s] += strain_energy(p);
         dealii::Tensor<1, dim> momentum;
         double                 mass = 0;
         for (const std::size_t p : set)
@@ -255,7 +263,11 @@ namespace limber
             }
       }
     body.points.join(sets);
-    return kinetic + (strain - strain_energy());
+    for (std::size_t p = 0; p < body.points.size(); ++p)
+      if (const auto found = set_of.find(body.points.id(p));
+          found != set_of.end())
+        strain[found->second] -= strain_energy(p);
+    return std::accumulate(strain.begin(), strain.end(), kinetic);
   }
 
 

@@ -2,6 +2,7 @@
 #include <limber/base/text.h>
 #include <limber/output/health_figures.h>
 #include <limber/points/shape_volume.h>
+#include <limber/points/single_point.h>
 
 #include <algorithm>
 
@@ -62,32 +63,6 @@ namespace limber
       body.overlap       = volume / body.volume;
       body.overlaps_with = other.name;
       body.overlap_place = centre_of<dim>(moment, volume);
-    }
-
-
-
-    /** The arrays of point p alone. */
-    template <int dim>
-    PointView<dim>
-    only(const PointView<dim> &points, const std::size_t p)
-    {
-      PointView<dim> one  = points;
-      one.size            = 1;
-      const auto move_all = [p](auto &arrays) {
-        for (auto &array : arrays)
-          if (array != nullptr)
-            array += p;
-      };
-      move_all(one.position);
-      move_all(one.velocity);
-      move_all(one.deviator);
-      move_all(one.history);
-      move_all(one.affine);
-      one.mass += p;
-      one.pressure += p;
-      one.volumetric += p;
-      one.cell += p;
-      return one;
     }
   } // namespace
 
