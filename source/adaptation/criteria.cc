@@ -331,7 +331,7 @@ namespace limber
     for (const Body<dim> &body : problem.bodies)
       if (fine.count(body.name) == 0)
         return 1;
-    return 3;
+    return dim == 2 ? 6 : 3;
   }
 
 

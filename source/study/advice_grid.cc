@@ -264,7 +264,7 @@ namespace limber
     cells_with_levels(const Problem<dim> &problem, const unsigned int levels)
     {
       // the rim on both sides, and what has not been joined yet
-      constexpr double around = 18;
+      constexpr double around = dim == 2 ? 30 : 18;
       double           cells  = number_of_cells(problem.grid);
       for (unsigned int n = 0; n < levels; ++n)
         cells /= 1 << dim;

@@ -12,10 +12,10 @@ namespace limber
 {
   /**
    * How many pairs of fine cells lie around what moving refinements ask for.
-   * One, as points that come to lie in the rim are split; but three where the
-   * refinements want all bodies fine wherever they are: then nothing but room
-   * becomes fine, which costs memory alone, and the mesh has to change less
-   * often.
+   * One, as points that come to lie in the rim are split; but six (three in
+   * space) where the refinements want all bodies fine wherever they are: then
+   * nothing but room becomes fine, which costs memory alone, and the mesh has
+   * to change less often.
    */
   template <int dim>
   unsigned int
