@@ -95,14 +95,16 @@ namespace limber
   bool
   Adaptation<dim>::adapt_mesh(const double time, const KeptPoints &kept)
   {
-    // A cell is joined again only when nothing has wanted it twice in a row.
+    // A cell is joined again only when nothing has wanted it twice in a row;
+    // what is left behind in empty room, at once.
     RefinedCells<dim>       mesh    = wanted_mesh(problem, grid, bodies, time);
     const RefinedCells<dim> present = grid.divided_cells();
     RefinedCells<dim>       held    = grid.no_divided_cells();
     held.set(memory.wanted);
     held.keep_common(present);
     memory.wanted = mesh.numbers();
-    mesh.join(held);
+    if (rim_pairs(problem) == 1)
+      mesh.join(held);
     mesh.grade(0);
 
     const bool split   = split_points(mesh, kept);
