@@ -304,7 +304,9 @@ namespace limber
                                      pace.speed);
         what.shift =
           body->cell_shift.size() > 0 ? body->cell_shift.data() : nullptr;
-        what.volume_shares = shares_of(*body);
+        what.volume_shares = body->strain_shares.size() > 0 ?
+                               body->strain_shares.data() :
+                               shares_of(*body);
         what.uniform_divergence =
           description.is_liquid && body->implicit.has_value();
         CellPressures pressures;

@@ -17,6 +17,9 @@ namespace limber
     // degrees.
     constexpr double least_cosine = 0.995;
 
+    // A surface lies across an axis where the cosine of its normal is larger.
+    constexpr double across_axis = 1 - 1e-5;
+
     // What of a part of a cell is nothing
     constexpr double nothing = 1e-3;
 
@@ -104,15 +107,60 @@ namespace limber
     for_each_open_simplex(distances, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    if (cell.open < least_share)
+    if (cell.open <
+        (is_layer(number, distances) ? least_of_layer : least_share))
       {
-        kinds[number] = cell.open > 0 ? closed : covered;
+        kinds[number] = !(cell.open > 0)        ? covered :
+                        cell.open < least_share ? closed_to_a_rest :
+                                                  closed;
         return;
       }
     finish_volume(cell);
     kinds[number] = first_cut + static_cast<std::uint32_t>(cells.size());
     cells.push_back(std::move(cell));
     distances_of_cells.push_back(distances);
+  }
+
+
+
+  // Whether most of the surface lies across the axes, as that of boxes does.
+  template <int dim>
+  bool
+  CutCells<dim>::is_layer(const std::uint32_t cell,
+                          const Distances    &distances) const
+  {
+    const auto &inverse_edge = parts.grid.geometry[cell].inverse_edge;
+    double      across = 0, all = 0; // m^(dim-1)
+    for_each_open_simplex(distances, [&](const Simplex &simplex) {
+      for (unsigned int opposite = 0; opposite <= dim; ++opposite)
+        {
+          std::array<dealii::Point<dim>, dim> facet; // m
+          bool                                is_bound = true;
+          for (unsigned int k = 0, n = 0; k <= dim; ++k)
+            if (k != opposite)
+              {
+                is_bound = is_bound && simplex.distance[k] == 0;
+                for (unsigned int d = 0; d < dim; ++d)
+                  facet[n][d] = simplex.corners[k][d] / inverse_edge[d];
+                ++n;
+              }
+          if (!is_bound)
+            continue;
+          Vector normal;
+          if constexpr (dim == 2)
+            normal = dealii::cross_product_2d(facet[1] - facet[0]);
+          else
+            normal = 0.5 * dealii::cross_product_3d(facet[1] - facet[0],
+                                                    facet[2] - facet[0]);
+          double largest = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            largest = std::max(largest, std::abs(normal[d]));
+          all += normal.norm();
+          if (largest > across_axis * normal.norm())
+            across += normal.norm();
+        }
+    });
+    return across > 0.5 * all;
   }
 
 

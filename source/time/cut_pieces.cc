@@ -12,9 +12,8 @@ namespace limber
 {
   namespace
   {
-    // What is one piece of the surfaces in a cell where the pressure is
-    // implicit: where the normal of the next is within some 37 degrees of the
-    // mean of those before.
+    // What is one piece of the surfaces in a cell: where the normal of the next
+    // is within some 37 degrees of the mean of those before.
     constexpr double least_cosine_of_piece = 0.8;
   } // namespace
 
@@ -60,7 +59,8 @@ namespace limber
 
 
   // The pressures of several surfaces that turn little in a cell would hardly
-  // be told apart by the few nodes there: implicit ones are one.
+  // be told apart by the few nodes there: implicit ones are one. So are the
+  // moments of the flow through them (SmoothSurfaces).
   template <int dim>
   void
   CutCells<dim>::find_pieces(Cell &cell) const
@@ -72,12 +72,6 @@ namespace limber
       double             area = 0;
       unsigned int       obstacle;
     };
-    if (!is_implicit)
-      {
-        for (unsigned int s = 0; s < cell.surfaces.size(); ++s)
-          cell.surfaces[s].piece = s;
-        return;
-      }
     std::vector<Piece> pieces;
     for (Surface &surface : cell.surfaces)
       {
@@ -97,6 +91,8 @@ namespace limber
         piece->place += surface.area * surface.place;
         piece->area += surface.area;
       }
+    if (!is_implicit) // the flat ones have pressures of their own
+      return;
     for (Surface &surface : cell.surfaces)
       surface.beyond =
         parts.problem.loads.gravity *

@@ -60,6 +60,13 @@ namespace limber
       }
     if (parts.problem.has_rigid_contact())
       obstacles.emplace(parts, cut_cells ? &*cut_cells : nullptr, leapfrogs());
+    if (cut_cells && parts.nodes.n_fields() == 1 &&
+        std::all_of(parts.bodies.begin(),
+                    parts.bodies.end(),
+                    [](const auto &body) {
+                      return body->description.is_liquid;
+                    }))
+      surfaces.emplace(parts, *cut_cells);
     if (filters_velocity(parts.problem.method.transfer))
       full_mass.emplace(parts.grid, boundaries);
     find_speeds();
@@ -112,6 +119,8 @@ namespace limber
       cut_cells->reinit(time);
     if (obstacles)
       obstacles->reinit();
+    if (surfaces)
+      surfaces->reinit();
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
     liquid_means.reinit();

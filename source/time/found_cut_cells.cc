@@ -13,10 +13,6 @@ namespace limber
 {
   namespace
   {
-    // Share of a cell below which it counts as closed, where the pressure is
-    // implicit
-    constexpr double least_of_implicit = 0.01;
-
     // In diagonals of a cell: where what moves is further off, neither the cell
     // nor those around, which may be twice as large, have anything of it.
     constexpr double far_off = 6;
@@ -78,9 +74,11 @@ namespace limber
       if (body->description.is_liquid &&
           body->stress->treatment().kind != Treatment::cell)
         knowing[body->description.nodal_field] = false;
-    least_share = is_implicit ?
-                    least_of_implicit :
-                    std::max(0.15, courant_number() * courant_number() / 4);
+    if (!is_implicit)
+      {
+        stiff_share    = courant_number() * courant_number() / 4;
+        least_of_layer = std::max(0.15, stiff_share);
+      }
     reinit(0);
   }
 

@@ -62,6 +62,11 @@ namespace limber
         {
           body->volume_shares.reinit(parts.grid.n_cells());
           std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
+          if (cut_cells && !group.is_implicit)
+            {
+              body->strain_shares.reinit(parts.grid.n_cells());
+              std::fill_n(body->strain_shares.data(), parts.grid.n_cells(), 1.);
+            }
         }
     if (std::any_of(groups.begin(), groups.end(), [](const Group &group) {
           return group.fills_cells;
@@ -133,6 +138,14 @@ namespace limber
     if (group.fills_cells && !in_cell.empty() && !is_covered(cell) &&
         !holds(group.solids, cell))
       fill(group, cell);
+    if (cut_cells && !group.is_implicit)
+      for (const Part &part : in_cell)
+        {
+          double &of_force = part.body->volume_shares[cell];
+          if (!cut_cells->has_room(cell))
+            of_force = 0;
+          part.body->strain_shares[cell] = cut_cells->softness(cell) * of_force;
+        }
   }
 
 

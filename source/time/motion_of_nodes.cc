@@ -216,6 +216,8 @@ namespace limber
   {
     const double lost_share =
       -std::expm1(-parts.problem.method.damping_rate * step);
+    if (surfaces)
+      surfaces->account(velocity_after);
     const bool loaded = loads.any();
     if (!loaded && lost_share == 0)
       return;
@@ -243,6 +245,18 @@ namespace limber
         }
     });
     lap(Verb::add_loads);
+  }
+
+
+
+  // Before obstacles act: by what the velocities before the step ask for.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::smooth_surfaces(const double share)
+  {
+    if (surfaces && share > 0)
+      surfaces->apply(boundaries, time, step, share);
+    lap(Verb::touch);
   }
 
 
@@ -581,6 +595,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::account_loads(unsigned int);
   template void
+  ExplicitIntegrator<2>::smooth_surfaces(double);
+  template void
   ExplicitIntegrator<2>::exchange_between_bodies();
   template void
   ExplicitIntegrator<2>::apply_boundaries();
@@ -628,6 +644,8 @@ namespace limber
   ExplicitIntegrator<3>::check_nodes();
   template void
   ExplicitIntegrator<3>::account_loads(unsigned int);
+  template void
+  ExplicitIntegrator<3>::smooth_surfaces(double);
   template void
   ExplicitIntegrator<3>::exchange_between_bodies();
   template void

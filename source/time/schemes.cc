@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/explicit_integrator.h>
 
+#include <algorithm>
+#include <cmath>
+
 /**
  * @file The schemes of an explicit step: the order of its verbs. They differ in
  * when the stress follows the motion, and in whose velocity strains the
@@ -208,6 +211,7 @@ namespace limber
     damp();
     add_loads();
     advance_nodes();
+    smooth_surfaces(share_of_smoothing());
     exchange_between_bodies();
     apply_boundaries();
     interpolate_hanging();
@@ -245,10 +249,27 @@ namespace limber
 
 
 
+  // What would grow does so by gravity. With a tenth of this, water at rest
+  // around a disc on 32 x 48 cells has seven times the energy; without a limit
+  // the water that slips along a disc that moves is held.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::share_of_smoothing() const
+  {
+    return std::min(1.,
+                    50 * step *
+                      std::sqrt(parts.problem.loads.gravity.norm() /
+                                parts.grid.smallest_edge));
+  }
+
+
+
   template void
   ExplicitIntegrator<2>::do_scheme();
   template double
   ExplicitIntegrator<2>::square_of_strain() const;
+  template double
+  ExplicitIntegrator<2>::share_of_smoothing() const;
   template bool
   ExplicitIntegrator<2>::leapfrogs() const;
   template bool
@@ -257,6 +278,8 @@ namespace limber
   ExplicitIntegrator<3>::do_scheme();
   template double
   ExplicitIntegrator<3>::square_of_strain() const;
+  template double
+  ExplicitIntegrator<3>::share_of_smoothing() const;
   template bool
   ExplicitIntegrator<3>::leapfrogs() const;
   template bool

@@ -64,10 +64,7 @@ namespace limber
                                            return !body->description.is_liquid;
                                          })))
     , lightest_solid(lightest_solid_of(parts))
-  {
-    if (Base::cut_cells)
-      surfaces.emplace(parts, *Base::cut_cells);
-  }
+  {}
 
 
 
@@ -77,8 +74,6 @@ namespace limber
   {
     Base::reinit();
     pressure.reinit();
-    if (surfaces)
-      surfaces->reinit();
     hourglass.reinit(std::size_t(this->parts.nodes.table.n()) * dim);
   }
 
@@ -112,8 +107,7 @@ namespace limber
     this->damp();
     this->add_loads();
     this->advance_nodes();
-    if (surfaces)
-      surfaces->apply(this->boundaries, this->time, this->step);
+    this->smooth_surfaces(1);
     solve_pressure();
     this->exchange_between_bodies();
     this->apply_boundaries();
@@ -304,8 +298,6 @@ namespace limber
   SemiImplicitIntegrator<dim>::account(const unsigned int velocity_after)
   {
     this->account_loads(velocity_after);
-    if (surfaces)
-      surfaces->account(velocity_after);
     pressure.account(this->step, velocity_after);
     for (const std::uint32_t node : this->parts.nodes.active_nodes())
       if (this->parts.nodes.owns(node))

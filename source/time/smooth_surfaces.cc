@@ -65,7 +65,8 @@ namespace limber
   void
   SmoothSurfaces<dim>::apply(BoundaryConditions<dim> &boundaries,
                              const double             time,
-                             const double             step)
+                             const double             step,
+                             const double             share)
   {
     held.assign(std::size_t(parts.nodes.table.n()) * dim, 0);
     boundaries.for_each_held(parts.nodes,
@@ -76,7 +77,7 @@ namespace limber
                                held[std::size_t(node) * dim + d] = 1;
                              });
     find_moments();
-    damp(time, step);
+    damp(time, step, share);
   }
 
 
@@ -142,7 +143,9 @@ namespace limber
 
   template <int dim>
   void
-  SmoothSurfaces<dim>::damp(const double time, const double step)
+  SmoothSurfaces<dim>::damp(const double time,
+                            const double step,
+                            const double share)
   {
     const NodalFields<dim> &nodes = parts.nodes;
     for (const std::uint32_t node : nodes.active_nodes())
@@ -159,7 +162,7 @@ namespace limber
                         ObstaclePlace<dim>(obstacle, time + step));
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
-        damp_once(ways, step);
+        damp_once(ways, step, share);
         exchange.start(nodes.node_plan(), records.data(), of_pass, weight);
         exchange.finish(records.data());
         for (const std::uint32_t node : nodes.active_nodes())
@@ -179,7 +182,9 @@ namespace limber
   // linear in the place, as the functions of the nodes are.
   template <int dim>
   void
-  SmoothSurfaces<dim>::damp_once(const Ways &ways, const double step)
+  SmoothSurfaces<dim>::damp_once(const Ways  &ways,
+                                 const double step,
+                                 const double share)
   {
     const NodalFields<dim> &nodes = parts.nodes;
     double                  given = 0; // by obstacles that move, J
@@ -217,7 +222,7 @@ namespace limber
         ObstacleAction<dim> &action = parts.ledger.obstacles[moment.obstacle];
         for (unsigned int a = 0; a < n_nodes; ++a)
           {
-            const Vector impulse = -sum / scale * moment.entries[a];
+            const Vector impulse = -share * sum / scale * moment.entries[a];
             action.impulse += impulse;
             action.moment += moment_of<dim>(arms[a], impulse);
             given += impulse * of_wall[a];

@@ -62,6 +62,9 @@ namespace limber
     // cell (LiquidMeans), where the pressure is implicit without what the
     // system has found; empty for all other bodies
     LazyArray<double> volume_shares = {};
+    // The same, less where a cell has too little room beside an obstacle for
+    // the step (CutCells::softness); empty where that may not be
+    LazyArray<double> strain_shares = {};
     // Of an implicit pressure, by cell; only where the body has one
     std::optional<ImplicitFields> implicit = {};
 

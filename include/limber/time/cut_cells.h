@@ -25,7 +25,8 @@ namespace limber
    * by the same pressure on the surface, at every node. What a pressure that
    * grows with the depth adds to that is known as well, see Cell::hydrostatic.
    *
-   * A cell that is open by less than least_open() counts as closed.
+   * A cell that is open by less than least_open() counts as closed, a layer
+   * across an axis by less than least_open_layer().
    * Faces towards such cells are surfaces of others that are cut; else their
    * nodes are held by the points that touch. Theory: doc/theory/obstacles.md.
    */
@@ -86,14 +87,32 @@ namespace limber
       return knowing[field];
     }
 
-    /** Share of a cell: where less is open it counts as closed. As thin layers
-     * are stiff C^2 / 4, with the Courant number C, and at least .15, as water
-     * that passes the corner of a thin layer is held too much; .01 where the
-     * pressure is implicit. */
+    /** Share of a cell: where less is open it counts as closed. */
     double
     least_open() const
     {
       return least_share;
+    }
+
+    /** The same where the surface lies across an axis, so that the faces of
+     * cells do for it: more with an explicit pressure, as water that passes the
+     * corner of a thin layer is held too much. */
+    double
+    least_open_layer() const
+    {
+      return least_of_layer;
+    }
+
+    /** What the pressure in a cell answers its dilation with, over that in any
+     * other: less where so little is open that it would be too stiff for the
+     * step, as if C^2 / 4 were open. */
+    double
+    softness(const std::uint32_t number) const
+    {
+      const Cell *const of_cell = cell(number);
+      return of_cell && of_cell->open < stiff_share ?
+               of_cell->open / stiff_share :
+               1;
     }
 
     /** Adopt a mesh at a time; collective. */
@@ -136,14 +155,22 @@ namespace limber
     bool
     is_covered(const std::uint32_t number) const
     {
-      return kinds[number] == covered || kinds[number] == closed;
+      return kinds[number] == covered || is_closed(number);
     }
 
     /** Whether they leave a rest that counts as closed. */
     bool
     is_closed(const std::uint32_t number) const
     {
-      return kinds[number] == closed;
+      return kinds[number] == closed || kinds[number] == closed_to_a_rest;
+    }
+
+    /** Whether what is in a cell, if anything, has room to press on anything.
+     */
+    bool
+    has_room(const std::uint32_t number) const
+    {
+      return kinds[number] != covered && kinds[number] != closed_to_a_rest;
     }
 
     /** By vertex, of which cells that obstacles take it is a corner: the sum
@@ -194,7 +221,8 @@ namespace limber
     {
       open,
       covered,
-      closed, // but for a rest
+      closed, // but for a layer
+      closed_to_a_rest,
       first_cut
     };
 
@@ -225,6 +253,8 @@ namespace limber
     is_as_before(std::uint32_t cell, const Places &places);
     void
     look_at(std::uint32_t cell, const Places &places);
+    bool
+    is_layer(std::uint32_t cell, const Distances &distances) const;
     void
     find_surfaces(Cell            &cell,
                   const Distances &distances,
@@ -275,11 +305,15 @@ namespace limber
     // those around when cells were last found
     std::vector<char> is_untouched;
     // Of the cells that are being found anew, in their order
-    std::vector<Distances> distances_of_cells;
-    const bool             is_implicit; // the pressure
-    double                 least_share = 0;
-    bool                   any_cut     = false;
-    unsigned int           times_found = 0;
+    std::vector<Distances>  distances_of_cells;
+    const bool              is_implicit; // the pressure
+    static constexpr double least_share    = 0.01;
+    double                  least_of_layer = least_share;
+    // Below it a cell is too stiff for the step: C^2 / 4, with the Courant
+    // number C; 0 where the pressure is implicit
+    double       stiff_share = 0;
+    bool         any_cut     = false;
+    unsigned int times_found = 0;
   };
 } // namespace limber
 

@@ -11,6 +11,7 @@
 #include <limber/time/obstacle_contact.h>
 #include <limber/time/particle_shifting.h>
 #include <limber/time/relocation.h>
+#include <limber/time/smooth_surfaces.h>
 #include <limber/time/stabilization.h>
 
 #include <array>
@@ -109,6 +110,8 @@ namespace limber
     accelerate_nodes();
     double
     square_of_strain() const;
+    double
+    share_of_smoothing() const;
 
     // Sweeps: sums over points are complete on all ranks when they are done
     void
@@ -147,6 +150,8 @@ namespace limber
     add_loads();
     void
     advance_nodes();
+    void
+    smooth_surfaces(double share);
     void
     measure_nodes();
     void
@@ -228,6 +233,7 @@ namespace limber
     std::optional<Contact<dim>> contact; // of bodies that may part
     // Where the scene has any, or sides that meet surfaces
     std::optional<ObstacleContact<dim>> obstacles;
+    std::optional<SmoothSurfaces<dim>>  surfaces; // in cells that these cut
     Stabilization<dim>                  stabilization;
     Relocation<dim>                     relocation;
     ParticleShifting<dim>               shifting;

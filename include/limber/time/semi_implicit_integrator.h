@@ -4,7 +4,6 @@
 
 #include <limber/time/explicit_integrator.h>
 #include <limber/time/implicit_pressure.h>
-#include <limber/time/smooth_surfaces.h>
 
 namespace limber
 {
@@ -62,11 +61,10 @@ namespace limber
     double
     energy_of_points() const;
 
-    ImplicitPressure<dim>              pressure;
-    std::optional<SmoothSurfaces<dim>> surfaces; // where obstacles cut cells
-    LazyArray<double> hourglass; // forces by node and component, N
-    const bool        viscosity_acts;
-    const bool        remaps; // for solids and viscous liquids
+    ImplicitPressure<dim> pressure;
+    LazyArray<double>     hourglass; // forces by node and component, N
+    const bool            viscosity_acts;
+    const bool            remaps; // for solids and viscous liquids
     // Its density, kg/m^3; 0 where the pressure of some solid is explicit
     const double lightest_solid;
   };

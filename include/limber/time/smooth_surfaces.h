@@ -10,12 +10,12 @@
 namespace limber
 {
   /**
-   * Liquids at surfaces of obstacles that run across cells, where the pressure
-   * is implicit: the mean flow through each piece of surface is held by its
-   * pressure (PressureSurfaces), but what alternates along the surface is not,
-   * as the nodes are as many as the pieces. It would grow, as what sinks into
-   * the obstacle makes the nodes there heavier. So the first moments of the
-   * relative normal velocity over each piece
+   * Liquids at surfaces of obstacles that run across cells: the mean flow
+   * through each piece of surface is held by its impulse or pressure
+   * (ObstacleContact, PressureSurfaces), but what alternates along the surface
+   * is not, as the nodes are as many as the pieces. It would grow, as what
+   * sinks into the obstacle makes the nodes there heavier. So the first moments
+   * of the relative normal velocity over each piece
    *
    *   b_k = int (v - v_o) . n t_k . (x - x_s) dS = sum_i A_ki . (v_i -
    * v_o(x_i))
@@ -26,7 +26,8 @@ namespace limber
    *   d_k = sum_i |A_ki|/m_i sum_l |A_li|
    *
    * over all moments l at the node: some steps of Jacobi's method that do not
-   * overshoot. Nothing happens at rest.
+   * overshoot. Nothing happens at rest. Explicit steps take a share of it, the
+   * shorter they are the less. Cells with corners that hang are left alone.
    */
   template <int dim>
   class SmoothSurfaces
@@ -40,11 +41,15 @@ namespace limber
 
     /**
      * Change new velocities and increments of nodes by what the velocities
-     * before the step ask for, but for components that sides hold at its end.
+     * before the step ask for, a @p share of it, but for components that sides
+     * hold at its end.
      * Collective.
      */
     void
-    apply(BoundaryConditions<dim> &boundaries, double time, double step);
+    apply(BoundaryConditions<dim> &boundaries,
+          double                   time,
+          double                   step,
+          double                   share);
 
     /** Put on record what the impulses of the step have taken from the points,
      * which work with the mean of the velocities before and after it. */
@@ -69,11 +74,11 @@ namespace limber
     void
     add(const typename CutCells<dim>::Cell &cell);
     void
-    damp(double time, double step);
+    damp(double time, double step, double share);
     /** Of each obstacle, at the ends of the step. */
     using Ways = std::vector<std::pair<ObstaclePlace<dim>, ObstaclePlace<dim>>>;
     void
-    damp_once(const Ways &ways, double step);
+    damp_once(const Ways &ways, double step, double share);
     void
     push_nodes();
 
