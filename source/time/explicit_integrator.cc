@@ -147,9 +147,8 @@ namespace limber
     lap(Verb::stabilize);
     control_chequerboards();
     do_scheme();
-    const bool put_out =
-      obstacles && obstacles->put_out(time, step, extremes.displacement);
-    relocation.end_step(extremes, put_out);
+    relocation.end_step(extremes,
+                        obstacles ? obstacles->put_out(time, step) : 0);
     shifting.follow(extremes.displacement);
     wave_speed  = std::sqrt(extremes.wave_squared);
     point_speed = std::sqrt(extremes.speed_squared);

@@ -21,10 +21,8 @@ namespace limber
 
 
   template <int dim>
-  bool
-  ObstacleContact<dim>::put_out(const double time,
-                                const double step,
-                                double      &displacement)
+  double
+  ObstacleContact<dim>::put_out(const double time, const double step)
   {
     std::vector<Way> ways;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
@@ -57,9 +55,7 @@ namespace limber
         });
       }
     parts.ledger.put_out += n;
-    // in which case it is on the way to where it is now as well
-    displacement += longest / parts.grid.smallest_edge;
-    return n > 0;
+    return longest / parts.grid.smallest_edge;
   }
 
 
@@ -179,8 +175,8 @@ namespace limber
 
 
 
-  template bool
-  ObstacleContact<2>::put_out(double, double, double &);
-  template bool
-  ObstacleContact<3>::put_out(double, double, double &);
+  template double
+  ObstacleContact<2>::put_out(double, double);
+  template double
+  ObstacleContact<3>::put_out(double, double);
 } // namespace limber

@@ -122,6 +122,7 @@ namespace limber
 
   // The change of velocity is known along orthogonal directions, impulses act
   // along normals: from the last one on, each has parts along those before.
+  // Nothing pulls.
   template <int dim>
   std::vector<double>
   PressureSystem<dim>::impulses_on_nodes(const double step) const
@@ -149,7 +150,8 @@ namespace limber
             const double    across  = change[i] / one.along[i];
             for (unsigned int k = 0; k < i; ++k)
               change[k] -= across * (contact.normal * one.directions[k]);
-            result[one.contacts[i]] = record[Layout::mass] * across;
+            result[one.contacts[i]] =
+              record[Layout::mass] * std::max(0., across);
           }
       }
     return result;

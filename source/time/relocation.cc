@@ -209,7 +209,7 @@ namespace limber
                            &extremes.displacement,
                            &extremes.largest_mass,
                            &any_lost,
-                           &any_moved_again,
+                           &farthest_again,
                            &any_entered_shared,
                            &any_entered_ghosts,
                            &most_points,
@@ -239,12 +239,13 @@ namespace limber
 
   template <int dim>
   void
-  Relocation<dim>::end_step(StepExtremes &extremes, const bool moved_again)
+  Relocation<dim>::end_step(StepExtremes &extremes, const double moved_again)
   {
-    any_moved_again = moved_again ? 1 : 0;
+    farthest_again = moved_again;
     if (n_batches > n_batches_sorted)
       excess_batches += n_batches - n_batches_sorted;
     reduce(extremes);
+    extremes.displacement += farthest_again;
     if (any_lost > 0)
       {
         put_back(parts);
@@ -261,7 +262,7 @@ namespace limber
     complete_sums(parts.bodies,
                   &MaterialBody<dim>::cell_sums,
                   parts.nodes.cell_plan());
-    if (any_moved_again > 0)
+    if (farthest_again > 0)
       gather_cells();
     travelled += extremes.displacement;
   }

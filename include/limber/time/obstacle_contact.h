@@ -162,12 +162,11 @@ namespace limber
      * Put points of liquids that a step has left inside an obstacle, as the
      * surfaces in cells hold the mean flow only, back onto its surface, and
      * take what of their velocity goes into it: the impact of a point, which is
-     * on record in the ledger. @p displacement (in cells) grows by the longest
-     * way. Returns whether there were any on this rank, whose sums of cells are
-     * then out of date.
+     * on record in the ledger. Returns the longest way on this rank in cells, 0
+     * where there was none: otherwise the sums of cells are out of date.
      */
-    bool
-    put_out(double time, double step, double &displacement);
+    double
+    put_out(double time, double step);
 
   private:
     using Layout = NodeLayout<dim>;

@@ -52,10 +52,11 @@ namespace limber
     /**
      * After the points have moved: the extremes over all ranks, losses, cells
      * that were entered, and the complete sums of the new places; where any
-     * were @p moved_again since they were added to these, of all points anew.
+     * have @p moved_again since they were added to these, so far in cells, of
+     * all points anew.
      */
     void
-    end_step(StepExtremes &extremes, bool moved_again = false);
+    end_step(StepExtremes &extremes, double moved_again = 0);
 
     /** See Integrator; the last step has moved points so far, in cells. */
     bool
@@ -113,7 +114,7 @@ namespace limber
 
     // Over all ranks
     double any_lost            = 0;
-    double any_moved_again     = 0;
+    double farthest_again      = 0; // in cells
     double any_entered_shared  = 0;
     double any_entered_ghosts  = 0;
     double most_points         = 0; // on one rank
