@@ -93,8 +93,7 @@ namespace limber
         "C, dimensionless: points of a liquid that have gathered move apart by "
         "C s h^2 times the gradient of what nodes hold beyond their room, where "
         "the fastest point has moved by s cells; 'auto' is 2 for liquids with "
-        "'cell' and linear functions, but 0 in semi-implicit steps beside "
-        "obstacles, and for all others.");
+        "'cell' and linear functions, and 0 for all others.");
       parameters.declare(
         "Density control",
         "auto",

@@ -168,7 +168,7 @@ namespace limber
              state.step % problem.checkpoint.steps == 0))
           write_checkpoint();
 
-        if (integrator->reorganise())
+        if (integrator->reorganise(state.time))
           rebalance_if_it_pays();
         adapt_if_due();
         if (!(integrator->longest_step() > smallest_step * first_step))

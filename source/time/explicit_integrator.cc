@@ -160,11 +160,11 @@ namespace limber
 
   template <int dim>
   bool
-  ExplicitIntegrator<dim>::reorganise()
+  ExplicitIntegrator<dim>::reorganise(const double now)
   {
     stopwatch.start();
     const bool exchanged = relocation.reorganise(extremes.displacement);
-    const bool spread    = spread_points();
+    const bool spread    = spread_points(now);
     lap(Verb::relocate);
     return exchanged || (spread && parallel);
   }
@@ -173,12 +173,14 @@ namespace limber
 
   template <int dim>
   bool
-  ExplicitIntegrator<dim>::spread_points()
+  ExplicitIntegrator<dim>::spread_points(const double now)
   {
     if (!shifting.is_due())
       return false;
     if (parallel)
       relocation.exchange_points();
+    if (cut_cells)
+      cut_cells->find(now);
     shifting.shift();
     relocation.adopt_places();
     return true;

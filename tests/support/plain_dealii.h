@@ -347,7 +347,7 @@ namespace limber
       void
       advance_limber()
       {
-        integrator.reorganise();
+        integrator.reorganise(time);
         integrator.advance(time, problem.method.time_step);
         time += problem.method.time_step;
       }

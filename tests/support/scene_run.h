@@ -72,7 +72,7 @@ namespace limber
     {
       for (unsigned int n = 0; n < n_steps; ++n, ++n_done)
         {
-          integrator.reorganise();
+          integrator.reorganise(time);
           last_step = integrator.advance(time, step);
           time += step;
         }

@@ -53,7 +53,7 @@ namespace limber
     explicit ExplicitIntegrator(const RunParts<dim> &parts);
 
     bool
-    reorganise() override;
+    reorganise(double now) override;
     bool
     bring_points_home() override;
     double
@@ -195,7 +195,7 @@ namespace limber
     void
     find_speeds();
     bool
-    spread_points();
+    spread_points(double now);
     void
     give(GiveToGrid what);
     void

@@ -65,11 +65,12 @@ namespace limber
     virtual ~Integrator() = default;
 
     /**
-     * To be called before each step: exchange points between ranks or sort
-     * them, where due. Returns whether ranks have exchanged points.
+     * To be called before each step, which begins at @p now: exchange points
+     * between ranks or sort them, where due. Returns whether ranks have
+     * exchanged points.
      */
     virtual bool
-    reorganise() = 0;
+    reorganise(double now) = 0;
 
     /**
      * Where points see nodes beyond those of their cells, give those in ghost

@@ -23,7 +23,7 @@ namespace limber
     explicit NewtonIntegrator(const RunParts<dim> &parts);
 
     bool
-    reorganise() override
+    reorganise(double) override
     {
       // to their ranks, as if they might pass a cell
       return equations.numbered_nodes().is_parallel() &&

@@ -75,7 +75,7 @@ namespace
               }
         }
       run.translate(Vector());
-      run.integrator.reorganise();
+      run.integrator.reorganise(run.time);
       run.nodes.clear();
       BodySweeps<2> sweeps(parts);
       GiveToGrid    what;

@@ -160,7 +160,7 @@ namespace
     SceneRun<dim> run(two_blocks(dim), {"Method/Stress update=" + order});
     const double  step = 1e-4;
     run.advance(step, 2);
-    run.integrator.reorganise();
+    run.integrator.reorganise(run.time);
     const Before<dim> before[] = {{run, 0}, {run, 1}};
     ASSERT_TRUE(share_cells(before[0], before[1]));
 
