@@ -29,6 +29,8 @@ namespace limber
    * nodes that belong to the places, M_i = sum_p |a_pi| m_p, a pass changes
    * J_p by m_p (least - w_n) / s_p with s_p = sum_i |a_pi| M_i / m_i: what is
    * the same at all places is right after one pass, and nothing overshoots.
+   * Without friction M_i has masses times |n_q . n_p| at most (Borne): what
+   * presses across does not matter.
    * All of them are found together, so that it does not matter how many places
    * or obstacles a node sees; functions may be those of any kernel.
    *
