@@ -28,7 +28,8 @@ namespace limber
    * A cell that is open by less than least_open() counts as closed, a layer
    * across an axis by less than least_open_layer().
    * Faces towards such cells are surfaces of others that are cut; else their
-   * nodes are held by the points that touch. Theory: doc/theory/obstacles.md.
+   * nodes are held one by one, see ObstacleContact. Theory:
+   * doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells

@@ -239,7 +239,8 @@ namespace limber
       RecordExchange    exchange{stride};
     };
 
-    /** Faces at a node between cells that obstacles take and open ones. */
+    /** Faces at a node between cells that obstacles take and open ones: walls
+     * that hold it, where it is full, whether points touch them or not. */
     struct Walls
     {
       // By direction, towards what is open: -1 or 1; 0: none
