@@ -107,6 +107,36 @@ namespace limber
 
 
     /**
+     * Add what of this box is inside. Around a corner that points into the body
+     * its centroid may be outside, in an obstacle for instance: it is divided
+     * in halves along each axis until those of its parts are inside.
+     */
+    template <int dim>
+    void
+    add_parts_inside(const Shape<dim>             &shape,
+                     const Corners<dim>           &box,
+                     std::vector<PartInside<dim>> &parts,
+                     const unsigned int            divisions = 0)
+    {
+      constexpr unsigned int most_divisions = 3; // then it is on the surface
+      const PartInside<dim>  inside         = inside_of(shape, box);
+      if (inside.volume == 0)
+        return;
+      if (divisions == most_divisions || shape.contains(inside.centroid))
+        return parts.push_back(inside);
+      const auto middle = box.first + 0.5 * (box.second - box.first);
+      for (unsigned int half = 0; half < 1u << dim; ++half)
+        {
+          Corners<dim> part = box;
+          for (unsigned int d = 0; d < dim; ++d)
+            (half >> d & 1 ? part.first : part.second)[d] = middle[d];
+          add_parts_inside(shape, part, parts, divisions + 1);
+        }
+    }
+
+
+
+    /**
      * The symmetric map of the cube [-1/2, 1/2]^dim to a parallelepiped of this
      * spread, see PartInside; of a box it is the box.
      */
@@ -284,9 +314,7 @@ namespace limber
                       part.first[d] -= half;
                       part.second[d] += half;
                     }
-                  const auto inside = inside_of(*body.shape, part);
-                  if (inside.volume > 0)
-                    parts.push_back(inside);
+                  add_parts_inside(*body.shape, part, parts);
                 }
               else if (body.shape->contains(place))
                 give(place, site.weight * volume);

@@ -15,7 +15,7 @@ namespace limber
     parameters.enter_subsection("Method");
     declare_word(parameters,
                  "Time integration",
-                 "explicit",
+                 "auto",
                  time_integration_words(),
                  "How a step in time is taken.");
     declare_word(parameters,

@@ -106,10 +106,6 @@ namespace limber
     obstacle_to_implicit_pressure(const Section      &root,
                                   const Problem<dim> &problem)
     {
-      if (std::none_of(problem.bodies.begin(),
-                       problem.bodies.end(),
-                       [](const auto &body) { return body.is_liquid; }))
-        return "the scene has no liquid";
       if (problem.grid.kernel != KernelKind::linear)
         return "the kernel is not 'linear'";
       if (problem.grid.levels > 0)
@@ -142,18 +138,41 @@ namespace limber
 
 
 
-    /** Resolves 'auto', and says in the log what it is and why. */
+    /**
+     * Why explicit steps are right although sound is fast; empty: they are not.
+     */
+    template <int dim>
+    std::string
+    need_for_explicit_steps(const Problem<dim> &problem,
+                            const double        longest_explicit_step)
+    {
+      // What is loaded suddenly rings, which implicit pressures damp at once
+      for (const auto &load : problem.loads.faces)
+        for (const Body<dim> &body : problem.bodies)
+          if (body.is_liquid && body.name == load.body)
+            return "face load " + in_quotes(load.name) +
+                   " acts on a liquid, in which it may make sound";
+      if (problem.method.time_step > 0 &&
+          problem.method.time_step <= longest_explicit_step)
+        return "'Time step' is short enough for sound";
+      return "";
+    }
+
+
+
+    /** Resolves 'auto', and says in the log what it is and why, if there is a
+     * choice at all. */
     template <int dim>
     void
     choose_automatically(const Section &root, Problem<dim> &problem)
     {
+      if (std::none_of(problem.bodies.begin(),
+                       problem.bodies.end(),
+                       [](const auto &body) { return body.is_liquid; }))
+        return;
       const auto say = [&](const std::string &choice) {
         problem.notes.push_back("Time integration 'auto' is " + choice + ".");
       };
-      const std::string obstacle = obstacle_to_implicit_pressure(root, problem);
-      if (!obstacle.empty())
-        return say("'explicit', as " + obstacle);
-
       const Speeds speeds = speeds_of(problem);
       const double other =
         std::max(speeds.motion + speeds.surface, speeds.waves);
@@ -178,10 +197,20 @@ namespace limber
       const double steps =
         std::max(other / (C * edge),
                  5 * std::sqrt(problem.loads.gravity.norm() / edge));
+      const std::string gain = "about " + brief(former_steps / steps) +
+                               " times fewer steps, which take some " +
+                               brief(cost_of_step) + " times as long";
+      const std::string obstacle = obstacle_to_implicit_pressure(root, problem);
+      if (!obstacle.empty())
+        return say("'explicit', as " + obstacle +
+                   ". 'semi-implicit' would take " + gain);
+      const std::string need =
+        need_for_explicit_steps(problem, edge / (speeds.sound + speeds.motion));
+      if (!need.empty())
+        return say("'explicit', as " + need + "; 'semi-implicit' would take " +
+                   gain);
       problem.method.integration = TimeIntegration::semi_implicit;
-      say("'semi-implicit', as " + ratio + ": about " +
-          brief(former_steps / steps) + " times fewer steps, which take some " +
-          brief(cost_of_step) + " times as long");
+      say("'semi-implicit', as " + ratio + ": " + gain);
     }
 
 

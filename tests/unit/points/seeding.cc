@@ -198,6 +198,22 @@ TEST(Seeding, CutPartsOfABoxAreExact)
 
 
 
+// Around a corner that points into the body the centroid of what is inside is
+// not: three parts make room there for the one of a regular lattice.
+TEST(Seeding, CutPartsAroundACornerAreInside)
+{
+  const auto shape = std::make_shared<FormulaShape<2>>(
+    Formula<2>("max(2.08 - x, y - 2.17)", {}, 1, ""),
+    Corners<2>(Point<2>(1, 1), Point<2>(4, 4)));
+  const Filled cut(shape, Placement::cut);
+  const double area = 9 - (4 - 2.08) * (2.17 - 1);
+  EXPECT_NEAR(cut.volume, area, 2e-3 * area);
+  for (const Point<2> &place : cut.places)
+    EXPECT_TRUE(shape->contains(place)) << place;
+}
+
+
+
 // Where no part is cut, 'cut' is 'regular'.
 TEST(Seeding, CutLeavesWholePartsAlone)
 {

@@ -174,7 +174,8 @@ namespace
   Imbalance
   imbalance(const std::string &obstacle)
   {
-    SceneRun<dim>                run(box_with_obstacle(dim, obstacle));
+    SceneRun<dim>                run(box_with_obstacle(dim, obstacle),
+                      {"Method/Time integration=explicit"});
     const CutCells<dim>          cut_cells = cut_cells_of(run);
     const dealii::Tensor<1, dim> gravity   = run.problem.loads.gravity;
     constexpr unsigned int       n_nodes   = 1 << dim;
