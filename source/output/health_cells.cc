@@ -42,13 +42,18 @@ namespace limber
 
     /** Equal places of an ascending list become one entry with their sum. */
     void
-    merge_equal(std::vector<std::pair<std::uint64_t, std::uint64_t>> &cells)
+    merge_equal(std::vector<CellCount> &cells)
     {
-      std::sort(cells.begin(), cells.end());
+      std::sort(cells.begin(), cells.end(), [](const auto &a, const auto &b) {
+        return a.place < b.place;
+      });
       std::size_t kept = 0;
       for (std::size_t i = 0; i < cells.size(); ++i)
-        if (kept > 0 && cells[kept - 1].first == cells[i].first)
-          cells[kept - 1].second += cells[i].second;
+        if (kept > 0 && cells[kept - 1].place == cells[i].place)
+          {
+            cells[kept - 1].points += cells[i].points;
+            cells[kept - 1].volume += cells[i].volume;
+          }
         else
           cells[kept++] = cells[i];
       cells.resize(kept);
@@ -61,9 +66,12 @@ namespace limber
     CellCounts
     count_own(const State<dim> &state, const MaterialBody<dim> &body)
     {
-      const GridDescription<dim> &grid   = state.problem.grid;
-      const PointView<dim>        points = body.points.view();
-      CellCounts                  counts;
+      const GridDescription<dim> &grid    = state.problem.grid;
+      const PointView<dim>        points  = body.points.view();
+      const double                density = body.description.density();
+      std::vector<double>         ratio(points.size);
+      body.stress->volume_ratio(points, ratio.data());
+      CellCounts counts;
       for (std::size_t p = 0; p < points.size; ++p)
         {
           if (points.cell[p] == invalid_cell)
@@ -72,12 +80,16 @@ namespace limber
           std::array<unsigned int, dim> at;
           for (int d = 0; d < dim; ++d)
             at[d] = (cell.origin[d] - grid.lower[d]) / grid.edge(d) + 1e-6;
-          const std::uint64_t place = place_of<dim>(at, grid.cells);
-          auto               &cells = counts.cells;
-          if (!cells.empty() && cells.back().first == place)
-            ++cells.back().second;
+          const std::uint64_t place  = place_of<dim>(at, grid.cells);
+          const double        volume = points.mass[p] * ratio[p] / density;
+          auto               &cells  = counts.cells;
+          if (!cells.empty() && cells.back().place == place)
+            {
+              ++cells.back().points;
+              cells.back().volume += volume;
+            }
           else
-            cells.emplace_back(place, 1);
+            cells.push_back({place, 1, volume});
         }
       merge_equal(counts.cells);
       return counts;
@@ -97,7 +109,7 @@ namespace limber
         {
           if (++at[d] >= n[d])
             return 0;
-          if (own.in(place_of<dim>(at, n)) > 0)
+          if (own.in(place_of<dim>(at, n)).points > 0)
             return width;
         }
       return 0;
@@ -105,18 +117,22 @@ namespace limber
 
 
 
+    /** Whether it has neighbours of the body on all sides; @p sides of the grid
+     * may stand for those. */
     template <int dim>
     bool
     is_inner(const CellCounts                    &own,
              const std::array<unsigned int, dim> &n,
-             const std::array<unsigned int, dim> &at)
+             const std::array<unsigned int, dim> &at,
+             const bool                           sides = false)
     {
       for (unsigned int d = 0; d < dim; ++d)
         for (const int step : {-1, 1})
           {
             auto other = at;
             other[d] += step; // below zero: beyond the last, too
-            if (other[d] >= n[d] || own.in(place_of<dim>(other, n)) == 0)
+            if (other[d] >= n[d] ? !sides :
+                                   own.in(place_of<dim>(other, n)).points == 0)
               return false;
           }
       return true;
@@ -125,14 +141,18 @@ namespace limber
 
 
 
-  std::uint64_t
+  CellCount
   CellCounts::in(const std::uint64_t place) const
   {
     const auto found =
       std::lower_bound(cells.begin(),
                        cells.end(),
-                       std::make_pair(place, std::uint64_t(0)));
-    return found != cells.end() && found->first == place ? found->second : 0;
+                       place,
+                       [](const CellCount &cell, const std::uint64_t sought) {
+                         return cell.place < sought;
+                       });
+    return found != cells.end() && found->place == place ? *found :
+                                                           CellCount{place, 0};
   }
 
 
@@ -148,7 +168,7 @@ namespace limber
     std::vector<std::uint64_t> gaps;
     body.cells       = own.cells.size();
     body.inner_cells = body.single_cells = 0;
-    for (const auto &[place, points] : own.cells)
+    for (const auto &[place, points, volume] : own.cells)
       {
         const auto at    = indices_of<dim>(place, n);
         const bool inner = is_inner<dim>(own, n, at);
@@ -172,9 +192,34 @@ namespace limber
         return std::all_of(counts.begin(),
                            counts.end(),
                            [&](const CellCounts &all) {
-                             return all.in(place) == 0;
+                             return all.in(place).points == 0;
                            });
       });
+  }
+
+
+
+  template <int dim>
+  double
+  filling(const std::vector<CellCounts>            &counts,
+          const std::array<unsigned int, dim>      &n,
+          const double                              cell_volume,
+          const std::function<bool(std::uint64_t)> &is_open,
+          const std::size_t                         b)
+  {
+    constexpr unsigned int least_cells = 16; // fewer tell chance
+    const CellCounts      &own         = counts[b];
+    unsigned long          cells       = 0;
+    double                 volume      = 0;
+    for (const CellCount &cell : own.cells)
+      if (is_inner<dim>(own, n, indices_of<dim>(cell.place, n), true) &&
+          is_open(cell.place))
+        {
+          ++cells;
+          for (const CellCounts &all : counts)
+            volume += all.in(cell.place).volume;
+        }
+    return cells < least_cells ? 1 : volume / (cells * cell_volume);
   }
 
 
@@ -197,6 +242,35 @@ namespace limber
       }
     for (std::size_t b = 0; b < bodies.size(); ++b)
       look_at_counts<dim>(counts, state.problem.grid.cells, b, bodies[b]);
+
+    // Of liquids, whether their points stand closer than their volume
+    const GridDescription<dim>     &grid        = state.problem.grid;
+    double                          cell_volume = 1;
+    std::vector<ObstaclePlace<dim>> obstacles;
+    for (const auto &obstacle : state.problem.obstacles)
+      obstacles.emplace_back(obstacle, state.time);
+    for (unsigned int d = 0; d < dim; ++d)
+      cell_volume *= grid.edge(d);
+    const auto is_open = [&](const std::uint64_t place) {
+      const auto         at = indices_of<dim>(place, grid.cells);
+      dealii::Point<dim> middle;
+      double             square = 0;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          middle[d] = grid.lower[d] + (at[d] + 0.5) * grid.edge(d);
+          square += grid.edge(d) * grid.edge(d) / 4;
+        }
+      return std::all_of(obstacles.begin(),
+                         obstacles.end(),
+                         [&](const ObstaclePlace<dim> &obstacle) {
+                           return obstacle.distance(middle).value >=
+                                  std::sqrt(square);
+                         });
+    };
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      if (bodies[b].is_liquid)
+        bodies[b].filling =
+          filling<dim>(counts, grid.cells, cell_volume, is_open, b);
   }
 
 
@@ -211,6 +285,18 @@ namespace limber
                     const std::array<unsigned int, 3> &,
                     std::size_t,
                     BodyFigures &);
+  template double
+  filling<2>(const std::vector<CellCounts> &,
+             const std::array<unsigned int, 2> &,
+             double,
+             const std::function<bool(std::uint64_t)> &,
+             std::size_t);
+  template double
+  filling<3>(const std::vector<CellCounts> &,
+             const std::array<unsigned int, 3> &,
+             double,
+             const std::function<bool(std::uint64_t)> &,
+             std::size_t);
   template void
   look_at_cells(const State<2> &, std::vector<BodyFigures> &);
   template void

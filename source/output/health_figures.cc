@@ -146,6 +146,7 @@ namespace limber
         figures.is_liquid  = body.is_liquid;
         figures.is_plastic = body.is_plastic;
         figures.is_split   = body.splits_stretched_points;
+        figures.is_shifted = body.particle_shifting > 0;
         figures.kernel     = start.problem.grid.kernel;
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),

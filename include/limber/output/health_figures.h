@@ -6,6 +6,7 @@
 #include <limber/output/totals.h>
 
 #include <cstdint>
+#include <functional>
 
 /** @file What the points themselves say about the health of a run. */
 namespace limber
@@ -50,14 +51,23 @@ namespace limber
 
 
 
-  /** Cells of a lattice that hold points of a body, and how many each. */
+  /** What a cell of a lattice holds of a body. */
+  struct CellCount
+  {
+    std::uint64_t place; // in the lattice, x fastest
+    std::uint64_t points;
+    double        volume = 0; // that these stand for, m^dim
+  };
+
+
+
+  /** Cells of a lattice that hold points of a body. */
   struct CellCounts
   {
-    // By place in the lattice, x fastest; ascending
-    std::vector<std::pair<std::uint64_t, std::uint64_t>> cells;
+    std::vector<CellCount> cells; // by place, ascending
 
-    std::uint64_t
-    in(std::uint64_t place) const; // points, 0: none
+    CellCount
+    in(std::uint64_t place) const; // no points: none
   };
 
   /**
@@ -71,6 +81,19 @@ namespace limber
                  const std::array<unsigned int, dim> &n,
                  std::size_t                          b,
                  BodyFigures                         &body);
+
+  /**
+   * The volume of all points in inner cells of the body @p b, over that of
+   * these cells; cells of @p is_open alone count. 1 if there are less than
+   * sixteen.
+   */
+  template <int dim>
+  double
+  filling(const std::vector<CellCounts>            &counts,
+          const std::array<unsigned int, dim>      &n,
+          double                                    cell_volume,
+          const std::function<bool(std::uint64_t)> &is_open,
+          std::size_t                               b);
 
 
 

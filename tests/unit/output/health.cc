@@ -467,15 +467,72 @@ namespace limber::test
     const std::array<unsigned int, 2> n{{12, 3}};
     CellCounts                        own, other;
     for (const unsigned int i : {0, 1, 3, 6, 7, 11})
-      own.cells.emplace_back(12 + i, 4);
+      own.cells.push_back({12 + i, 4});
     own.cells.insert(own.cells.begin(), {0, 1});
     BodyFigures body;
     look_at_counts<2>({own, other}, n, 0, body);
     EXPECT_EQ(body.cells, 7u);
     EXPECT_EQ(body.gaps, 3u);
-    other.cells.emplace_back(12 + 2, 4); // the other body fills the first one
+    other.cells.push_back({12 + 2, 4}); // the other body fills the first one
     look_at_counts<2>({own, other}, n, 0, body);
     EXPECT_EQ(body.gaps, 2u);
+  }
+
+
+
+  // A liquid of 6 x 4 cells in the corner of a grid of 8 x 8 with cells of 2
+  // m^2: two sides of the grid count as neighbours, the surface does not.
+  TEST(Health, FillingIsThatOfInnerCells)
+  {
+    const std::array<unsigned int, 2> n{{8, 8}};
+    CellCounts                        own, other;
+    for (unsigned int y = 0; y < 4; ++y)
+      for (unsigned int x = 0; x < 6; ++x)
+        own.cells.push_back({y * 8 + x, 4, x < 5 && y < 3 ? 2.2 : 0.5});
+    const auto of_all = [](std::uint64_t) { return true; };
+    // too few to judge: 15 inner ones
+    EXPECT_EQ(filling<2>({own}, n, 2, of_all, 0), 1);
+    for (unsigned int x = 0; x < 6; ++x)
+      own.cells.push_back({4 * 8 + x, 4, 0.5});
+    // 15 with 2.2 and the former surface, 5 with 0.5
+    EXPECT_NEAR(filling<2>({own}, n, 2, of_all, 0),
+                (15 * 2.2 + 5 * 0.5) / 40,
+                1e-14);
+    // 16 of them beyond an obstacle in four
+    const auto beyond = [](std::uint64_t place) { return place >= 4; };
+    EXPECT_NEAR(filling<2>({own}, n, 2, beyond, 0),
+                (11 * 2.2 + 5 * 0.5) / 32,
+                1e-14);
+    // what another body has in them fills them as well
+    other.cells.push_back({8, 4, 1});
+    EXPECT_NEAR(filling<2>({own, other}, n, 2, of_all, 0),
+                (15 * 2.2 + 5 * 0.5 + 1) / 40,
+                1e-14);
+  }
+
+
+
+  TEST(Health, ClumpingIsJudgedWhereThereAreLiquids)
+  {
+    HealthFigures figures = sound();
+    const auto    lines   = judge(figures);
+    EXPECT_TRUE(std::none_of(lines.begin(), lines.end(), [](const auto &line) {
+      return line.name == "clumping";
+    }));
+    figures.bodies.push_back(figures.bodies[0]);
+    BodyFigures &water = figures.bodies[1];
+    water.name         = "water";
+    water.is_liquid    = true;
+    water.filling      = 0.9; // room between drops
+    EXPECT_EQ(line("clumping", figures).verdict, Verdict::good);
+    EXPECT_EQ(line("clumping", figures).value, 0);
+    water.filling = 1.05;
+    EXPECT_EQ(line("clumping", figures).verdict, Verdict::look);
+    water.filling = 1.25;
+    EXPECT_EQ(line("clumping", figures).verdict, Verdict::bad);
+    EXPECT_EQ(line("clumping", figures).entry, "Body water/Particle shifting");
+    water.kernel = KernelKind::quadratic;
+    EXPECT_EQ(line("clumping", figures).entry, "Method/Kernel");
   }
 
 
@@ -485,7 +542,7 @@ namespace limber::test
     const std::array<unsigned int, 3> n{{3, 3, 3}};
     CellCounts                        own;
     for (unsigned int place = 0; place < 27; ++place)
-      own.cells.emplace_back(place, place == 13 ? 1 : 8);
+      own.cells.push_back({place, place == 13 ? 1u : 8u});
     BodyFigures body;
     look_at_counts<3>({own}, n, 0, body);
     EXPECT_EQ(body.inner_cells, 1u);
