@@ -91,8 +91,9 @@ namespace limber
         "auto",
         admissible::non_negative_number("2").or_word("auto"),
         "C, dimensionless: points of a liquid that have gathered move apart by "
-        "C s h^2 times the gradient of what nodes hold beyond their room, where "
-        "the fastest point has moved by s cells; 'auto' is 2 for liquids with "
+        "C s h^2 times the gradient of what nodes hold beyond their room, and "
+        "towards free surfaces where that is even, each time the fastest point "
+        "has moved by s cells; 'auto' is 2 for liquids with "
         "'cell' and linear functions, and 0 for all others.");
       parameters.declare(
         "Density control",

@@ -15,6 +15,13 @@ namespace limber
     // C s: more would throw points beyond where they belong.
     constexpr double largest_factor = 0.5;
 
+    // In cells along an axis, each time.
+    constexpr double largest_shift = 0.1;
+
+    // alpha: with C = 2, of what is even over many cells a fifth goes each
+    // time.
+    constexpr double share_of_room = 0.5;
+
     // Of the excess either way. What flies apart leaves nodes nearly empty, and
     // shall not be drawn together.
     constexpr double largest_excess = 0.5;
@@ -71,6 +78,7 @@ namespace limber
                                             0;
                                    }))
     , surroundings(parts.grid)
+    , potential(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
     for (auto &body : parts.bodies)
@@ -97,6 +105,7 @@ namespace limber
     if (groups.empty())
       return;
     surroundings.reinit();
+    potential.reinit();
     records.reinit(std::size_t(parts.grid.vertices.n()) * Record::stride);
     find_rooms();
   }
@@ -210,10 +219,43 @@ namespace limber
         of_node[Record::excess] =
           std::min(std::max(excess, -largest_excess), largest_excess);
       }
+    make_room(group);
     table.take_from_masters(records.data(),
                             Record::stride,
                             Record::excess,
                             Record::excess + 1);
+  }
+
+
+
+  // Next to a surface it is not known what nodes should hold, and what excess
+  // alone counted would be noise that only grows.
+  template <int dim>
+  void
+  ParticleShifting<dim>::make_room(const Group &group)
+  {
+    const NodalFields<dim> &vertices = parts.nodes.vertices();
+    potential.clear(vertices);
+    for (const std::uint32_t cell : vertices.owned_occupied_cells())
+      if (holds(group.liquids, cell))
+        {
+          const auto *const cut = cut_cells ? cut_cells->cell(cell) : nullptr;
+          potential.add_cell(cell,
+                             volume_of(parts.grid.geometry[cell]) *
+                               (cut ? cut->open : 1));
+        }
+    for (const std::uint32_t node : vertices.active_nodes())
+      {
+        const double *const of_node = record(node);
+        potential.set_source(node,
+                             of_node[Record::at_surface] > 0 ?
+                               0. :
+                               of_node[Record::excess] * room_at(node),
+                             !surroundings.is_surrounded(node));
+      }
+    potential.solve(vertices);
+    for (const std::uint32_t node : vertices.active_nodes())
+      record(node)[Record::excess] += share_of_room * potential.at(node);
   }
 
 
@@ -304,8 +346,11 @@ namespace limber
                     weight *= a >> e & 1 ? xi[e] : 1 - xi[e];
                 slope += weight * excess[a];
               }
-            const double edge  = 1 / cell.inverse_edge[d];
-            const double shift = -factor * slope * edge;
+            const double edge = 1 / cell.inverse_edge[d];
+            const double shift =
+              -std::min(std::max(factor * slope, -largest_shift),
+                        largest_shift) *
+              edge;
             const double place = points.position[d][p] + shift;
             if (place < box.lower[d] + least_distance * edge ||
                 place > box.upper[d] - least_distance * edge)

@@ -4,6 +4,7 @@
 
 #include <limber/time/cut_cells.h>
 #include <limber/time/integrator.h>
+#include <limber/time/room_potential.h>
 #include <limber/time/surroundings.h>
 
 #include <vector>
@@ -21,8 +22,12 @@ namespace limber
    * its cells can tell. It sinks, and the liquid loses volume. So points move
    * down the gradient of the excess g of what nodes hold,
    *
-   *   g_i = sum_p N_i(x_p) V_p / R_i - 1,   delta_p = - C s h^2 grad g(x_p),
+   *   g_i = sum_p N_i(x_p) V_p / R_i - 1,
+   *   delta_p = - C s h^2 grad (g + alpha phi)(x_p),
    *
+   * and, as an excess that is even has no gradient, of the potential phi that
+   * makes room for it (RoomPotential; compare the implicit density projection
+   * of T. Kugelstadt, A. Longva, N. Thuerey and J. Bender, IEEE TVCG 27, 2021),
    * with the room R_i of a node, the integral of N_i over what obstacles leave
    * of the box; s, in cells, is how far the fastest point has moved since the
    * last time, and C the body's 'Particle shifting'. Next to cells at a surface
@@ -99,6 +104,8 @@ namespace limber
     void
     find_excess(const Group &group);
     void
+    make_room(const Group &group);
+    void
     add_volumes(MaterialBody &body);
     void
     mark_cells(const Group &group);
@@ -121,6 +128,7 @@ namespace limber
     const bool                 controls_density;
     std::vector<Group>         groups;
     Surroundings<dim>          surroundings;
+    RoomPotential<dim>         potential;
     LazyArray<double>          rooms;   // by vertex, m^3
     LazyArray<double>          records; // by vertex
     RecordExchange             room_exchange{1}, exchange{Record::stride};

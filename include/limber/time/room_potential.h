@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_room_potential_h
+#define limber_time_room_potential_h
+
+#include <limber/grid/nodal_fields.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * Where a liquid has to go that takes less room than it should everywhere:
+   * the potential phi with
+   *
+   *   - div (grad phi) = g,   phi = 0 at free surfaces,
+   *
+   * in natural coordinates of the cells, by linear functions. What moves
+   * by - grad phi (in cells) grows by the excess g of what nodes hold, walls
+   * let nothing pass, and the surface gives way. Chebyshev's iteration, of few
+   * steps: it needs no sums over all nodes, and waves longer than it resolves
+   * are left to the next time.
+   */
+  template <int dim>
+  class RoomPotential
+  {
+  public:
+    explicit RoomPotential(const BackgroundGrid<dim> &grid)
+      : grid(grid)
+    {}
+
+    /** Adopt a mesh. */
+    void
+    reinit();
+
+    /** Begin anew with these nodes, active of @p vertices. */
+    void
+    clear(const NodalFields<dim> &vertices);
+
+    /** A cell of this rank that liquid is in, with the volume in m^3 that
+     * obstacles leave of it. */
+    void
+    add_cell(std::uint32_t cell, double volume);
+
+    /** The source of a node: its excess g times its room, m^3. A node at a
+     * free surface is fixed. Once per node, the same on all ranks. */
+    void
+    set_source(const std::uint32_t node, const double source, const bool fixed)
+    {
+      double *const of_node     = record(node);
+      of_node[Record::residual] = source;
+      of_node[Record::is_free]  = !fixed;
+    }
+
+    /** Find phi; collective. */
+    void
+    solve(const NodalFields<dim> &vertices);
+
+    double
+    at(const std::uint32_t node) const
+    {
+      return records[std::size_t(node) * Record::stride + Record::potential];
+    }
+
+  private:
+    static constexpr unsigned int n_corners = 1 << dim;
+
+    struct Record
+    {
+      static constexpr unsigned int potential = 0, residual = 1, is_free = 2,
+                                    direction = 3, product = 4, diagonal = 5,
+                                    stride = 6;
+    };
+
+    struct Cell
+    {
+      std::uint32_t number;
+      double        volume;
+    };
+
+    void
+    multiply(const NodalFields<dim> &vertices);
+    void
+    sum_over_cells(const NodalFields<dim> &vertices, unsigned int slot);
+
+    double *
+    record(const std::uint32_t node)
+    {
+      return records.data() + std::size_t(node) * Record::stride;
+    }
+
+    double *
+    record_at(const std::uint32_t cell, const unsigned int corner)
+    {
+      return record(grid.geometry[cell].node[corner] / NodeLayout<dim>::stride);
+    }
+
+    const BackgroundGrid<dim> &grid;
+    LazyArray<double>          records; // by vertex
+    RecordExchange             exchange{Record::stride};
+    std::vector<Cell>          cells;
+  };
+} // namespace limber
+
+#endif
