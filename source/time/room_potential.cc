@@ -56,12 +56,8 @@ namespace limber
   void
   RoomPotential<dim>::clear(const NodalFields<dim> &vertices)
   {
-    const NodeTable<dim> &table = grid.vertices;
-    for (const auto *const all : {&vertices.active_nodes(), &table.masters})
-      for (const std::uint32_t node : *all)
-        std::fill_n(record(node), Record::stride, 0.);
-    for (const HangingNode &hanging : table.hanging)
-      std::fill_n(record(hanging.node), Record::stride, 0.);
+    for (const std::uint32_t node : vertices.active_nodes())
+      std::fill_n(record(node), Record::stride, 0.);
     cells.clear();
   }
 
@@ -85,10 +81,6 @@ namespace limber
   RoomPotential<dim>::sum_over_cells(const NodalFields<dim> &vertices,
                                      const unsigned int      slot)
   {
-    grid.vertices.give_to_masters(records.data(),
-                                  Record::stride,
-                                  slot,
-                                  slot + 1);
     exchange.start(vertices.node_plan(), records.data(), slot, slot + 1);
     exchange.finish(records.data());
   }
@@ -100,16 +92,8 @@ namespace limber
   RoomPotential<dim>::multiply(const NodalFields<dim> &vertices)
   {
     static const auto matrix = stiffness<dim>();
-    const auto       &table  = grid.vertices;
-    table.take_from_masters(records.data(),
-                            Record::stride,
-                            Record::direction,
-                            Record::direction + 1);
-    for (const auto *const all : {&vertices.active_nodes(), &table.masters})
-      for (const std::uint32_t node : *all)
-        record(node)[Record::product] = 0;
-    for (const HangingNode &hanging : table.hanging)
-      record(hanging.node)[Record::product] = 0;
+    for (const std::uint32_t node : vertices.active_nodes())
+      record(node)[Record::product] = 0;
     for (const Cell &cell : cells)
       {
         std::array<double, n_corners> direction;
@@ -160,10 +144,6 @@ namespace limber
                      2 / half * correction(of_node));
           }
       }
-    grid.vertices.take_from_masters(records.data(),
-                                    Record::stride,
-                                    Record::potential,
-                                    Record::potential + 1);
   }
 
 

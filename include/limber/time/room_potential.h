@@ -18,7 +18,7 @@ namespace limber
    * by - grad phi (in cells) grows by the excess g of what nodes hold, walls
    * let nothing pass, and the surface gives way. Chebyshev's iteration, of few
    * steps: it needs no sums over all nodes, and waves longer than it resolves
-   * are left to the next time.
+   * are left to the next time. For cells of one size.
    */
   template <int dim>
   class RoomPotential
