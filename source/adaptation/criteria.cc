@@ -3,10 +3,12 @@
 #include <limber/adaptation/criteria.h>
 #include <limber/adaptation/occupancy.h>
 #include <limber/base/exceptions.h>
+#include <limber/base/floating_point_traps.h>
 #include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -14,15 +16,19 @@ namespace limber
 {
   namespace
   {
-    /** Whether a formula is positive in a corner of a quarter of the part. */
+    /**
+     * Whether a formula is positive at one of @p per_edge places along each
+     * edge of a part of a cell.
+     */
     template <int dim>
     bool
     reaches_into(const Refinement<dim> &refinement,
                  const Corners<dim>    &part,
-                 const double           time)
+                 const double           time,
+                 const unsigned int     per_edge)
     {
-      constexpr unsigned int per_edge = 5;
-      const unsigned int     n =
+      const HeldFloatingPointTraps held;
+      const unsigned int           n =
         dim == 2 ? per_edge * per_edge : per_edge * per_edge * per_edge;
       for (unsigned int i = 0; i < n; ++i)
         {
@@ -31,7 +37,8 @@ namespace limber
           for (int d = 0; d < dim; ++d, rest /= per_edge)
             place[d] = part.first[d] + (part.second[d] - part.first[d]) *
                                          (rest % per_edge) / (per_edge - 1);
-          if (!refinement.where.is_finite(place, time))
+          const double value = refinement.where.value(place, time);
+          if (!std::isfinite(value))
             throw InputError(
               "The formula " + in_quotes(refinement.where.expression()) +
               " in 'Grid/Refine " + refinement.name +
@@ -39,7 +46,7 @@ namespace limber
               brief(time) +
               ". Usually something is divided by zero. Guard it, as in 'if(x "
               "> 0, 1/x, 0)'.");
-          if (refinement.contains(place, time))
+          if (value > 0)
             return true;
         }
       return false;
@@ -47,12 +54,17 @@ namespace limber
 
 
 
-    /** Whether a cell has a part in a refinement. */
+    /**
+     * Whether a cell has a part in a refinement. Of the finest cells only one
+     * thing is asked, whether they stay: at the corners of their halves they
+     * and their siblings know what the cell was asked that they came from.
+     */
     template <int dim>
     bool
     is_in(const Refinement<dim>                    &refinement,
           const typename BackgroundGrid<dim>::Cell &cell,
-          const double                              time)
+          const double                              time,
+          const bool                                is_finest)
     {
       const dealii::Point<dim> lower = cell->vertex(0),
                                upper = cell->vertex((1 << dim) - 1);
@@ -66,7 +78,8 @@ namespace limber
           if (part.second[d] - part.first[d] < tolerance)
             return false;
         }
-      return refinement.where.empty() || reaches_into(refinement, part, time);
+      return refinement.where.empty() ||
+             reaches_into(refinement, part, time, is_finest ? 3 : 5);
     }
   } // namespace
 
@@ -135,7 +148,10 @@ namespace limber
           {
             const Refinement<dim> &refinement = grid.description.refinements[r];
             if (refinement.level <= result ||
-                !is_in<dim>(refinement, cell, time))
+                !is_in<dim>(refinement,
+                            cell,
+                            time,
+                            own == grid.description.levels))
               continue;
             unsigned int level = 0;
             switch (refinement.criterion)

@@ -3,12 +3,12 @@
 #include <deal.II/base/numbers.h>
 
 #include <limber/base/exceptions.h>
+#include <limber/base/floating_point_traps.h>
 #include <limber/base/functions.h>
 #include <limber/base/text.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cfenv>
 #include <cmath>
 #include <iostream>
 #include <new>
@@ -37,26 +37,6 @@ namespace limber
     private:
       std::ostringstream swallowed;
       std::streambuf    *original;
-    };
-
-
-
-    /** Debug builds trap divisions by zero; here they are a question. */
-    class HeldFloatingPointTraps
-    {
-    public:
-      HeldFloatingPointTraps()
-      {
-        std::feholdexcept(&environment);
-      }
-
-      ~HeldFloatingPointTraps()
-      {
-        std::fesetenv(&environment);
-      }
-
-    private:
-      std::fenv_t environment;
     };
 
 

@@ -243,13 +243,6 @@ namespace limber
     std::vector<std::string> obstacles; // of 'obstacle'; empty: all
     double scale = 0; // beyond it cells are divided; of 'stress' in Pa
 
-    /** Whether a place in the box is inside at this time, s. */
-    bool
-    contains(const dealii::Point<dim> &place, const double time) const
-    {
-      return where.empty() || where.value(place, time) > 0;
-    }
-
     /** Whether cells change in the run because of it. */
     bool
     is_moving() const
