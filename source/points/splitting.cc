@@ -2,6 +2,7 @@
 #include <limber/points/material_points.h>
 
 #include <algorithm>
+#include <unordered_map>
 
 /** @file Points of a MaterialPoints that become several, or one. */
 namespace limber
@@ -53,17 +54,159 @@ namespace limber
 
 
 
+  namespace
+  {
+    /**
+     * How the initial places of points change with their present ones, dX/dx:
+     * where parts of a point have been at the start. By least squares over the
+     * points of a cell or, where they are in one row, of the cells around it.
+     * Where places have been mixed, or there are too few, one says as much as
+     * another: the unit tensor, as if the part had been displaced as the whole.
+     */
+    template <int dim>
+    class InitialPlaces
+    {
+    public:
+      InitialPlaces(const BackgroundGrid<dim> &grid,
+                    const MaterialPoints<dim> &points)
+        : grid(grid)
+        , view(points.view())
+      {
+        initial.reserve(view.size);
+        for (std::size_t p = 0; p < view.size; ++p)
+          {
+            initial.push_back(points.reference_position(p));
+            by_cell[view.cell[p]].push_back(p);
+          }
+      }
+
+      dealii::Tensor<2, dim>
+      gradient(const std::uint32_t cell)
+      {
+        const auto known = gradients.find(cell);
+        if (known != gradients.end())
+          return known->second;
+        dealii::Tensor<2, dim> result;
+        if (!fit(cell, by_cell[cell], result) &&
+            !fit(cell, around(cell), result))
+          result = dealii::unit_symmetric_tensor<dim>();
+        return gradients[cell] = result;
+      }
+
+    private:
+      using Set = std::vector<std::size_t>;
+
+      Set
+      around(const std::uint32_t cell)
+      {
+        const CellGeometry<dim>   &geometry = grid.geometry[cell];
+        std::vector<std::uint32_t> seen; // a larger one is in several directions
+        Set                        result;
+        for (unsigned int n = 0; n < (dim == 2 ? 9 : 27); ++n)
+          {
+            std::array<double, dim> x;
+            for (int d = 0, k = n; d < dim; ++d, k /= 3)
+              x[d] =
+                geometry.origin[d] + (k % 3 - 0.5) / geometry.inverse_edge[d];
+            const std::uint32_t other = grid.bins.cell_at(x);
+            if (other == invalid_cell ||
+                std::find(seen.begin(), seen.end(), other) != seen.end())
+              continue;
+            seen.push_back(other);
+            const Set &theirs = by_cell[other];
+            result.insert(result.end(), theirs.begin(), theirs.end());
+          }
+        return result;
+      }
+
+      /** Whether the points spread over a tenth of the cell in every direction
+       * and their places are linear to a fifth of the spread. */
+      bool
+      fit(const std::uint32_t     cell,
+          const Set              &set,
+          dealii::Tensor<2, dim> &result) const
+      {
+        constexpr double       least_spread = 0.1, largest_rest = 0.04;
+        dealii::Tensor<1, dim> x, X;
+        double                 mass = 0;
+        for (const std::size_t p : set)
+          {
+            mass += view.mass[p];
+            for (int d = 0; d < dim; ++d)
+              {
+                x[d] += view.mass[p] * view.position[d][p];
+                X[d] += view.mass[p] * initial[p][d];
+              }
+          }
+        if (!(mass > 0))
+          return false;
+        x /= mass;
+        X /= mass;
+        dealii::Tensor<2, dim> spread, common;
+        double                 whole = 0;
+        for (const std::size_t p : set)
+          {
+            dealii::Tensor<1, dim> from, initially;
+            for (int d = 0; d < dim; ++d)
+              {
+                from[d]      = view.position[d][p] - x[d];
+                initially[d] = initial[p][d] - X[d];
+              }
+            spread += view.mass[p] / mass * outer_product(from, from);
+            common += view.mass[p] / mass * outer_product(initially, from);
+            whole += view.mass[p] / mass * initially.norm_square();
+          }
+        double edges = 1;
+        for (int d = 0; d < dim; ++d)
+          edges *= least_spread / grid.geometry[cell].inverse_edge[d];
+        if (!(determinant(spread) > edges * edges))
+          return false;
+        result = common * invert(spread);
+        // what the linear function leaves of the spread of the initial places
+        const double rest = whole - scalar_product(result, common);
+        return rest < largest_rest * whole;
+      }
+
+      const BackgroundGrid<dim>             &grid;
+      const PointView<dim>                   view;
+      std::vector<dealii::Point<dim>>        initial; // by point, m
+      std::unordered_map<std::uint32_t, Set> by_cell;
+      std::unordered_map<std::uint32_t, dealii::Tensor<2, dim>> gradients;
+    };
+  } // namespace
+
+
+
   template <int dim>
   void
   MaterialPoints<dim>::shift_point(const std::size_t             p,
-                                   const dealii::Tensor<1, dim> &way)
+                                   const dealii::Tensor<1, dim> &way,
+                                   const dealii::Tensor<2, dim> &initial)
   {
+    const dealii::Tensor<1, dim> initially = initial * way;
     for (int d = 0; d < dim; ++d)
       {
         fields[d][p] += way[d];
         if (layout.has_reference())
-          fields[fields.size() - dim + d][p] += way[d];
+          fields[fields.size() - dim + d][p] += initially[d];
       }
+  }
+
+
+
+  // Asked of all points before any changes.
+  template <int dim>
+  std::vector<dealii::Tensor<2, dim>>
+  MaterialPoints<dim>::initial_gradients(
+    const std::vector<std::size_t> &which) const
+  {
+    std::vector<dealii::Tensor<2, dim>> result(which.size());
+    if (!layout.has_reference() || which.empty())
+      return result;
+    InitialPlaces<dim> places(grid, *this);
+    for (std::size_t i = 0; i < which.size(); ++i)
+      result[i] = places.gradient(cell[which[i]]);
+    return result;
   }
 
 
@@ -77,11 +220,13 @@ namespace limber
                              std::uint64_t                   next_id)
   {
     constexpr unsigned int n_children = 1 << dim;
+    const auto             initial    = initial_gradients(which);
     std::size_t            last       = size();
     resize(last + which.size() * (n_children - 1));
     const PointView<dim> points = view();
-    for (const std::size_t p : which)
+    for (std::size_t i = 0; i < which.size(); ++i)
       {
+        const std::size_t p = which[i];
         // column k: from the point to its children along its edge k
         dealii::Tensor<2, dim> shifts = shifts_of_children(points, p, spacing);
         for (int d = 0; d < dim; ++d)
@@ -113,9 +258,9 @@ namespace limber
           {
             move(p, last);
             ids[last] = next_id++;
-            shift_point(last, way_to(child));
+            shift_point(last, way_to(child), initial[i]);
           }
-        shift_point(p, way_to(0));
+        shift_point(p, way_to(0), initial[i]);
       }
     ++n_reorderings;
   }
@@ -129,10 +274,15 @@ namespace limber
   MaterialPoints<dim>::divide(const std::vector<Division<dim>> &which,
                               std::uint64_t                     next_id)
   {
-    std::size_t last = size();
-    std::size_t all  = last;
+    std::size_t              last = size();
+    std::size_t              all  = last;
+    std::vector<std::size_t> numbers;
     for (const Division<dim> &division : which)
-      all += division.parts - 1;
+      {
+        all += division.parts - 1;
+        numbers.push_back(division.point);
+      }
+    const auto initial = initial_gradients(numbers);
     resize(all);
     const PointView<dim> points  = view();
     const auto           cell_at = [&](const std::size_t             p,
@@ -143,9 +293,10 @@ namespace limber
       return grid.bins.cell_at(x);
     };
     double energy = 0;
-    for (const Division<dim> &division : which)
+    for (std::size_t i = 0; i < which.size(); ++i)
       {
-        const std::size_t      p     = division.point;
+        const Division<dim>   &division = which[i];
+        const std::size_t      p        = division.point;
         const unsigned int     along = division.direction, n = division.parts;
         const double           end  = 0.5 * (n - 1); // in steps
         dealii::Tensor<1, dim> step = 2. / n * division.half_edge;
@@ -168,7 +319,7 @@ namespace limber
         const auto place = [&](const std::size_t q, const unsigned int part) {
           const dealii::Tensor<1, dim> way = (part - end) * step;
           cell[q]                          = cell_at(q, way);
-          shift_point(q, way);
+          shift_point(q, way, initial[i]);
           for (int d = 0; d < dim; ++d)
             points.velocity[d][q] += division.rate * way[d];
           energy += 0.5 * points.mass[q] * division.rate * division.rate *

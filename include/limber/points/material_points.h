@@ -205,8 +205,10 @@ namespace limber
     /**
      * Let each of these points become 2^dim of half its size, side by side in
      * its cell, that share its mass and are otherwise what it was. So sums over
-     * points and, as linear functions see them, over nodes do not change. A
-     * domain becomes its 2^dim halves. With @p spacing of points of size class
+     * points and, as linear functions see them, over nodes do not change. Their
+     * initial places, if known, are shifted by the linear function of the
+     * present place that those in the cell follow. A domain becomes its 2^dim
+     * halves. With @p spacing of points of size class
      * 0, m, that have none. One keeps the number, the others get numbers from
      * @p next_id on.
      */
@@ -281,7 +283,11 @@ namespace limber
                        std::size_t                    p,
                        const std::array<double, dim> &spacing) const;
     void
-    shift_point(std::size_t p, const dealii::Tensor<1, dim> &way);
+    shift_point(std::size_t                   p,
+                const dealii::Tensor<1, dim> &way,
+                const dealii::Tensor<2, dim> &initial);
+    std::vector<dealii::Tensor<2, dim>>
+    initial_gradients(const std::vector<std::size_t> &which) const;
     double
     room_in_cell(const PointView<dim> &points,
                  std::size_t           p,
