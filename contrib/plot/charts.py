@@ -83,6 +83,8 @@ ALONE = {
     "replace": ("#E69F00", "D", "-."),
     "fine everywhere": ("#0072B2", "o", "-"),
     "fine around the footing": ("#D55E00", "s", "--"),
+    "fine near the surface": ("#009E73", "^", "--"),
+    "fine where sheared": ("#CC79A7", "D", "-."),
     "exact": ("#000000", "", "-"), "literature": ("#000000", "^", "")}
 
 # Marker and line of a kernel that comes before or behind a treatment:

@@ -23,7 +23,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 LINE = re.compile(r"^(Advised|A trade|Not advised): ([^.]+)\. .*?Set ('.*')\. "
-                  r"Saves: a factor of (\S+) in CPU time.*?\. "
+                  r"Saves: (?:a factor of (\S+) in CPU time)?.*?\. "
                   r"Changes: (.*)\. Reason: (.*)\.$")
 MEASURED = re.compile(r"measured until (\S+) s, (.*) by (\S+) %$")
 
@@ -39,7 +39,7 @@ class Piece:
         self.judgement, self.what, entries, factor, changes, self.ground = (
             found.groups())
         self.settings = re.findall(r"'((?:[^']|'s )*)'", entries)
-        self.factor = float(factor)
+        self.factor = float(factor or 1)  # of memory alone there is none
         measured = MEASURED.search(changes)
         self.until = float(measured.group(1)) if measured else None
         self.quantity = measured.group(2) if measured else ""
