@@ -132,13 +132,16 @@ stopped by signal n.
 
 
 
+    /** @p factor: in CPU time; 0 where it is not known. */
     std::string
     gain_in_words(const Advice &advice, const double factor)
     {
-      std::string text = "a factor of " + brief(factor) + " in CPU time";
+      std::vector<std::string> gains;
+      if (factor > 0)
+        gains.push_back("a factor of " + brief(factor) + " in CPU time");
       if (advice.memory > 0)
-        text += ", " + brief(advice.memory / 1048576) + " MB";
-      return text;
+        gains.push_back(brief(advice.memory / 1048576) + " MB");
+      return join(gains, ", ");
     }
 
 
@@ -171,7 +174,96 @@ stopped by signal n.
                 << advice.text << ". Set " << join(settings, ", ")
                 << ". Saves: " << gain_in_words(advice, factor)
                 << ". Changes: " << changes_in_words(advice, effect)
-                << ". Reason: " << judged.ground << ".\n";
+                << ". Reason: " << judged.ground << "."
+                << std::endl; // the next one may take a minute
+    }
+
+
+
+    /** What is done now, on the error stream: it may take a while. */
+    void
+    tell_progress(const std::string &text)
+    {
+      std::cerr << text << "..." << std::endl;
+    }
+
+
+
+    /** What the runs that support an advice have in common. */
+    template <int dim>
+    struct Trials
+    {
+      const std::string             &path;
+      const Problem<dim>            &problem;
+      const std::vector<std::string> overrides;
+      // Those of a scene with the same equations at all points that is built
+      // sooner, where the scene as it is takes long
+      const std::vector<std::string> lean;
+      const AdviseOptions           &options;
+      std::optional<Trial>           base;
+      double                         way = 0; // see longest_way()
+
+      Trial
+      run(const std::string              &what,
+          const std::vector<std::string> &settings) const
+      {
+        tell_progress("Running " + what + ", for " + brief(options.seconds) +
+                      " s at most");
+        Trial result = try_scene(path, settings, options.seconds);
+        stop_if_asked();
+        return result;
+      }
+
+      /** Runs the scene as it is before the first, and then with the advice. */
+      void
+      weigh(const Advice &advice)
+      {
+        if (!base)
+          {
+            base = run("the scene as it is", lean);
+            refuse_failed(*base, path);
+            double edge = problem.grid.finest_edge(0);
+            for (unsigned int d = 1; d < dim; ++d)
+              edge = std::min(edge, problem.grid.finest_edge(d));
+            way = longest_way(base->table, edge);
+          }
+        // Another box or lattice takes the place of that of the lean scene.
+        const bool sets_grid =
+          std::any_of(advice.settings.begin(),
+                      advice.settings.end(),
+                      [](const std::string &setting) {
+                        return setting.rfind("Grid/", 0) == 0;
+                      });
+        auto all = sets_grid ? overrides : lean;
+        all.insert(all.end(), advice.settings.begin(), advice.settings.end());
+        const Trial changed = run("it with the advice on '" + advice.what + "'",
+                                  all);
+        const Effect effect = compare_trials(problem, *base, changed);
+        tell(advice,
+             judge_advice(advice, changed, effect, options.error, way),
+             effect.factor,
+             effect);
+      }
+    };
+
+
+
+    /**
+     * The advice that makes empty cells coarse, if there are so many that it
+     * takes some seconds to build the scene as it is. No run needs to support
+     * it, as no point gets into a coarse cell.
+     */
+    template <int dim>
+    std::optional<Advice>
+    advise_lean_grid(const SceneFile &scene, const Problem<dim> &problem)
+    {
+      constexpr double many_cells = 3e5;
+      double           cells      = 1;
+      for (const unsigned int n : problem.grid.cells)
+        cells *= n;
+      if (problem.grid.levels > 0 || cells < many_cells)
+        return {};
+      return advise_levels(scene, problem);
     }
 
 
@@ -185,43 +277,37 @@ stopped by signal n.
                 const AdviseOptions            &options)
     {
       const Problem<dim> problem = read_problem<dim>(scene);
-      check_size(problem, Task::run, this_machine());
-      const auto           found = find_advice<dim>(scene,
-                                          problem,
-                                          options.error,
-                                          first_step_of(path, overrides));
-      std::optional<Trial> base;
-      double               way = 0;
-      for (const Advice &advice : found)
+      auto               lean    = overrides;
+      const auto         coarse  = advise_lean_grid(scene, problem);
+      if (coarse)
         {
-          if (advice.factor > 0)
-            {
-              tell(advice,
-                   {Judgement::advised, advice.ground},
-                   advice.factor,
-                   {});
-              continue;
-            }
-          if (!base)
-            {
-              base = try_scene(path, overrides, options.seconds);
-              stop_if_asked();
-              refuse_failed(*base, path);
-              double edge = problem.grid.finest_edge(0);
-              for (unsigned int d = 1; d < dim; ++d)
-                edge = std::min(edge, problem.grid.finest_edge(d));
-              way = longest_way(base->table, edge);
-            }
-          auto all = overrides;
-          all.insert(all.end(), advice.settings.begin(), advice.settings.end());
-          const Trial changed = try_scene(path, all, options.seconds);
-          stop_if_asked();
-          const Effect effect = compare_trials(problem, *base, changed);
-          tell(advice,
-               judge_advice(advice, changed, effect, options.error, way),
-               effect.factor,
-               effect);
+          lean.insert(lean.end(),
+                      coarse->settings.begin(),
+                      coarse->settings.end());
+          tell(*coarse,
+               {Judgement::advised,
+                "no point gets into a coarse cell; the runs that follow have "
+                "them, as the scene as it is takes long to build"},
+               0,
+               {});
         }
+      check_size(read_problem<dim>(SceneFile(path, lean)),
+                 Task::run,
+                 this_machine());
+      tell_progress("Building the scene");
+      const auto found =
+        find_advice<dim>(scene, problem, options.error, first_step_of(path, lean));
+      Trials<dim> trials{path, problem, overrides, lean, options, {}};
+      for (const Advice &advice : found)
+        if (coarse && advice.what == coarse->what)
+          continue;
+        else if (advice.factor > 0)
+          tell(advice,
+               {Judgement::advised, advice.ground},
+               advice.factor,
+               {});
+        else
+          trials.weigh(advice);
       if (found.empty())
         std::cout << "Nothing to spare was found for an error of "
                   << brief(100 * options.error) << " %.\n";

@@ -16,6 +16,7 @@ TOP = Path(__file__).resolve().parents[2]
 SINGLETON = {"OMPI_MCA_pml": "ob1",
              "OMPI_MCA_btl": "self,vader"}
 CANTILEVER = TOP / "prm/cantilever.prm"
+CANTILEVER_3D = TOP / "prm/verification/cantilever_3d.prm"
 FREE_BEAM = TOP / "prm/verification/free_soft_beam.prm"
 SLOPE = TOP / "prm/benchmarks/slope_stability.prm"
 OEDOMETER = TOP / "prm/verification/oedometer.prm"
@@ -123,6 +124,70 @@ def exact(folder):
             expect(error < limit, f"{name}, {field}: {error:.2g}")
         expect(fields["pressure"]["relative_l2"] is None,
                "what the scene does not give is not compared")
+
+
+def levels(folder):
+    """Cells of two sizes against elements and an exact solution: an error between
+    those of coarse and of fine cells, also of points that were split on the way,
+    and that of fine cells where all that holds points is fine."""
+    part = ("Grid/Levels=1", "Grid/Refine=part")
+    root = (*part, "Grid/Refine part/Where=8/3 - x")
+    grows = (*part, "Grid/Refine part/Where=1 + 2.5*t - x")
+    whole = (*part, "Grid/Refine part/Criterion=body",
+             "Grid/Refine part/Bodies=beam")
+    common = ("End time=3", "Output/Time interval=1.5",
+              "Body beam/Frame=current", "Body beam/Locking treatment=cell",
+              "Body beam/Neo hookean/Poisson's ratio=0.3", "Method/Kernel=linear")
+    for scene, coarse, fine in (
+            (CANTILEVER, "36, 20", "72, 40"),
+            (CANTILEVER_3D, "18, 6, 6", "36, 12, 12")):
+        reference = folder / scene.stem / "fem"
+        limber("reference", scene, "--output-directory", reference, code=4,
+               changes=(*common, "Reference/Elements over depth=2"))
+        errors, split = {}, {}
+        for name, changes in (
+                ("coarse", ("Grid/Cells=" + coarse,)),
+                ("fine", ("Grid/Cells=" + fine,)),
+                ("root", ("Grid/Cells=" + coarse, *root)),
+                ("grows", ("Grid/Cells=" + coarse, *grows)),
+                ("whole", ("Grid/Cells=" + coarse, *whole))):
+            run = folder / scene.stem / name
+            limber(scene, "--output-directory", run, code=4,
+                   changes=(*common, "Output/Point arrays=true", *changes))
+            limber("compare", run, reference)
+            found = json.loads((run / "comparison.json").read_text())
+            expect(found["left_out"] == 0, f"{name}: every point is compared")
+            errors[name] = {field: found["fields"][field]["relative_l2"]
+                            for field in ("displacement", "stress")}
+            split[name] = json.loads((run / "summary.json").read_text()).get(
+                "adaptation", {}).get("points split", 0)
+            print(scene.stem, name, errors[name])
+        for field in ("displacement", "stress"):
+            coarse_one, fine_one = (errors["coarse"][field],
+                                    errors["fine"][field])
+            expect(abs(errors["whole"][field] / fine_one - 1) < 1e-6,
+                   f"{scene.stem}, {field}: fine where there are points")
+            for name in ("root", "grows"):
+                share = errors[name][field] / coarse_one
+                expect(share < 0.75, f"{scene.stem}, {field}: fine at the root, "
+                       f"'{name}', {share:.3g} of the error of coarse cells")
+        expect(split["grows"] > 200, "points are split on the way")
+
+    # Parts of points were where the exact displacement says.
+    changes = ("Grid/Cells=16, 16", "Output/Time interval=0.125",
+               "Output/Point arrays=true")
+    moving = "Grid/Refine part/Where=0.2 - abs(x - 0.1 - 1.6*t)"
+    errors = {}
+    for name, more in (("square", ()), ("moving", (*part, moving))):
+        limber(MANUFACTURED, "--output-directory", folder / name, code=4,
+               changes=(*changes, "Check u/Tolerance=0", *more))
+        limber("compare", folder / name, "exact")
+        errors[name] = json.loads(
+            (folder / name / "comparison.json").read_text())["fields"][
+                "displacement"]["relative_l2"]
+    expect(errors["moving"] < errors["square"],
+           f"fine cells that pass: {errors['moving']:.3g}, without them "
+           f"{errors['square']:.3g}")
 
 
 def ramp(folder):

@@ -127,6 +127,36 @@ class Advice(unittest.TestCase):
         self.assertNotIn("Levels", self.advise(scene, *settings,
                                                "Method/Kernel=quadratic"))
 
+    def test_a_box_that_is_built_slowly_is_answered_at_once(self):
+        # Sixteen times the cells of the block, which take twenty seconds to build
+        # and half a minute per run; what is said first must not wait for them.
+        command = [ARGUMENTS.limber, "advise",
+                   str(Path(ARGUMENTS.prm) / "benchmarks/empty_room.prm"),
+                   "--set", "Grid/Cells=120, 120, 120",
+                   "--set", "Grid/Upper corner=2.9, 2.9, 2.9"]
+        with tempfile.TemporaryFile("w+") as progress, subprocess.Popen(
+                command, text=True, stdout=subprocess.PIPE,
+                stderr=progress) as child:
+            begin = time.monotonic()
+            first = child.stdout.readline()
+            waited = time.monotonic() - begin
+            rest = child.stdout.read()
+            self.assertEqual(child.wait(), 0, rest)
+            progress.seek(0)
+            said = progress.read()
+        self.assertLess(waited, 10, first)
+        piece = advice_table.Piece(first.rstrip("\n"))
+        self.assertEqual((piece.judgement, piece.what), ("Advised", "Levels"))
+        self.assertIn("Grid/Cells=15, 15, 15", piece.settings)
+        self.assertIn("Grid/Levels=3", piece.settings)
+        self.assertIn("MB", first)
+        # the others are weighed against the scene with coarse cells
+        self.assertIn("Advised: Grid.", rest)
+        self.assertNotIn("Levels.", rest)
+        for text in ("Building the scene", "Running the scene as it is",
+                     "Running it with the advice on 'Grid'"):
+            self.assertIn(text, said)
+
     def test_levels_that_no_point_sees(self):
         scene = "adaptive_throw.prm"
         self.assertNotIn("Levels", self.advise(scene))

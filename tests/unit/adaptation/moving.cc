@@ -6,6 +6,7 @@
 #include <support/scene_parts.h>
 #include <support/scene_run.h>
 
+#include <map>
 #include <random>
 
 /**
@@ -217,6 +218,85 @@ namespace
     expect_equal(after.nodes, before.nodes, 1e-13);
   }
 } // namespace
+
+
+
+namespace
+{
+  // Each cell has been turned about its middle and stretched, too far for a
+  // part to have been displaced as its whole point.
+  template <int dim>
+  void
+  expect_initial_places_of_parts(const bool mixed)
+  {
+    SceneRun<dim> run(block<dim>(dim == 2 ? "set Upper corner = 1, 1" :
+                                            "set Upper corner = 1, 1, 1"));
+    MaterialPoints<dim> &points = run.bodies[0]->points;
+    ASSERT_GT(points.reference_position(0).norm(), 0);
+    dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
+    F[0][0] = F[1][1] = 1.1 * std::cos(1.);
+    F[0][1]           = -1.1 * std::sin(1.);
+    F[1][0]           = 1.1 * std::sin(1.);
+    const auto middle = [&](const std::size_t p) {
+      const auto &cell = run.grid.geometry[points.view().cell[p]];
+      dealii::Tensor<1, dim> result;
+      for (int d = 0; d < dim; ++d)
+        result[d] = cell.origin[d] + 0.5 / cell.inverse_edge[d];
+      return result;
+    };
+    const auto place = [&](const std::size_t p) {
+      dealii::Tensor<1, dim> result;
+      for (int d = 0; d < dim; ++d)
+        result[d] = points.view().position[d][p];
+      return result;
+    };
+    std::mt19937                           engine(1);
+    std::uniform_real_distribution<double> anywhere(-0.2, 0.2);
+    std::vector<std::size_t>               all(points.size());
+    std::map<std::uint64_t, dealii::Tensor<1, dim>> displacement;
+    for (std::size_t p = 0; p < all.size(); ++p)
+      {
+        all[p]              = p;
+        const auto position = middle(p) + F * (place(p) - middle(p));
+        for (int d = 0; d < dim; ++d)
+          points.view().position[d][p] =
+            mixed ? middle(p)[d] + anywhere(engine) : position[d];
+        displacement[points.id(p)] = place(p) - points.reference_position(p);
+      }
+    std::array<double, dim> spacing;
+    spacing.fill(0.25);
+    points.split(all, spacing, all.size());
+    double largest = 0, shift = 0;
+    for (std::size_t p = 0; p < points.size(); ++p)
+      {
+        const dealii::Tensor<1, dim> initial(points.reference_position(p)),
+          expected = middle(p) + invert(F) * (place(p) - middle(p)),
+          copied   = place(p) - initial;
+        largest = std::max(largest, (initial - expected).norm());
+        if (displacement.count(points.id(p)) > 0)
+          shift = std::max(shift, (copied - displacement[points.id(p)]).norm());
+      }
+    if (mixed) // somewhere within reach, whatever the fit says
+      EXPECT_LT(shift, 0.25);
+    else
+      {
+        EXPECT_LT(largest, 1e-13);
+        EXPECT_GT(shift, 0.04); // of 0.09 that the parts are from the middle
+      }
+  }
+} // namespace
+
+
+
+TEST(Splitting, PartsWereWhereTheDeformationSays)
+{
+  for (const bool mixed : {false, true})
+    {
+      SCOPED_TRACE(mixed ? "mixed" : "turned");
+      expect_initial_places_of_parts<2>(mixed);
+      expect_initial_places_of_parts<3>(mixed);
+    }
+}
 
 
 
