@@ -148,10 +148,8 @@ namespace limber
           {
             const Refinement<dim> &refinement = grid.description.refinements[r];
             if (refinement.level <= result ||
-                !is_in<dim>(refinement,
-                            cell,
-                            time,
-                            own == grid.description.levels))
+                !is_in<dim>(
+                  refinement, cell, time, own == grid.description.levels))
               continue;
             unsigned int level = 0;
             switch (refinement.criterion)

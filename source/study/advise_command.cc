@@ -236,8 +236,8 @@ stopped by signal n.
                       });
         auto all = sets_grid ? overrides : lean;
         all.insert(all.end(), advice.settings.begin(), advice.settings.end());
-        const Trial changed = run("it with the advice on '" + advice.what + "'",
-                                  all);
+        const Trial changed =
+          run("it with the advice on '" + advice.what + "'", all);
         const Effect effect = compare_trials(problem, *base, changed);
         tell(advice,
              judge_advice(advice, changed, effect, options.error, way),
@@ -295,17 +295,16 @@ stopped by signal n.
                  Task::run,
                  this_machine());
       tell_progress("Building the scene");
-      const auto found =
-        find_advice<dim>(scene, problem, options.error, first_step_of(path, lean));
+      const auto  found = find_advice<dim>(scene,
+                                          problem,
+                                          options.error,
+                                          first_step_of(path, lean));
       Trials<dim> trials{path, problem, overrides, lean, options, {}};
       for (const Advice &advice : found)
         if (coarse && advice.what == coarse->what)
           continue;
         else if (advice.factor > 0)
-          tell(advice,
-               {Judgement::advised, advice.ground},
-               advice.factor,
-               {});
+          tell(advice, {Judgement::advised, advice.ground}, advice.factor, {});
         else
           trials.weigh(advice);
       if (found.empty())

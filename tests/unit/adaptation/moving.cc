@@ -229,8 +229,9 @@ namespace
   void
   expect_initial_places_of_parts(const bool mixed)
   {
-    SceneRun<dim> run(block<dim>(dim == 2 ? "set Upper corner = 1, 1" :
-                                            "set Upper corner = 1, 1, 1"));
+    SceneRun<dim>        run(block<dim>(dim == 2 ? "set Upper corner = 1, 1" :
+                                                   "set Upper corner = 1, 1, 1"),
+                      {"Output/Time interval=1", "Output/Fields=displacement"});
     MaterialPoints<dim> &points = run.bodies[0]->points;
     ASSERT_GT(points.reference_position(0).norm(), 0);
     dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
@@ -238,7 +239,7 @@ namespace
     F[0][1]           = -1.1 * std::sin(1.);
     F[1][0]           = 1.1 * std::sin(1.);
     const auto middle = [&](const std::size_t p) {
-      const auto &cell = run.grid.geometry[points.view().cell[p]];
+      const auto            &cell = run.grid.geometry[points.view().cell[p]];
       dealii::Tensor<1, dim> result;
       for (int d = 0; d < dim; ++d)
         result[d] = cell.origin[d] + 0.5 / cell.inverse_edge[d];
@@ -250,9 +251,9 @@ namespace
         result[d] = points.view().position[d][p];
       return result;
     };
-    std::mt19937                           engine(1);
-    std::uniform_real_distribution<double> anywhere(-0.2, 0.2);
-    std::vector<std::size_t>               all(points.size());
+    std::mt19937                                    engine(1);
+    std::uniform_real_distribution<double>          anywhere(-0.2, 0.2);
+    std::vector<std::size_t>                        all(points.size());
     std::map<std::uint64_t, dealii::Tensor<1, dim>> displacement;
     for (std::size_t p = 0; p < all.size(); ++p)
       {
@@ -272,7 +273,7 @@ namespace
         const dealii::Tensor<1, dim> initial(points.reference_position(p)),
           expected = middle(p) + invert(F) * (place(p) - middle(p)),
           copied   = place(p) - initial;
-        largest = std::max(largest, (initial - expected).norm());
+        largest    = std::max(largest, (initial - expected).norm());
         if (displacement.count(points.id(p)) > 0)
           shift = std::max(shift, (copied - displacement[points.id(p)]).norm());
       }
