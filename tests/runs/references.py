@@ -22,6 +22,7 @@ SLOPE = TOP / "prm/benchmarks/slope_stability.prm"
 OEDOMETER = TOP / "prm/verification/oedometer.prm"
 TUBE = TOP / "prm/verification/plastic_tube.prm"
 STRIP = TOP / "prm/verification/strip_load.prm"
+STRETCHED = TOP / "prm/studies/scenes/strip.prm"
 MANUFACTURED = TOP / "prm/verification/manufactured_solution.prm"
 FAILED = []
 
@@ -188,6 +189,18 @@ def levels(folder):
     expect(errors["moving"] < errors["square"],
            f"fine cells that pass: {errors['moving']:.3g}, without them "
            f"{errors['square']:.3g}")
+
+    # Likewise where points are divided as they become longer, here ten times.
+    run = folder / "strip"
+    limber(STRETCHED, "--output-directory", run,
+           changes=("End time=9", "Output/Time interval=9",
+                    "Output/Point arrays=true",
+                    "Body strip/Split stretched points=true",
+                    "Exact solution/Displacement=x*t; 0"))
+    limber("compare", run, "exact")
+    error = json.loads((run / "comparison.json").read_text())[
+        "fields"]["displacement"]["relative_l2"]
+    expect(error < 0.015, f"points that were divided: {error:.3g}")
 
 
 def ramp(folder):
