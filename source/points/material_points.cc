@@ -21,6 +21,7 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
+             (layout.acceleration ? dim : 0) +
              (layout.crossings ? 1 : 0) + (layout.reach ? 1 : 0) +
              (layout.edges ? dim : 0) +
              n_domain_components(layout.domains, dim) +
@@ -132,6 +133,9 @@ namespace limber
     if (layout.affine)
       for (auto &array : result.affine)
         array = fields[f++].data();
+    if (layout.acceleration)
+      for (auto &array : result.acceleration)
+        array = fields[f++].data();
     if (layout.crossings)
       result.crossings = fields[f++].data();
     if (layout.reach)
@@ -214,6 +218,8 @@ namespace limber
     numbered("deviator", layout.deviator ? n_deviator<dim> : 0);
     numbered("history", layout.n_history);
     numbered("affine", layout.affine ? dim * dim : 0);
+    if (layout.acceleration)
+      components("acceleration", axes);
     if (layout.crossings)
       names.push_back("crossings");
     if (layout.reach)

@@ -87,6 +87,17 @@ namespace limber
                          {"quasi-static"},
                          "Time integration",
                          parameters.present_section());
+    parameters.declare("Spectral radius at infinity",
+                       "1",
+                       admissible::number_from_to(0, 1, "0.8"),
+                       "r, no unit, of implicit steps: what a step leaves of "
+                       "vibrations that are much faster than it "
+                       "(generalised-alpha method); 1: all, the trapezoidal "
+                       "rule.");
+    parameters.only_with("Spectral radius at infinity",
+                         {"implicit"},
+                         "Time integration",
+                         parameters.present_section());
     parameters.declare("Lost points limit",
                        "0",
                        admissible::number_from_to(0, 1, "0.01"),
@@ -120,6 +131,7 @@ namespace limber
     method.time_step           = section.number("Time step");
     method.newton_tolerance    = section.number("Newton tolerance");
     method.ghost_penalty       = section.number("Ghost penalty");
+    method.spectral_radius     = section.number("Spectral radius at infinity");
     method.lost_points_limit   = section.number("Lost points limit");
     method.energy_growth_limit = section.number("Energy growth limit");
 
@@ -139,6 +151,13 @@ namespace limber
                        ". Usually one of them was changed alone. Set " +
                        remedy + ".");
     };
+    if (method.spectral_radius < 1 &&
+        method.integration != TimeIntegration::implicit_steps)
+      refuse("Spectral radius at infinity",
+             "damps implicit steps alone, but 'Time integration' is " +
+               in_quotes(section.text("Time integration")),
+             "'Time integration = implicit', or 'Spectral radius at infinity "
+             "= 1'");
     const std::string transfer =
       "'Transfer = " + section.text("Transfer") + "'";
     if (!filters_velocity(method.transfer))

@@ -153,6 +153,7 @@ namespace limber
       layout.n_history     = stress->n_history();
       layout.volumetric    = stress->volumetric();
       layout.affine        = is_affine(problem.method.transfer);
+      layout.acceleration  = problem.method.spectral_radius < 1;
       layout.crossings     = !body.is_liquid && body.frame == Frame::current;
       layout.reach         = presses_at_points(problem) && !body.is_liquid;
       layout.domains       = domain_form(kernel);

@@ -109,6 +109,36 @@ namespace limber
 
 
 
+  // Generalised-alpha changes the momentum by other forces than the mean of
+  // those at the ends of the step: energy and impulse are those of its damping.
+  // The trapezoidal rule has none.
+  template <int dim>
+  void
+  NewtonIntegrator<dim>::account_for_damping(const StepQuestion &question,
+                                             const Values       &displacement,
+                                             const Values       &new_velocity,
+                                             const double        step)
+  {
+    if (!scheme.needs_acceleration() ||
+        dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator) > 0)
+      return;
+    double damped = 0;
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      if (!equations.is_held(k))
+        {
+          const double mean =
+            0.5 * (question.external[k] - equations.forces()[k]);
+          const double change = masses[k] * (new_velocity[k] - velocities[k]);
+          damped += mean * displacement[k] -
+                    0.5 * change * (new_velocity[k] + velocities[k]);
+          parts.ledger.load_impulse[k % dim] += change - step * mean;
+        }
+    parts.ledger.viscous += damped;
+    lost_in_time += damped;
+  }
+
+
+
 #define INSTANTIATE(dim)                                                         \
   template double              NewtonIntegrator<dim>::load_factor(double) const; \
   template std::vector<double> NewtonIntegrator<dim>::loads_at(double,           \
@@ -119,7 +149,9 @@ namespace limber
                                                const Values &,                   \
                                                const Values &,                   \
                                                double,                           \
-                                               double);
+                                               double);                          \
+  template void NewtonIntegrator<dim>::account_for_damping(                      \
+    const StepQuestion &, const Values &, const Values &, double);
 
   INSTANTIATE(2)
   INSTANTIATE(3)

@@ -33,6 +33,7 @@ namespace limber
     , equations(parts)
     , pressures(parts, equations.numbered_nodes(), loads)
     , newton(equations, parts.problem.method.newton_tolerance, clock)
+    , scheme(parts.problem.method.spectral_radius)
     , longest(parts.problem.method.time_step > 0 ?
                 parts.problem.method.time_step :
                 share_of_run * parts.problem.end_time)
@@ -146,6 +147,9 @@ namespace limber
               "; lost to forces out of balance between steps: " +
                 brief(lost_between_steps) + " J" :
               "") +
+           (lost_in_time != 0 ?
+              "; damped by generalised-alpha: " + brief(lost_in_time) + " J" :
+              "") +
            (equations.linear_iterations() > 0 ?
               std::string(equations.is_mixed() ?
                             "; minimal residuals of displacements and "
@@ -230,21 +234,52 @@ namespace limber
 
 
 
-  // Lumped masses, and in motion the velocities that points bring.
+  namespace
+  {
+    // Sweeps that map velocities map accelerations of such a view.
+    template <int dim>
+    PointView<dim>
+    with_acceleration_as_velocity(PointView<dim> points)
+    {
+      points.velocity = points.acceleration;
+      return points;
+    }
+  } // namespace
+
+
+
+  // Lumped masses, and in motion the velocities and accelerations that points
+  // bring.
   template <int dim>
   void
   NewtonIntegrator<dim>::gather_nodes()
+  {
+    if (scheme.needs_acceleration())
+      gather(true, accelerations);
+    else
+      accelerations.assign(equations.size(), 0.);
+    gather(false, velocities);
+  }
+
+
+
+  // Means by mass of velocities or accelerations; also the masses.
+  template <int dim>
+  void
+  NewtonIntegrator<dim>::gather(const bool of_acceleration, Values &means)
   {
     parts.nodes.clear();
     GiveToGrid what;
     what.force = false;
     for (const auto &body : parts.bodies)
-      points_to_grid<dim>(body->points.view(),
+      points_to_grid<dim>(of_acceleration ? with_acceleration_as_velocity(
+                                              body->points.view()) :
+                                            body->points.view(),
                           parts.nodes.view(),
                           what,
                           nullptr);
     masses.assign(equations.size(), 0.);
-    velocities.assign(equations.size(), 0.);
+    means.assign(equations.size(), 0.);
     parts.nodes.start_sum(Layout::mass, Layout::momentum + dim);
     parts.nodes.finish_sum();
     const NumberedNodes<dim> &nodes = equations.numbered_nodes();
@@ -255,10 +290,10 @@ namespace limber
             parts.nodes.record(nodes.on_grid()[k / dim]);
           masses[k] = record[Layout::mass];
           if (masses[k] > 0)
-            velocities[k] = record[Layout::momentum + k % dim] / masses[k];
+            means[k] = record[Layout::momentum + k % dim] / masses[k];
         }
     nodes.sum(masses);
-    nodes.sum(velocities);
+    nodes.sum(means);
   }
 
 
@@ -293,14 +328,21 @@ namespace limber
     pressures.add_forces(displacement, question.pressure_at_rest);
     equations.numbered_nodes().sum(question.pressure_at_rest);
 
+    // What starts has the acceleration that its forces give it.
+    Values former_acceleration = accelerations;
+    if (scheme.needs_acceleration() && time == 0)
+      for (std::size_t k = 0; k < equations.size(); ++k)
+        former_acceleration[k] = masses[k] > 0 ? net[k] / masses[k] : 0;
+
     question.inertia.assign(equations.size(), 0.);
     question.inertial_displacement.assign(equations.size(), 0.);
     if (in_motion)
       for (std::size_t k = 0; k < equations.size(); ++k)
         {
-          question.inertia[k]               = 4 * masses[k] / (step * step);
-          question.inertial_displacement[k] = step * velocities[k];
-          question.external[k] += net[k];
+          question.inertia[k] = scheme.inertia() * masses[k] / (step * step);
+          question.inertial_displacement[k] =
+            scheme.ahead(velocities[k], former_acceleration[k], step);
+          question.external[k] += scheme.share_of_beginning() * net[k];
         }
     clock.lap(NewtonVerb::evaluate_forces);
     if (in_motion)
@@ -313,25 +355,41 @@ namespace limber
     if (!stays_with_ranks(displacement))
       return false;
 
-    // Pressures are known now; to the account they are loads like others.
+    // Pressures are known now; to the account they are loads like others, and
+    // the forces of both ends count alike.
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
-        question.external[k] += equations.pressure_forces()[k];
+        question.external[k] +=
+          equations.pressure_forces()[k] +
+          (in_motion ? (1 - scheme.share_of_beginning()) * net[k] : 0);
         given[k] += 0.5 * (former_pressure[k] + equations.pressure_forces()[k]);
       }
 
-    // v1 = v0 + 2 (u / dt - v0); sides say how fast they are at the end
-    Values new_velocity(equations.size());
+    // Sides say how fast they are at the end, and how much faster than before.
+    Values new_velocity(equations.size()), new_acceleration(equations.size());
     if (in_motion)
       {
-        new_velocity = equations.held_velocities(time + step);
+        new_velocity         = equations.held_velocities(time + step);
+        const Values of_side = equations.held_velocities(time);
         for (std::size_t k = 0; k < equations.size(); ++k)
-          if (!equations.is_held(k))
-            new_velocity[k] = 2 * displacement[k] / step - velocities[k];
+          if (equations.is_held(k))
+            new_acceleration[k] = (new_velocity[k] - of_side[k]) / step;
+          else
+            {
+              new_velocity[k]     = scheme.velocity(displacement[k],
+                                                velocities[k],
+                                                former_acceleration[k],
+                                                step);
+              new_acceleration[k] = scheme.acceleration(displacement[k],
+                                                        velocities[k],
+                                                        former_acceleration[k],
+                                                        step);
+            }
       }
     account(question, displacement, new_velocity, given, net, time, step);
+    account_for_damping(question, displacement, new_velocity, step);
     last_step = step;
-    take_motion(displacement, new_velocity);
+    take_motion(displacement, new_velocity, new_acceleration);
     clock.lap(NewtonVerb::move_points);
     return true;
   }
@@ -386,7 +444,8 @@ namespace limber
   template <int dim>
   void
   NewtonIntegrator<dim>::take_motion(const Values &displacement,
-                                     const Values &new_velocity)
+                                     const Values &new_velocity,
+                                     const Values &new_acceleration)
   {
     const NumberedNodes<dim> &nodes    = equations.numbered_nodes();
     const auto                for_each = [&](const auto &work) {
@@ -423,6 +482,19 @@ namespace limber
                        body->points.view(), parts.nodes.view(), {}, nullptr)
                        .speed_squared);
         parts.ledger.viscous += expected - kinetic_energy();
+      }
+    if (scheme.needs_acceleration())
+      {
+        for_each([&](const std::size_t k, double *const record) {
+          record[Layout::increment] = new_acceleration[k] - accelerations[k];
+          record[Layout::velocity]  = new_acceleration[k];
+        });
+        for (const auto &body : parts.bodies)
+          grid_to_points<dim>(
+            with_acceleration_as_velocity(body->points.view()),
+            parts.nodes.view(),
+            {},
+            nullptr);
       }
     const AcceptedMotion accepted = equations.accept(displacement);
     extremes.displacement         = accepted.longest_way;

@@ -20,6 +20,7 @@ namespace limber
     unsigned int n_history  = 0;
     int          volumetric = -1; // history variable; -1: the pressure
     bool         affine     = false;
+    bool         acceleration = false; // of the time integration
     bool         crossings  = false;            // how many cells it has entered
     bool         reach      = false;            // how far its material goes
     DomainForm   domains    = DomainForm::none; // GIMP, CPDI
@@ -313,7 +314,7 @@ namespace limber
     const PointLayout          layout;
 
     // Position, velocity, mass, pressure, deviator, history, affine part,
-    // crossings, reach, edges, domain, deformation gradient; the reference
+    // acceleration, crossings, reach, edges, domain, deformation gradient; the reference
     // position, if there is one, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;

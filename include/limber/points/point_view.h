@@ -77,6 +77,7 @@ namespace limber
     std::array<double *, n_deviator<dim>> deviator{};         // of J sigma, Pa
     std::array<double *, max_history>     history{}; // meaning: the law's
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
+    std::array<double *, dim> acceleration{}; // of generalised-alpha, m/s^2
     // Half edges of the domain (convected.h), m: component d of edge k at
     // d * dim + k, of fixed boxes those with d = k alone; behind them the
     // twists of a hexahedron, component d of twist t at dim * (dim + t) + d

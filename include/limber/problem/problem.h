@@ -359,6 +359,8 @@ namespace limber
     // strain next to the surface, over Young's modulus
     double newton_tolerance = 1e-6;
     double ghost_penalty    = 0.03;
+    // Of implicit steps at infinite frequency: generalised-alpha below 1
+    double spectral_radius = 1;
   };
 
   struct OutputRequest

@@ -2,6 +2,7 @@
 #ifndef limber_time_newton_integrator_h
 #define limber_time_newton_integrator_h
 
+#include <limber/time/generalised_alpha.h>
 #include <limber/time/loads.h>
 #include <limber/time/newton_method.h>
 #include <limber/time/relocation.h>
@@ -11,7 +12,8 @@ namespace limber
   /**
    * Steps at whose end forces are in equilibrium (quasi-static), or those of
    * beginning and end together give the change of momentum (implicit: Newmark's
-   * trapezoidal rule, beta = 1/4, gamma = 1/2). The displacements of the nodes
+   * trapezoidal rule, beta = 1/4, gamma = 1/2, or GeneralisedAlpha, whose
+   * acceleration points carry). The displacements of the nodes
    * in the step are found by Newton's method with line search; points take them
    * when they are found, so that a step that fails leaves all as it was. It is
    * then tried with half the length. doc/theory/implicit_steps.md
@@ -87,6 +89,8 @@ namespace limber
     begin_step();
     void
     gather_nodes();
+    void
+    gather(bool of_acceleration, Values &means);
     bool
     try_step(double time, double step);
     bool
@@ -98,7 +102,14 @@ namespace limber
     double
     kinetic_energy() const;
     void
-    take_motion(const Values &displacement, const Values &new_velocity);
+    take_motion(const Values &displacement,
+                const Values &new_velocity,
+                const Values &new_acceleration);
+    void
+    account_for_damping(const StepQuestion &question,
+                        const Values       &displacement,
+                        const Values       &new_velocity,
+                        double              step);
     void
     account(const StepQuestion &question,
             const Values       &displacement,
@@ -119,7 +130,10 @@ namespace limber
     NewtonClock           clock;
     NewtonMethod<dim>     newton;
 
-    Values masses, velocities; // of the nodes of the step, kg, m/s
+    // Of the nodes of the step, kg, m/s, m/s^2; accelerations of generalised-
+    // alpha alone, else zero
+    const GeneralisedAlpha scheme;
+    Values                 masses, velocities, accelerations;
 
     const double longest;   // of steps that may be asked for, s
     double       next_step; // s
@@ -127,6 +141,7 @@ namespace limber
     StepExtremes extremes;
 
     double        lost_between_steps = 0; // J
+    double        lost_in_time = 0; // by generalised-alpha, J
     std::string   obstacle;               // why the last step failed
     unsigned long steps = 0, iterations = 0, halvings = 0;
     unsigned long most_iterations = 0;
