@@ -93,8 +93,17 @@ namespace limber
         // What the side gives, at the end and as the mean of the step
         double force = 0, mean = 0;
         if (in_motion)
-          force = mean = masses[k] * (new_velocity[k] - velocities[k]) / step -
-                         0.5 * (question.external[k] - equations.forces()[k]);
+          {
+            const double change = masses[k] * (new_velocity[k] - velocities[k]);
+            force = mean =
+              change / step -
+              0.5 * (question.external[k] - equations.forces()[k]);
+            // What points bring and the side does not have is lost as in an
+            // impact.
+            ledger.viscous +=
+              change * (displacement[k] / step -
+                        0.5 * (new_velocity[k] + velocities[k]));
+          }
         else
           {
             force = equations.forces()[k] - question.external[k];

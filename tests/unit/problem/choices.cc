@@ -414,6 +414,39 @@ TEST(Choices, EntriesOfNewtonStepsAreNotedInExplicitOnes)
 
 
 
+// Other steps are refused a radius rather than run without.
+TEST(Choices, SpectralRadiusIsOfImplicitStepsAlone)
+{
+  const auto read = [](const std::string &integration) {
+    return read_problem<2>(
+      SceneFile(ParameterText{"set Bodies = block\nsubsection Body "
+                              "block\nend\nsubsection Method\nset Time "
+                              "integration = " +
+                                integration +
+                                "\nset Time step = 0.1\nset Spectral radius "
+                                "at infinity = 0.8\nend\n",
+                              FileFormat::prm,
+                              "scene"},
+                {}));
+  };
+  EXPECT_EQ(read("implicit").method.spectral_radius, 0.8);
+  for (const std::string word :
+       {"explicit", "semi-implicit", "auto", "quasi-static"})
+    try
+      {
+        read(word);
+        ADD_FAILURE() << word;
+      }
+    catch (const InputError &refusal)
+      {
+        EXPECT_NE(std::string(refusal.what()).find("damps implicit steps"),
+                  std::string::npos)
+          << refusal.what();
+      }
+}
+
+
+
 // A bar along an axis or across, four or eight cells thick; splines are worse.
 TEST(Choices, SlowTorsionIsNoted)
 {
