@@ -21,9 +21,8 @@ namespace limber
     {
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
-             (layout.acceleration ? dim : 0) +
-             (layout.crossings ? 1 : 0) + (layout.reach ? 1 : 0) +
-             (layout.edges ? dim : 0) +
+             (layout.acceleration ? dim : 0) + (layout.crossings ? 1 : 0) +
+             (layout.reach ? 1 : 0) + (layout.edges ? dim : 0) +
              n_domain_components(layout.domains, dim) +
              (layout.initial_frame ? dim * dim : 0) +
              (layout.has_reference() ? dim : 0);

@@ -95,9 +95,8 @@ namespace limber
         if (in_motion)
           {
             const double change = masses[k] * (new_velocity[k] - velocities[k]);
-            force = mean =
-              change / step -
-              0.5 * (question.external[k] - equations.forces()[k]);
+            force = mean = change / step -
+                           0.5 * (question.external[k] - equations.forces()[k]);
             // What points bring and the side does not have is lost as in an
             // impact.
             ledger.viscous +=

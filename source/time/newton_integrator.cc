@@ -272,9 +272,9 @@ namespace limber
     GiveToGrid what;
     what.force = false;
     for (const auto &body : parts.bodies)
-      points_to_grid<dim>(of_acceleration ? with_acceleration_as_velocity(
-                                              body->points.view()) :
-                                            body->points.view(),
+      points_to_grid<dim>(of_acceleration ?
+                            with_acceleration_as_velocity(body->points.view()) :
+                            body->points.view(),
                           parts.nodes.view(),
                           what,
                           nullptr);
@@ -490,11 +490,11 @@ namespace limber
           record[Layout::velocity]  = new_acceleration[k];
         });
         for (const auto &body : parts.bodies)
-          grid_to_points<dim>(
-            with_acceleration_as_velocity(body->points.view()),
-            parts.nodes.view(),
-            {},
-            nullptr);
+          grid_to_points<dim>(with_acceleration_as_velocity(
+                                body->points.view()),
+                              parts.nodes.view(),
+                              {},
+                              nullptr);
       }
     const AcceptedMotion accepted = equations.accept(displacement);
     extremes.displacement         = accepted.longest_way;

@@ -16,17 +16,17 @@ namespace limber
   /** Which quantities the points of a body have to carry. */
   struct PointLayout
   {
-    bool         deviator   = false;
-    unsigned int n_history  = 0;
-    int          volumetric = -1; // history variable; -1: the pressure
-    bool         affine     = false;
+    bool         deviator     = false;
+    unsigned int n_history    = 0;
+    int          volumetric   = -1; // history variable; -1: the pressure
+    bool         affine       = false;
     bool         acceleration = false; // of the time integration
-    bool         crossings  = false;            // how many cells it has entered
-    bool         reach      = false;            // how far its material goes
-    DomainForm   domains    = DomainForm::none; // GIMP, CPDI
-    bool         reference  = false; // reference position, for displacements
-    bool         size_class = false; // the level of cells they are made for
-    bool         edges      = false; // of what they stand for, at the start
+    bool         crossings    = false; // how many cells it has entered
+    bool         reach        = false; // how far its material goes
+    DomainForm   domains      = DomainForm::none; // GIMP, CPDI
+    bool         reference    = false; // reference position, for displacements
+    bool         size_class   = false; // the level of cells they are made for
+    bool         edges        = false; // of what they stand for, at the start
     // Functions of the initial places: also the reference position and F.
     bool initial_frame = false;
 
@@ -314,8 +314,8 @@ namespace limber
     const PointLayout          layout;
 
     // Position, velocity, mass, pressure, deviator, history, affine part,
-    // acceleration, crossings, reach, edges, domain, deformation gradient; the reference
-    // position, if there is one, comes last.
+    // acceleration, crossings, reach, edges, domain, deformation gradient; the
+    // reference position, if there is one, comes last.
     std::vector<std::vector<double>> fields;
     std::vector<std::uint32_t>       cell;
     std::vector<std::uint64_t>       ids;

@@ -141,7 +141,7 @@ namespace limber
     StepExtremes extremes;
 
     double        lost_between_steps = 0; // J
-    double        lost_in_time = 0; // by generalised-alpha, J
+    double        lost_in_time       = 0; // by generalised-alpha, J
     std::string   obstacle;               // why the last step failed
     unsigned long steps = 0, iterations = 0, halvings = 0;
     unsigned long most_iterations = 0;

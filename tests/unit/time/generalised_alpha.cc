@@ -65,25 +65,26 @@ namespace
               const double                    step,
               const std::vector<std::string> &more = {})
   {
-    std::vector<std::string> result = {
-      "Method/Time integration=implicit",
-      "Method/Spectral radius at infinity=" + digits(radius),
-      "Method/Time step=" + digits(step)};
+    std::vector<std::string> result = {"Method/Time integration=implicit",
+                                       "Method/Spectral radius at infinity=" +
+                                         digits(radius),
+                                       "Method/Time step=" + digits(step)};
     result.insert(result.end(), more.begin(), more.end());
     return result;
   }
 
   /** Shares of the lowest mode in displacement and velocity. */
   std::array<double, 2>
-  share_of_lowest_mode(SceneRun<2>                           &run,
+  share_of_lowest_mode(SceneRun<2>                         &run,
                        const std::vector<dealii::Point<2>> &start)
   {
     std::array<double, 2> sum{};
     double                norm = 0;
     for (std::size_t p = 0; p < start.size(); ++p)
       {
-        const double x     = start[run.bodies[0]->points.id(p)][0];
-        const double shape = std::sin(0.5 * dealii::numbers::PI / bar_length * x);
+        const double x = start[run.bodies[0]->points.id(p)][0];
+        const double shape =
+          std::sin(0.5 * dealii::numbers::PI / bar_length * x);
         norm += shape * shape;
         sum[0] += shape * (run.position(p)[0] - x);
         sum[1] += shape * run.velocity(p)[0];
@@ -164,10 +165,6 @@ TEST(GeneralisedAlpha, IsOfSecondOrder)
             {
               const double ratio =
                 (m[i][k] - m[i + 1][k]) / (m[i + 1][k] - m[i + 2][k]);
-              std::printf("radius %g, %s: ratio %.3f\n",
-                          radius,
-                          k == 0 ? "displacement" : "velocity",
-                          ratio);
               EXPECT_NEAR(ratio, 4, 0.6);
             }
           EXPECT_NEAR(m[3][k] / exact[k], 1, 5e-3);
@@ -177,13 +174,41 @@ TEST(GeneralisedAlpha, IsOfSecondOrder)
 
 
 
-// Of vibrations that pass thirty times in a step the displacement is what
-// three roots -r leave, that is x(n+3) = c2 x(n+2) + c1 x(n+1) - r^3 x(n):
-// found from six steps of a bar.
+// A step multiplies displacement, velocity and acceleration of an oscillator by
+// a matrix whose eigenvalues become -r, all three, if it is fast.
+TEST(GeneralisedAlpha, RadiusIsThatOfFastOscillators)
+{
+  const double m = 0.37, dt = 0.0171, k = 1e12 * m / (dt * dt);
+  for (const double r : {0., 0.2, 0.5, 0.8, 0.9, 1.})
+    {
+      const GeneralisedAlpha scheme(r);
+      dealii::Tensor<2, 3>   matrix;
+      for (unsigned int i = 0; i < 3; ++i)
+        {
+          // a step from one of the three, each of the size of x = 1
+          const double x = i == 0, v = (i == 1) / dt, a = (i == 2) / (dt * dt);
+          const double inertia = scheme.inertia() * m / (dt * dt);
+          const double u       = (inertia * scheme.ahead(v, a, dt) -
+                            (1 + scheme.share_of_beginning()) * k * x) /
+                           (inertia + k);
+          matrix[0][i] = x + u;
+          matrix[1][i] = scheme.velocity(u, v, a, dt) * dt;
+          matrix[2][i] = scheme.acceleration(u, v, a, dt) * dt * dt;
+        }
+      EXPECT_NEAR(trace(matrix), -3 * r, 1e-9) << r;
+      EXPECT_NEAR(determinant(matrix), -r * r * r, 1e-9) << r;
+    }
+}
+
+
+
+// Vibrations that pass thirty times in a step are multiplied by three roots -r,
+// so that of displacements x(n+3) = c2 x(n+2) + c1 x(n+1) - r^3 x(n), which six
+// of them tell.
 TEST(GeneralisedAlpha, SpectralRadiusIsMeasured)
 {
   const double step = 200 / lowest_frequency;
-  for (const double radius : {0.9, 0.8, 0.5, 0.2})
+  for (const double radius : {0.5, 0.2})
     {
       SceneRun<2>         run(held_bar(64, lowest_mode),
                       with_radius(radius,
@@ -197,17 +222,17 @@ TEST(GeneralisedAlpha, SpectralRadiusIsMeasured)
           x.push_back(share_of_lowest_mode(run, start)[0]);
         }
       EXPECT_NE(run.integrator.effort().find("halved: 0"), std::string::npos);
-      dealii::Tensor<2, 3> hankel;
+      dealii::Tensor<2, 3> values;
       dealii::Tensor<1, 3> next;
       for (unsigned int i = 0; i < 3; ++i)
         {
           next[i] = x[i + 3];
           for (unsigned int j = 0; j < 3; ++j)
-            hankel[i][j] = x[i + j];
+            values[i][j] = x[i + j];
         }
-      const double product = (dealii::invert(hankel) * next)[0];
-      std::printf("radius %g: measured %.4f\n", radius, -std::cbrt(product));
-      EXPECT_NEAR(-std::cbrt(product), radius, 0.01);
+      const double product  = (dealii::invert(values) * next)[0];
+      const double measured = -std::cbrt(product);
+      EXPECT_NEAR(measured, radius, 0.01);
     }
 }
 
@@ -252,10 +277,6 @@ TEST(GeneralisedAlpha, DampingIsOnRecord)
       const double start = run.totals().all.total_energy();
       run.advance(0.25, 40);
       const auto totals = run.totals();
-      std::printf("radius %g: %.3f of the energy dissipated, drift %.1e\n",
-                  radius,
-                  totals.dissipated / start,
-                  totals.energy_drift);
       EXPECT_LT(std::abs(totals.energy_drift), 1e-4);
       EXPECT_LT(std::abs(totals.momentum_error), 1e-9);
       EXPECT_GT(totals.dissipated, former);
@@ -281,7 +302,6 @@ TEST(GeneralisedAlpha, SwingingStripBalancesItsEnergy)
       run.totals();
       run.advance(step, std::lround(10 / step));
       const auto totals = run.totals();
-      std::printf("step %g s: drift %.1e\n", step, totals.energy_drift);
       EXPECT_LT(std::abs(totals.energy_drift), 5e-3);
     }
 }
@@ -297,20 +317,19 @@ TEST(GeneralisedAlpha, SidesThatMoveAreFollowed)
                   with_radius(0.2,
                               0.5,
                               {"Boundaries/left=velocity",
-                               "Boundaries/Side left/Velocity=" +
-                                 digits(acceleration) + "*t; 0",
-                               "Body bar/Frame=initial"}));
+                                "Boundaries/Side left/Velocity=" +
+                                  digits(acceleration) + "*t; 0",
+                                "Body bar/Frame=initial"}));
   const auto   start = run.positions();
   run.totals();
   run.advance(0.5, std::lround(end / 0.5));
   const auto totals = run.totals();
-  std::printf("drifts: momentum %.1e, energy %.1e\n",
-              totals.momentum_error,
-              totals.energy_drift);
   EXPECT_LT(std::abs(totals.momentum_error), 1e-9);
   EXPECT_LT(std::abs(totals.energy_drift), 1e-3);
   for (std::size_t p = 0; p < start.size(); ++p)
-    EXPECT_NEAR(run.velocity(p)[0], acceleration * end, 1e-3 * acceleration * end);
+    EXPECT_NEAR(run.velocity(p)[0],
+                acceleration * end,
+                1e-3 * acceleration * end);
 }
 
 
@@ -326,18 +345,17 @@ TEST(GeneralisedAlpha, FastVibrationsVanishAndSlowOnesStay)
     double slow, fast; // largest velocities of three swings, after two
   };
   const auto vibrate = [&](const double radius) {
-    SceneRun<2>  run(held_bar(128,
+    SceneRun<2> run(held_bar(128,
                              "1e-4 * (sin(pi * x / 50) + sin(17 * pi * x / "
                              "50))"),
                     with_radius(radius, step));
-    const auto   start = run.positions();
-    const auto   share = [&](const double number) {
+    const auto  start = run.positions();
+    const auto  share = [&](const double number) {
       double sum = 0, norm = 0;
       for (std::size_t p = 0; p < start.size(); ++p)
         {
-          const double shape =
-            std::sin(number * dealii::numbers::PI / 50 *
-                     start[run.bodies[0]->points.id(p)][0]);
+          const double shape = std::sin(number * dealii::numbers::PI / 50 *
+                                        start[run.bodies[0]->points.id(p)][0]);
           norm += shape * shape;
           sum += shape * run.velocity(p)[0] / 1e-4;
         }
@@ -351,10 +369,6 @@ TEST(GeneralisedAlpha, FastVibrationsVanishAndSlowOnesStay)
         result.slow = std::max(result.slow, share(1));
         result.fast = std::max(result.fast, share(17));
       }
-    std::printf("radius %g: slow %.4f, fast %.4f\n",
-                radius,
-                result.slow,
-                result.fast);
     return result;
   };
   const Shares rule = vibrate(1), damped = vibrate(0.5);
@@ -393,11 +407,6 @@ TEST(GeneralisedAlpha, NoiseOfAStruckBarVanishes)
         }
       mean /= n;
       const double noise = std::sqrt(square / n - mean * mean);
-      std::printf("radius %g: mean %.4f, noise %.4f, front at %.4f\n",
-                  radius,
-                  mean,
-                  noise,
-                  behind);
       EXPECT_NEAR(mean, 1, 0.04);
       EXPECT_NEAR(behind, 0.75, 0.01);
       if (radius == 1)
