@@ -180,11 +180,12 @@ stopped by signal n.
 
 
 
-    /** What is done now, on the error stream: it may take a while. */
+    /** What is done now, for who waits at a terminal: it may take a while. */
     void
     tell_progress(const std::string &text)
     {
-      std::cerr << text << "..." << std::endl;
+      if (isatty(STDERR_FILENO))
+        std::cerr << text << "..." << std::endl;
     }
 
 

@@ -30,8 +30,10 @@ namespace limber
     // would be far too much.
     constexpr double least_room = 0.1;
 
-    // How near to a side of the box points are shifted, in cells.
-    constexpr double least_distance = 1e-3;
+    // How near to a side of the box points are shifted, in cells: closer ones
+    // leave the next nodes hardly any mass, but all of their force. To a side
+    // that moves, a cell: when it comes back it takes along what is in between.
+    constexpr double least_distance = 0.05;
 
     // Arrays of points are written a pack at a time.
     constexpr std::size_t room_for_pack = 16;
@@ -319,10 +321,13 @@ namespace limber
   {
     const double factor =
       std::min(body.description.particle_shifting * travelled, largest_factor);
-    const PointView<dim>          points  = body.points.view();
-    const BinView<dim>            bins    = parts.nodes.view().bins;
-    const auto                   &box     = parts.problem.grid;
-    const auto                   &gravity = parts.problem.loads.gravity;
+    const PointView<dim>      points  = body.points.view();
+    const BinView<dim>        bins    = parts.nodes.view().bins;
+    const auto               &box     = parts.problem.grid;
+    const auto               &gravity = parts.problem.loads.gravity;
+    std::array<bool, 2 * dim> may_shift_to;
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      may_shift_to[side] = parts.problem.sides[side].velocity.empty();
     std::array<double, n_corners> excess;
     for (std::size_t p = 0; p < points.size; ++p)
       {
@@ -354,9 +359,11 @@ namespace limber
               -std::min(std::max(factor * slope, -largest_shift),
                         largest_shift) *
               edge;
-            const double place = points.position[d][p] + shift;
-            if (place < box.lower[d] + least_distance * edge ||
-                place > box.upper[d] - least_distance * edge)
+            const double       place = points.position[d][p] + shift;
+            const unsigned int side  = 2 * d + (shift > 0);
+            const double       distance =
+              shift > 0 ? box.upper[d] - place : place - box.lower[d];
+            if (distance < (may_shift_to[side] ? least_distance : 1) * edge)
               continue;
             points.position[d][p] = place;
             work += gravity[d] * shift;

@@ -10,6 +10,7 @@ all scenes.
 
 import argparse
 import os
+import pty
 import signal
 import subprocess
 import sys
@@ -134,16 +135,17 @@ class Advice(unittest.TestCase):
                    str(Path(ARGUMENTS.prm) / "benchmarks/empty_room.prm"),
                    "--set", "Grid/Cells=120, 120, 120",
                    "--set", "Grid/Upper corner=2.9, 2.9, 2.9"]
-        with tempfile.TemporaryFile("w+") as progress, subprocess.Popen(
-                command, text=True, stdout=subprocess.PIPE,
-                stderr=progress) as child:
+        screen, terminal = pty.openpty()
+        with subprocess.Popen(command, text=True, stdout=subprocess.PIPE,
+                              stderr=terminal) as child:
             begin = time.monotonic()
             first = child.stdout.readline()
             waited = time.monotonic() - begin
             rest = child.stdout.read()
             self.assertEqual(child.wait(), 0, rest)
-            progress.seek(0)
-            said = progress.read()
+        os.close(terminal)
+        said = os.read(screen, 4096).decode()
+        os.close(screen)
         self.assertLess(waited, 10, first)
         piece = advice_table.Piece(first.rstrip("\n"))
         self.assertEqual((piece.judgement, piece.what), ("Advised", "Levels"))
