@@ -507,8 +507,7 @@ namespace limber
     // points     The gradient of one point alone carries no rotation.
     // volume     Laws are measured to about a third and three; e^2.3 = 10.
     // clumping   The level of water errs by as much; scenes with a reference
-    // have
-    //            up to 2 %.
+    //            have up to 2 %.
     // obstacles  Flow past a convex surface cuts its corners by less; what is
     //            half a cell inside has gone through the surface.
     constexpr HealthCheck checks[] = {
