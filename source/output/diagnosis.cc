@@ -52,20 +52,20 @@ namespace limber
 
     /**
      * The affine part of the motion of a point has next to no inertia near the
-     * edge of its cell (doc/theory/transfers.md). What else is seen then, a
-     * chequerboard or a crushed point, follows from it.
+     * edge of its cell, and no bound with AFLIP (doc/theory/transfers.md). What
+     * else is seen then, a chequerboard or a crushed point, follows from it.
      */
     template <int dim>
     Diagnosis
     find_affine_velocity(const Problem<dim> &problem)
     {
-      if (!is_affine(problem.method.transfer) ||
+      if (problem.method.transfer != Transfer::aflip ||
           problem.grid.kernel != KernelKind::linear)
         return {};
       return {"affine velocity",
-              "with linear functions the transfers 'apic' and 'aflip' are "
-              "unstable where points come near the edges of cells. Set "
-              "'Method/Kernel = quadratic', or 'Method/Transfer = flip'."};
+              "with linear functions the transfer 'aflip' is unstable where "
+              "points come near the edges of cells. Set 'Method/Kernel = "
+              "quadratic', or 'Method/Transfer = flip'."};
     }
 
 

@@ -425,17 +425,18 @@ namespace limber
 
 
     /**
-     * With APIC, AFLIP and linear functions points take the gradient of the new
+     * With AFLIP and linear functions points take the gradient of the new
      * velocity, as with USL. It has no bound where a point comes so close to
      * the edge of its cell that nodes beyond have next to no mass, and what
-     * points give back has it in it. Points that the lattice of the grid places
-     * keep away from edges until they move, in the initial frame for ever.
+     * points give back has it in it (APIC bounds it). Points that the lattice
+     * of the grid places keep away from edges until they move, in the initial
+     * frame for ever.
      */
     template <int dim>
     void
     warn_of_unbounded_gradients(Problem<dim> &problem)
     {
-      if (!is_affine(problem.method.transfer) ||
+      if (problem.method.transfer != Transfer::aflip ||
           problem.grid.kernel != KernelKind::linear)
         return;
       for (const Body<dim> &body : problem.bodies)
@@ -444,7 +445,7 @@ namespace limber
             body.placement == Placement::cut ||
             body.placement == Placement::gauss)
           problem.notes.push_back(
-            "Warning: an affine 'Transfer' with linear functions is unstable "
+            "Warning: 'Transfer = aflip' with linear functions is unstable "
             "where points come near the edges of cells, as those of body " +
             in_quotes(body.name) +
             " may. Set 'Method/Kernel = quadratic' or 'Transfer = flip'.");

@@ -5,6 +5,7 @@
 #include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/give_to_splines.h>
 #include <limber/transfer/grid_to_points.h>
+#include <limber/transfer/light_nodes.h>
 #include <limber/transfer/sum_momentum.h>
 
 /** @file G2P: velocities from the nodes to the points. */
@@ -164,6 +165,70 @@ namespace limber
 
 
 
+    /** Nodes that are light beside the points of a batch, with linear functions
+     * (TakeFromGrid::light_share). */
+    template <class Basis, bool affine>
+    inline LightNodes<Basis::dim>
+    light_nodes(const PointView<Basis::dim> &points,
+                const CellBatch             &batch,
+                const GridView<Basis::dim>  &grid,
+                const double                 light_share)
+    {
+      constexpr int dim = Basis::dim;
+      if constexpr (affine && std::is_same_v<Basis, Linear<dim>>)
+        if (light_share > 0)
+          {
+            double mass = 0;
+            for (std::size_t p = batch.begin; p < batch.end; ++p)
+              mass += points.mass[p];
+            return LightNodes<dim>(grid.cells[batch.cell],
+                                   grid.nodes,
+                                   light_share * mass);
+          }
+      return {};
+    }
+
+
+
+    /**
+     * The gradients without what is left out of the increments of these, L,
+     * but with a spin that keeps their angular momentum,
+     * W_de = (S_de - S_ed) / (D_d + D_e), S = L D.
+     */
+    template <int dim, class Nodal>
+    __attribute__((noinline)) void
+    leave_out(const LightNodes<dim>                 &light,
+              const CellGeometry<dim>               &cell,
+              const std::array<PointPack<dim>, dim> &xi,
+              const Nodal                           &nodal,
+              NodalGradients<dim>                   &gradients)
+    {
+      using Number = PointPack<dim>;
+      std::array<Number, dim * dim> left_out; // 1/s
+      for (int d = 0; d < dim; ++d)
+        {
+          const auto slope = light.gradient(
+            d, Linear<dim>::template value<Number>(nodal.component(d), xi), xi);
+          for (int e = 0; e < dim; ++e)
+            left_out[d * dim + e] = slope[e] * cell.inverse_edge[e];
+        }
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            const int de = d * dim + e, ed = e * dim + d;
+            Number    part = left_out[de];
+            if (d != e)
+              part -= (left_out[de] * gradients.D[e] -
+                       left_out[ed] * gradients.D[d]) /
+                      larger(gradients.D[d] + gradients.D[e],
+                             broadcast<Number>(1e-300));
+            gradients.velocity[de] -= part;
+            gradients.change[de] -= part;
+          }
+    }
+
+
+
     /**
      * The gradient C that the points of a pack carry: that of the nodes (APIC)
      * and, with the share alpha of increments, a spin W that makes up for what
@@ -243,7 +308,9 @@ namespace limber
           const NodalCoefficients<Basis,
                                   Layout::increment,
                                   take_velocity ? 2 * dim : dim>
-            nodal(grid, batch.cell);
+                                      nodal(grid, batch.cell);
+          [[maybe_unused]] const auto light =
+            light_nodes<Basis, affine>(points, batch, grid, what.light_share);
 
           for_each_pack<dim>(
             batch, [&](const auto &lanes) __attribute__((always_inline)) {
@@ -277,11 +344,15 @@ namespace limber
                     shift[d] = what.move * of_grid();
                 }
               if constexpr (affine)
-                kept_squared += set_affine<dim>(
-                  points,
-                  lanes,
-                  what.flip_share,
-                  nodal_gradients<dim>(Basis(), grid, batch.cell, xi, nodal));
+                {
+                  auto gradients =
+                    nodal_gradients<dim>(Basis(), grid, batch.cell, xi, nodal);
+                  if constexpr (std::is_same_v<Basis, Linear<dim>>)
+                    if (light.any())
+                      leave_out<dim>(light, cell, xi, nodal, gradients);
+                  kept_squared +=
+                    set_affine<dim>(points, lanes, what.flip_share, gradients);
+                }
               speed_squared = larger(speed_squared, lanes.only_active(squared));
               if (affine || what.flip_share != 1.)
                 removed += lanes.only_active(lanes.load(points.mass)) *

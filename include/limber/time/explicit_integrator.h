@@ -204,6 +204,8 @@ namespace limber
     take(TakeFromGrid what);
     double
     flip_share() const;
+    double
+    light_share() const;
     void
     strain(StressSweep what);
     void

@@ -14,9 +14,12 @@ namespace limber
     double flip_share = 1;
     // Points carry a gradient of their velocity: APIC with the share 0, else
     // AFLIP.
-    bool   affine = false;
-    bool   remap  = false; // give the new momentum back to the nodes
-    double move   = 0;     // step by which the points move with the grid, s
+    bool affine = false;
+    // With linear functions: nodes are light (LightNodes) if they have less
+    // than this share of the mass of the points in a cell; 0: none is.
+    double light_share = 0;
+    bool   remap       = false; // give the new momentum back to the nodes
+    double move        = 0; // step by which the points move with the grid, s
   };
 
 

@@ -55,11 +55,14 @@ namespace limber::test
     const Symptoms seen = find_symptoms(run.state, 1.);
     if (!speaks())
       return;
-    run.problem.method.transfer = Transfer::apic;
+    run.problem.method.transfer = Transfer::aflip;
     const Diagnosis found       = diagnose(seen, run.problem, true);
     EXPECT_EQ(found.mode, "affine velocity");
     EXPECT_NE(found.text.find("'Method/Transfer = flip'"), std::string::npos);
-    run.problem.grid.kernel = KernelKind::quadratic;
+    run.problem.method.transfer = Transfer::apic; // has a bound
+    EXPECT_NE(diagnose(seen, run.problem, true).mode, "affine velocity");
+    run.problem.method.transfer = Transfer::aflip;
+    run.problem.grid.kernel     = KernelKind::quadratic;
     EXPECT_NE(diagnose(seen, run.problem, true).mode, "affine velocity");
   }
 

@@ -169,6 +169,104 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
 
 
 
+// A point that has just come into an empty cell.
+TYPED_TEST(GridToPoints, LightNodesBoundTheAffineVelocity)
+{
+  constexpr int dim = TestFixture::dim;
+  using Layout      = NodeLayout<dim>;
+  if (TypeParam::kernel != KernelKind::linear)
+    return; // D of splines has a bound
+  for (double &value : this->grid.nodes)
+    value = 0.5 + 0.5 * this->random();
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    this->grid.nodes[n * Layout::stride + Layout::mass] =
+      std::pow(10., -3 * this->random(0, 1));
+  auto       points = random_points<dim>(this->grid, this->random);
+  const auto before = points;
+
+  const auto run = [&](const double light_share) {
+    auto         result = before;
+    TakeFromGrid what;
+    what.affine      = true;
+    what.flip_share  = 0;
+    what.light_share = light_share;
+    grid_to_points<dim>(result.view(), this->grid.view(), what, nullptr);
+    return result;
+  };
+  const double share = 0.05;
+  const auto   whole = run(0), bounded = run(share);
+
+  // of all points that stand together
+  std::vector<double> mass_in_cell(before.size);
+  for (std::size_t begin = 0, end; begin < before.size; begin = end)
+    {
+      double mass = 0;
+      for (end = begin;
+           end < before.size && before.cell[end] == before.cell[begin];
+           ++end)
+        mass += points.view().mass[end];
+      std::fill(mass_in_cell.begin() + begin, mass_in_cell.begin() + end, mass);
+    }
+
+  unsigned int n_bounded = 0;
+  for (std::size_t p = 0; p < before.size; ++p)
+    {
+      const auto  cell = before.cell[p];
+      const auto  x    = points.position(p);
+      Vector<dim> at_point{}, D{};
+      Matrix<dim> L{}; // what is left out
+      const auto  of_node = [&](const int i) {
+        return this->grid.nodes.data() +
+               this->grid.node_number(cell, i) * Layout::stride;
+      };
+      for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
+        for (int d = 0; d < dim; ++d)
+          {
+            const auto x_i = this->grid.place(this->grid.node_number(cell, i));
+            const double N = this->grid.shape(cell, i, x);
+            at_point[d] += N * of_node(i)[Layout::increment + d];
+            D[d] += N * std::pow(x_i[d] - x[d], 2);
+          }
+      for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
+        {
+          const double theta =
+            std::min(1., of_node(i)[Layout::mass] / (share * mass_in_cell[p]));
+          n_bounded += theta < 1;
+          const auto G = this->grid.gradient(cell, i, x);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              L[d][e] += (1 - theta) *
+                         (of_node(i)[Layout::increment + d] - at_point[d]) *
+                         G[e];
+        }
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          {
+            const auto C = [&](const auto &taken, const int d, const int e) {
+              return taken
+                .fields[2 * dim + 2 + n_deviator<dim> + d * dim + e][p];
+            };
+            const double spin =
+              d == e ? 0. : (L[d][e] * D[e] - L[e][d] * D[d]) / (D[d] + D[e]);
+            EXPECT_NEAR(C(bounded, d, e),
+                        C(whole, d, e) - L[d][e] + spin,
+                        1e-11 * (1 + std::abs(L[d][e])));
+            // the angular momentum of the affine velocity
+            EXPECT_NEAR(C(bounded, d, e) * D[e] - C(bounded, e, d) * D[d],
+                        C(whole, d, e) * D[e] - C(whole, e, d) * D[d],
+                        1e-11);
+          }
+    }
+  EXPECT_GT(n_bounded, 20u);
+
+  // nodes that are heavy say all
+  for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+    this->grid.nodes[n * Layout::stride + Layout::mass] = 1e3;
+  EXPECT_EQ(run(share).fields, whole.fields);
+}
+
+
+
 // AFLIP: whatever points and nodes have, the points together gain the angular
 // momentum of the increments, before they move.
 TYPED_TEST(GridToPoints, IncrementsBringTheirAngularMomentum)
