@@ -200,10 +200,12 @@ namespace limber
                                   const TakeFromGrid &what,
                                   StepExtremes       &extremes)
   {
-    const auto sums  = sums_of(body);
+    const auto   sums = sums_of(body);
+    TakeFromGrid own  = what;
+    own.light_density *= body.stress->density();
     const auto found = limber::grid_to_points<dim>(body.points.view(),
                                                    nodes_of(body),
-                                                   what,
+                                                   own,
                                                    sums ? &*sums : nullptr);
     extremes.speed_squared =
       std::max(extremes.speed_squared, found.speed_squared);

@@ -135,18 +135,18 @@ namespace limber
   void
   ExplicitIntegrator<dim>::take(TakeFromGrid what)
   {
-    what.affine      = is_affine(parts.problem.method.transfer);
-    what.flip_share  = flip_share();
-    what.light_share = light_share();
+    what.affine        = is_affine(parts.problem.method.transfer);
+    what.flip_share    = flip_share();
+    what.light_density = light_share(); // times that of a body
     sweeps.grid_to_points(what, extremes);
     lap(Verb::grid_to_points);
   }
 
 
 
-  // For APIC. Of two directions in which nodes may be light C^2/2 is the least
-  // that is stable; four times as much costs no energy that one would notice
-  // (dam break). Increments of AFLIP are not damped, and this would feed them.
+  // For APIC, in masses of a full cell. Of two directions in which nodes may be
+  // light C^2/2 is the least that is stable; four times as much costs no energy
+  // that one would notice (dam break). AFLIP has no such bound.
   template <int dim>
   double
   ExplicitIntegrator<dim>::light_share() const

@@ -165,25 +165,21 @@ namespace limber
 
 
 
-    /** Nodes that are light beside the points of a batch, with linear functions
-     * (TakeFromGrid::light_share). */
+    /** Nodes of a cell that are light, with linear functions. */
     template <class Basis, bool affine>
     inline LightNodes<Basis::dim>
-    light_nodes(const PointView<Basis::dim> &points,
-                const CellBatch             &batch,
-                const GridView<Basis::dim>  &grid,
-                const double                 light_share)
+    light_nodes(const GridView<Basis::dim> &grid,
+                const std::uint32_t         cell,
+                const double                light_density)
     {
       constexpr int dim = Basis::dim;
       if constexpr (affine && std::is_same_v<Basis, Linear<dim>>)
-        if (light_share > 0)
+        if (light_density > 0)
           {
-            double mass = 0;
-            for (std::size_t p = batch.begin; p < batch.end; ++p)
-              mass += points.mass[p];
-            return LightNodes<dim>(grid.cells[batch.cell],
-                                   grid.nodes,
-                                   light_share * mass);
+            double least_mass = light_density;
+            for (const double inverse : grid.cells[cell].inverse_edge)
+              least_mass /= inverse;
+            return LightNodes<dim>(grid.cells[cell], grid.nodes, least_mass);
           }
       return {};
     }
@@ -310,7 +306,7 @@ namespace limber
                                   take_velocity ? 2 * dim : dim>
                                       nodal(grid, batch.cell);
           [[maybe_unused]] const auto light =
-            light_nodes<Basis, affine>(points, batch, grid, what.light_share);
+            light_nodes<Basis, affine>(grid, batch.cell, what.light_density);
 
           for_each_pack<dim>(
             batch, [&](const auto &lanes) __attribute__((always_inline)) {

@@ -16,10 +16,10 @@ namespace limber
     // AFLIP.
     bool affine = false;
     // With linear functions: nodes are light (LightNodes) if they have less
-    // than this share of the mass of the points in a cell; 0: none is.
-    double light_share = 0;
-    bool   remap       = false; // give the new momentum back to the nodes
-    double move        = 0; // step by which the points move with the grid, s
+    // than so much per volume of a cell, kg/m^3; 0: none is.
+    double light_density = 0;
+    bool   remap         = false; // give the new momentum back to the nodes
+    double move          = 0; // step by which the points move with the grid, s
   };
 
 

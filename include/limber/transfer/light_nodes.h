@@ -34,7 +34,7 @@ namespace limber
     /** None. */
     LightNodes() = default;
 
-    /** Of a cell, for points of this mass @p least_mass = m_c (kg). */
+    /** Of a cell, with @p least_mass = m_c (kg). */
     LightNodes(const CellGeometry<dim> &cell,
                const double *const      nodes,
                const double             least_mass)

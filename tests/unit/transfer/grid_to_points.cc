@@ -184,29 +184,22 @@ TYPED_TEST(GridToPoints, LightNodesBoundTheAffineVelocity)
   auto       points = random_points<dim>(this->grid, this->random);
   const auto before = points;
 
-  const auto run = [&](const double light_share) {
+  const auto run = [&](const double light_density) {
     auto         result = before;
     TakeFromGrid what;
-    what.affine      = true;
-    what.flip_share  = 0;
-    what.light_share = light_share;
+    what.affine        = true;
+    what.flip_share    = 0;
+    what.light_density = light_density;
     grid_to_points<dim>(result.view(), this->grid.view(), what, nullptr);
     return result;
   };
-  const double share = 0.05;
-  const auto   whole = run(0), bounded = run(share);
+  const double density = 10;
+  const auto   whole = run(0), bounded = run(density);
 
-  // of all points that stand together
-  std::vector<double> mass_in_cell(before.size);
-  for (std::size_t begin = 0, end; begin < before.size; begin = end)
-    {
-      double mass = 0;
-      for (end = begin;
-           end < before.size && before.cell[end] == before.cell[begin];
-           ++end)
-        mass += points.view().mass[end];
-      std::fill(mass_in_cell.begin() + begin, mass_in_cell.begin() + end, mass);
-    }
+  double volume = 1;
+  for (int d = 0; d < dim; ++d)
+    volume *= this->grid.edge[d];
+  const double least_mass = density * volume;
 
   unsigned int n_bounded = 0;
   for (std::size_t p = 0; p < before.size; ++p)
@@ -230,7 +223,7 @@ TYPED_TEST(GridToPoints, LightNodesBoundTheAffineVelocity)
       for (int i = 0; i < TestFixture::Grid::n_in_cell; ++i)
         {
           const double theta =
-            std::min(1., of_node(i)[Layout::mass] / (share * mass_in_cell[p]));
+            std::min(1., of_node(i)[Layout::mass] / least_mass);
           n_bounded += theta < 1;
           const auto G = this->grid.gradient(cell, i, x);
           for (int d = 0; d < dim; ++d)
@@ -262,7 +255,7 @@ TYPED_TEST(GridToPoints, LightNodesBoundTheAffineVelocity)
   // nodes that are heavy say all
   for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
     this->grid.nodes[n * Layout::stride + Layout::mass] = 1e3;
-  EXPECT_EQ(run(share).fields, whole.fields);
+  EXPECT_EQ(run(density).fields, whole.fields);
 }
 
 
