@@ -17,7 +17,7 @@ namespace limber
     // Of what an unbounded body gives in to a pressure that alternates: the
     // share that cells know of. The rest is for surfaces and sides, found by
     // counting iterations.
-    constexpr double alternating_share = 0.99;
+    constexpr double alternating_share = 0.97;
 
     // A cell that is hardly filled hangs on nodes that others hold: it gives in
     // to its pressure as these do, by the diagonal of their stiffness, and not

@@ -151,10 +151,11 @@ namespace limber
               "; damped by generalised-alpha: " + brief(lost_in_time) + " J" :
               "") +
            (equations.linear_iterations() > 0 ?
-              std::string(equations.is_mixed() ?
-                            "; minimal residuals of displacements and "
-                            "pressures: " :
-                            "; conjugate gradients: ") +
+              std::string(
+                equations.is_mixed() ?
+                  "; generalised minimal residuals of displacements and "
+                  "pressures: " :
+                  "; conjugate gradients: ") +
                 brief(double(equations.linear_iterations()) /
                       double(std::max(1ul, newton.corrections()))) +
                 " iterations a correction" +

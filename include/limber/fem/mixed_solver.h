@@ -14,11 +14,12 @@ namespace limber
    *
    *   A u + B^T p = f,     B u - C p = g,      C diagonal,
    *
-   * which does not mind how little the volume gives in (C to zero). Minimal
-   * residuals (MINRES; Paige and Saunders, SIAM J. Numer. Anal. 12, 1975) with
-   * one W-cycle of multigrid for A and a polynomial of Chebyshev in a sparse
-   * matrix for the pressures (block diagonal: Silvester and Wathen, SIAM J.
-   * Numer. Anal. 31, 1994). For one rank.
+   * which does not mind how little the volume gives in (C to zero). Generalised
+   * minimal residuals (GMRES; Saad and Schultz, SIAM J. Sci. Stat. Comput. 7,
+   * 1986) with a block triangular preconditioner (Bramble and Pasciak, Math.
+   * Comp. 50, 1988): one V-cycle of multigrid for A; then, with B u - g of the
+   * displacements that this gave, a polynomial of Chebyshev in a sparse matrix
+   * for the pressures. For one rank.
    *
    * A may keep the part B^T D B of the stiffness of the volumes, D diagonal.
    * With A0 what is in it besides, the pressures then have, in terms of

@@ -42,10 +42,10 @@ namespace limber
      * Up to @p largest_direct unknowns are factorised. More are solved for with
      * conjugate gradients, or where a body has averaged volumes and a bulk
      * modulus of @p mixed_beyond shear moduli and more, with linear functions,
-     * in mixed form with minimal residuals; unless the tangent is not
-     * symmetric. Where conjugate gradients take more than @p most_iterations,
-     * or minimal residuals fail, up to @p most_factorised unknowns are
-     * factorised instead, from then on.
+     * in mixed form with generalised minimal residuals; unless the tangent is
+     * not symmetric. Where conjugate gradients take more than @p
+     * most_iterations, or generalised minimal residuals fail, up to @p
+     * most_factorised unknowns are factorised instead, from then on.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
                              std::size_t  largest_direct  = default_direct,
@@ -181,7 +181,7 @@ namespace limber
       return failed_iterations;
     }
 
-    /** Of conjugate gradients or minimal residuals, in all. */
+    /** Of conjugate gradients or generalised minimal residuals, in all. */
     unsigned long
     linear_iterations() const
     {
