@@ -15,7 +15,7 @@ namespace limber
     // vectors that are kept; iterations start again beyond
     constexpr unsigned int most_vectors = 150;
     // of the preconditioned residual
-    constexpr double accuracy = 1e-9;
+    constexpr double accuracy = 1e-10;
     // All by counting iterations and seconds; with A^-1 itself instead of the
     // cycle half as many would do where cells are full, and two thirds to nine
     // tenths where they are cut.

@@ -121,7 +121,7 @@ TEST(NewtonSolvers, IterationsFindTheSameCorrection)
         EXPECT_EQ(factorised.equations.linear_iterations(), 0u);
         EXPECT_FALSE(mixed.equations.gave_up_iterating());
         EXPECT_GT(mixed.equations.linear_iterations(), 0u);
-        EXPECT_LE(mixed.equations.linear_iterations(), 25u);
+        EXPECT_LE(mixed.equations.linear_iterations(), 28u);
         EXPECT_TRUE(mixed.equations.is_mixed());
         EXPECT_FALSE(condensed.equations.is_mixed());
         if (nu <= 0.45)
@@ -194,7 +194,7 @@ TEST(NewtonSolvers, MixedFormOfCutCells)
         expect_alike(factorised,
                      mixed,
                      inertia > 0 ? "in motion" : "at rest",
-                     26);
+                     27);
       }
 }
 
@@ -213,7 +213,7 @@ TEST(NewtonSolvers, MixedFormOnAFineGrid)
     run.problem, run.grid, run.nodes, run.bodies, run.ledger};
   const FirstCorrection factorised(parts, 0., 1u << 30, 0.),
     mixed(parts, 0., 0, 0.);
-  expect_alike(factorised, mixed, "on a fine grid", 31);
+  expect_alike(factorised, mixed, "on a fine grid", 32);
 }
 
 
@@ -263,7 +263,7 @@ TEST(NewtonSolvers, MixedFormInSpace)
         run.problem, run.grid, run.nodes, run.bodies, run.ledger};
       const FirstCorrection factorised(parts, 0., 1u << 30, 0.),
         mixed(parts, 0., 0, 0.);
-      expect_alike(factorised, mixed, "in space", 25);
+      expect_alike(factorised, mixed, "in space", 28);
     }
 }
 
@@ -281,10 +281,10 @@ TEST(NewtonSolvers, CutCellsOfAShell)
     unsigned int most_iterations;
   };
   for (const Case &solved : {Case{0.3, 9, 20},
-                             Case{0.499, 9, 33},
-                             Case{0.4999, 9, 34},
+                             Case{0.499, 9, 34},
+                             Case{0.4999, 9, 35},
                              Case{0.3, 18, 21},
-                             Case{0.499, 18, 38}})
+                             Case{0.499, 18, 42}})
     {
       const std::string n = std::to_string(solved.cells);
       SceneRun<3>       run(R"(
