@@ -17,8 +17,8 @@ namespace limber
     // of the preconditioned residual
     constexpr double accuracy = 1e-10;
     // All by counting iterations and seconds; with A^-1 itself instead of the
-    // cycle half as many would do where cells are full, and two thirds to nine
-    // tenths where they are cut.
+    // cycle half as many would do where cells are full, and three quarters to
+    // nine tenths where they are cut.
     constexpr unsigned int chebyshev_degree = 10;
     // largest over smallest eigenvalue that the polynomial cares for
     constexpr double    chebyshev_range = 50;
