@@ -203,9 +203,9 @@ namespace limber
         refuse(method, "Kernel", "'Kernel = linear' or 'quadratic'");
       if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse(method, "Time integration", "'Time integration = explicit'");
-      if (problem.method.transfer != Transfer::flip &&
-          problem.method.transfer != Transfer::pic)
-        refuse(method, "Transfer", "'Transfer = flip'");
+      // two balls would gain half of their energy
+      if (problem.method.transfer == Transfer::apic)
+        refuse(method, "Transfer", "'Transfer = aflip' or 'flip'");
     }
 
 

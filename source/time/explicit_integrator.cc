@@ -68,7 +68,7 @@ namespace limber
                     }))
       surfaces.emplace(parts, *cut_cells);
     if (filters_velocity(parts.problem.method.transfer))
-      full_mass.emplace(parts.grid, boundaries);
+      full_mass.emplace(parts.grid, boundaries, parts.nodes.n_fields());
     find_speeds();
     relocation.reinit();
   }

@@ -9,9 +9,11 @@ namespace limber
 {
   template <int dim>
   FullMassFilter<dim>::FullMassFilter(const BackgroundGrid<dim>     &grid,
-                                      const BoundaryConditions<dim> &boundaries)
+                                      const BoundaryConditions<dim> &boundaries,
+                                      const unsigned int             n_fields)
     : table(grid.nodes())
     , boundaries(boundaries)
+    , fields(n_fields)
     , on_points(dim)
   {
     // A rank may know a neighbour of a held node that lies in cells of others,
@@ -32,8 +34,11 @@ namespace limber
   void
   FullMassFilter<dim>::reinit()
   {
-    records.reinit(std::size_t(table.n()) * Layout::stride);
-    lumped.reinit(std::size_t(table.n()) * dim);
+    for (Field &each : fields)
+      {
+        each.records.reinit(std::size_t(table.n()) * Layout::stride);
+        each.lumped.reinit(std::size_t(table.n()) * dim);
+      }
   }
 
 
@@ -43,18 +48,86 @@ namespace limber
   FullMassFilter<dim>::apply(NodalFields<dim>  &nodes,
                              Bodies            &bodies,
                              const unsigned int order,
-                             const bool         former_only)
+                             const bool         former_only,
+                             const Hold        &hold)
   {
     former = former_only;
-    start(nodes);
-    SideAction result = action_of_start(nodes);
+    SideAction result;
+    for_each_field(nodes, [&]() {
+      start(nodes);
+      result += action_of_start(nodes);
+    });
     for (unsigned int j = 1; j < order; ++j)
       {
-        multiply_by_full_mass(nodes, bodies);
-        result = action_until(nodes);
-        correct(nodes);
+        result = {};
+        for_each_field(nodes, [&]() {
+          multiply_by_full_mass(nodes, bodies);
+          result += action_until(nodes);
+          correct(nodes);
+        });
+        if (hold)
+          result += hold_as_new(nodes, hold);
       }
-    for (const std::uint32_t node : nodes.active_nodes())
+    for_each_field(nodes, [&]() { store(nodes); });
+    return result;
+  }
+
+
+
+  // In the records of the nodes, where contact finds it. Sides act last: what
+  // it takes from the components that they hold they give back.
+  template <int dim>
+  typename FullMassFilter<dim>::SideAction
+  FullMassFilter<dim>::hold_as_new(NodalFields<dim> &nodes, const Hold &hold)
+  {
+    for_each_field(nodes, [&]() {
+      for (const std::uint32_t node : nodes.active_nodes_of_field())
+        {
+          double *const       own  = nodes.record(node);
+          const double *const v    = record(node) + Layout::velocity;
+          const auto          held = this->held(nodes, node);
+          for (int d = 0; d < dim; ++d)
+            own[Layout::remapped + d] =
+              v[d] + (held[d] == 0 ? apart(own, d) : 0);
+        }
+    });
+    hold(Layout::remapped);
+    SideAction result;
+    for_each_field(nodes, [&]() {
+      for_each_held(nodes,
+                    [&](const std::uint32_t node,
+                        const std::uint32_t /*neighbour*/,
+                        const int          d,
+                        const unsigned int directions) {
+                      const double *const own = nodes.record(node);
+                      add_impulse(result,
+                                  node,
+                                  d,
+                                  directions,
+                                  own[Layout::mass] *
+                                    (record(node)[Layout::velocity + d] -
+                                     own[Layout::remapped + d]));
+                    });
+      for (const std::uint32_t node : nodes.active_nodes_of_field())
+        {
+          const double *const own  = nodes.record(node);
+          double *const       v    = record(node) + Layout::velocity;
+          const auto          held = this->held(nodes, node);
+          for (int d = 0; d < dim; ++d)
+            if (held[d] == 0)
+              v[d] = own[Layout::remapped + d] - apart(own, d);
+        }
+    });
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  FullMassFilter<dim>::store(NodalFields<dim> &nodes)
+  {
+    for (const std::uint32_t node : nodes.active_nodes_of_field())
       {
         double *const       own = nodes.record(node);
         const double *const v   = record(node) + Layout::velocity;
@@ -63,11 +136,9 @@ namespace limber
         const auto held = this->held(nodes, node);
         for (int d = 0; d < dim; ++d)
           if (held[d] == 0)
-            own[Layout::velocity + d] =
-              v[d] + (former ? own[Layout::increment + d] : 0);
+            own[Layout::velocity + d] = v[d] + apart(own, d);
       }
     nodes.interpolate_hanging();
-    return result;
   }
 
 
@@ -180,7 +251,7 @@ namespace limber
   void
   FullMassFilter<dim>::start(const NodalFields<dim> &nodes)
   {
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : nodes.active_nodes_of_field())
       {
         const double *const own = nodes.record(node);
         double *const       v   = record(node) + Layout::velocity;
@@ -188,8 +259,7 @@ namespace limber
         std::fill_n(lumped_mass(node), dim, own[Layout::mass]);
         const auto held = this->held(nodes, node);
         for (int d = 0; d < dim; ++d)
-          v[d] = own[Layout::velocity + d] -
-                 (former && held[d] == 0 ? own[Layout::increment + d] : 0);
+          v[d] = own[Layout::velocity + d] - (held[d] == 0 ? apart(own, d) : 0);
       }
     if (table.inward_share == 0)
       return;
@@ -222,7 +292,7 @@ namespace limber
   void
   FullMassFilter<dim>::correct(const NodalFields<dim> &nodes)
   {
-    for (const std::uint32_t node : nodes.active_nodes())
+    for (const std::uint32_t node : nodes.active_nodes_of_field())
       {
         const double *const own = nodes.record(node);
         if (!(own[Layout::mass] > 0))
@@ -248,35 +318,37 @@ namespace limber
   FullMassFilter<dim>::multiply_by_full_mass(NodalFields<dim> &nodes,
                                              Bodies           &bodies)
   {
-    constexpr std::size_t room = 1 << dim; // that sweeps want beyond
-    table.take_from_masters(records.data(),
+    constexpr std::size_t room    = 1 << dim; // that sweeps want beyond
+    double *const         records = fields[field].records.data();
+    table.take_from_masters(records,
                             Layout::stride,
                             Layout::velocity,
                             Layout::stride);
     GridView<dim> grid = nodes.view();
-    grid.nodes         = records.data();
+    grid.nodes         = records;
     TakeFromGrid take;
     take.flip_share = 0;
     take.remap      = true;
     for (auto &body : bodies)
-      {
-        PointView<dim> points = body->points.view();
-        for (int d = 0; d < dim; ++d)
-          {
-            on_points[d].assign(points.size + room, 0.);
-            points.velocity[d] = on_points[d].data();
-          }
-        grid_to_points<dim>(points, grid, take, nullptr);
-      }
-    table.give_to_masters(records.data(),
+      if (body->description.nodal_field == field)
+        {
+          PointView<dim> points = body->points.view();
+          for (int d = 0; d < dim; ++d)
+            {
+              on_points[d].assign(points.size + room, 0.);
+              points.velocity[d] = on_points[d].data();
+            }
+          grid_to_points<dim>(points, grid, take, nullptr);
+        }
+    table.give_to_masters(records,
                           Layout::stride,
                           Layout::remapped,
                           Layout::remapped + dim);
     exchange.start(nodes.node_plan(),
-                   records.data(),
+                   records,
                    Layout::remapped,
                    Layout::remapped + dim);
-    exchange.finish(records.data());
+    exchange.finish(records);
   }
 
 

@@ -551,10 +551,14 @@ namespace limber
     const Method &method = parts.problem.method;
     if (steps_since_filter == 0)
       {
+        typename FullMassFilter<dim>::Hold hold;
+        if (contact)
+          hold = [this](const unsigned int slot) { contact->hold(slot); };
         const auto action = full_mass->apply(parts.nodes,
                                              parts.bodies,
                                              method.transfer_order,
-                                             method.transfer == Transfer::xpic);
+                                             method.transfer == Transfer::xpic,
+                                             hold);
         for (unsigned int side = 0; side < 2 * dim; ++side)
           parts.ledger.side_impulse[side] += action.impulse[side];
         // What points lose to the filter contains it.

@@ -40,14 +40,26 @@ namespace limber
 
 
 
-  // Or in its surface, to a thousandth of a cell.
+  // Or in its surface, to a thousandth of a cell. Of an obstacle at rest each
+  // node asks once: with many facets that is dear.
   template <int dim>
   bool
-  ObstacleContact<dim>::is_in(const std::uint32_t       node,
-                              const ObstaclePlace<dim> &obstacle) const
+  ObstacleContact<dim>::is_in(const std::uint32_t node,
+                              const unsigned int  obstacle,
+                              const Way          &way)
   {
-    return !vertices.empty() && obstacle.distance(vertices[node]).value <=
-                                  1e-3 * parts.grid.smallest_edge;
+    if (vertices.empty())
+      return false;
+    const auto ask = [&]() {
+      return way.before.distance(vertices[node]).value <=
+             1e-3 * parts.grid.smallest_edge;
+    };
+    if (rigid[obstacle].moves())
+      return ask();
+    std::uint8_t &known = known_nodes[obstacle][node];
+    if (known == 0)
+      known = ask() ? 2 : 1;
+    return known == 2;
   }
 
 
@@ -141,7 +153,7 @@ namespace limber
     const bool   is_full = walls.any() &&
                          mass >= least_of_full * liquid_density[field] *
                                    cut_cells->rooms()[node] &&
-                         is_in(node, way.before);
+                         is_in(node, obstacle, way);
     const bool touches_somewhere = // and is not met from all sides alike
       weight > 0 && normal.norm() > 1e-6 * weight;
     if (!is_full && !touches_somewhere)
@@ -149,7 +161,7 @@ namespace limber
     const double least_share =
       walls.open_at_walls * least_touching_share(parts.problem.grid.kernel);
     const bool is_held = is_full || weight >= least_share * mass;
-    if (!is_held && !is_in(node, way.before))
+    if (!is_held && !is_in(node, obstacle, way))
       return;
 
     const dealii::Point<dim> x =
@@ -196,12 +208,8 @@ namespace limber
 
 
 
-  template bool
-  ObstacleContact<2>::is_in(std::uint32_t, const ObstaclePlace<2> &) const;
   template void
   ObstacleContact<2>::add_nodes(const std::vector<Way> &, double);
-  template bool
-  ObstacleContact<3>::is_in(std::uint32_t, const ObstaclePlace<3> &) const;
   template void
   ObstacleContact<3>::add_nodes(const std::vector<Way> &, double);
 } // namespace limber

@@ -102,6 +102,9 @@ namespace limber
     if (any_liquid && !parts.grid.has_own_nodes())
       {
         vertices.resize(parts.nodes.table.n());
+        known_nodes.resize(rigid.size());
+        for (auto &of_obstacle : known_nodes)
+          of_obstacle.reinit(parts.nodes.table.n());
         for (const CellGeometry<dim> &cell : parts.grid.geometry)
           for (unsigned int a = 0; a < 1u << dim; ++a)
             for (unsigned int d = 0; d < dim; ++d)

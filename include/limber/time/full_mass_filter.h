@@ -5,6 +5,7 @@
 #include <limber/grid/boundary_conditions.h>
 #include <limber/state/material_body.h>
 
+#include <functional>
 #include <vector>
 
 namespace limber
@@ -28,6 +29,11 @@ namespace limber
    * the iteration would begin far off there, where p / m of a linear field is
    * 3/4 instead of 1/2 a cell from the side with quadratic splines.
    *
+   * Bodies with nodal fields of their own are filtered apart from each other.
+   * Where they press, each v(j) is held as the new velocity has been: with the
+   * projection P on what contact allows v(j + 1) - v(j) is P (1 - D^-1 M_full)
+   * times the change before, the series of the constrained inverse.
+   *
    * (Nairn and Hammerquist, CMAME 380, 2021; Hammerquist and Nairn, CMAME 318,
    * 2017 for XPIC)
    */
@@ -36,7 +42,8 @@ namespace limber
   {
   public:
     FullMassFilter(const BackgroundGrid<dim>     &grid,
-                   const BoundaryConditions<dim> &boundaries);
+                   const BoundaryConditions<dim> &boundaries,
+                   unsigned int                   n_fields);
 
     /** Adopt a changed mesh. */
     void
@@ -47,18 +54,32 @@ namespace limber
     {
       std::array<dealii::Tensor<1, dim>, 2 * dim> impulse;  // kg m/s
       double                                      work = 0; // J
+
+      void
+      operator+=(const SideAction &other)
+      {
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          impulse[side] += other.impulse[side];
+        work += other.work;
+      }
     };
+
+    /** Hold a velocity, at a slot of the records of all fields, as contact
+     * holds the new one. */
+    using Hold = std::function<void(unsigned int slot)>;
 
     /**
      * Put v(@p order) in the place of the new velocity of active nodes or,
      * with @p former_only, that of the velocity before the step plus the
-     * increment of the step. Collective.
+     * increment of the step. Between bodies that touch, @p hold acts on every
+     * v(j); it may be empty. Overwrites Layout::remapped then. Collective.
      */
     SideAction
     apply(NodalFields<dim>                                &nodes,
           std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies,
           unsigned int                                     order,
-          bool                                             former_only);
+          bool                                             former_only,
+          const Hold                                      &hold);
 
   private:
     using Layout = NodeLayout<dim>;
@@ -72,6 +93,10 @@ namespace limber
     action_of_start(const NodalFields<dim> &nodes);
     SideAction
     action_until(const NodalFields<dim> &nodes);
+    SideAction
+    hold_as_new(NodalFields<dim> &nodes, const Hold &hold);
+    void
+    store(NodalFields<dim> &nodes);
     template <class Work>
     void
     for_each_held(const NodalFields<dim> &nodes, const Work &work) const;
@@ -84,16 +109,28 @@ namespace limber
     void
     multiply_by_full_mass(NodalFields<dim> &nodes, Bodies &bodies);
 
+    // Of the selected field
     double *
     record(const std::uint32_t node)
     {
-      return records.data() + std::size_t(node) * Layout::stride;
+      return fields[field].records.data() + std::size_t(node) * Layout::stride;
     }
 
     double *
     lumped_mass(const std::uint32_t node)
     {
-      return lumped.data() + std::size_t(node) * dim;
+      return fields[field].lumped.data() + std::size_t(node) * dim;
+    }
+
+    /** Call work() with each field selected, here and in the nodes. */
+    template <class Work>
+    void
+    for_each_field(NodalFields<dim> &nodes, const Work &work)
+    {
+      nodes.for_each_field([&]() {
+        field = nodes.selected_field();
+        work();
+      });
     }
 
     /** What joins the lumped mass of the neighbour in these directions, kg. */
@@ -121,17 +158,28 @@ namespace limber
     double
     momentum(const double *own, int d) const
     {
-      const double velocity =
-        own[Layout::velocity + d] - (former ? own[Layout::increment + d] : 0);
-      return own[Layout::mass] * velocity;
+      return own[Layout::mass] * (own[Layout::velocity + d] - apart(own, d));
     }
 
-    const NodeTable<dim>          &table;
-    const BoundaryConditions<dim> &boundaries;
-    bool                           former = false;
+    /** What is not filtered of the new velocity, m/s. */
+    double
+    apart(const double *own, int d) const
+    {
+      return former ? own[Layout::increment + d] : 0;
+    }
+
     // As the nodes' own: v(j) is their velocity, M_full v(j) is re-mapped.
-    LazyArray<double>                records;
-    LazyArray<double>                lumped; // D, by node and component, kg
+    struct Field
+    {
+      LazyArray<double> records;
+      LazyArray<double> lumped; // D, by node and component, kg
+    };
+
+    const NodeTable<dim>            &table;
+    const BoundaryConditions<dim>   &boundaries;
+    bool                             former = false;
+    std::vector<Field>               fields;
+    unsigned int                     field = 0; // the selected one
     RecordExchange                   exchange{Layout::stride};
     std::vector<std::vector<double>> on_points; // velocities; refilled
   };

@@ -273,7 +273,7 @@ namespace limber
               const CellBatch      &batch,
               double               &reach) const;
     bool
-    is_in(std::uint32_t node, const ObstaclePlace<dim> &obstacle) const;
+    is_in(std::uint32_t node, unsigned int obstacle, const Way &way);
     bool
     is_beyond(double                    reach,
               unsigned int              obstacle,
@@ -341,6 +341,8 @@ namespace limber
     std::vector<LazyArray<double>> cell_distance;
     // Where the nodes are, in scenes with liquids, if they are vertices
     std::vector<dealii::Point<dim>> vertices;
+    // Of obstacles at rest, then by node: whether it is in them (2) or not (1)
+    std::vector<LazyArray<std::uint8_t>> known_nodes;
   };
 } // namespace limber
 

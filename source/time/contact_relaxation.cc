@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/contact_impulses.h>
+
+#include <algorithm>
+
+/**
+ * @file Before impulses are found: what sides hold of the nodes that places
+ * see, the masses that bear on these, and the relaxation that follows.
+ */
+namespace limber
+{
+  namespace
+  {
+    // Of the normal of a place, what sides have to leave of it at a node, or
+    // the node does not count. Flatter wedges would take impulses without end.
+    constexpr double least_free = 0.1;
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_relaxation()
+  {
+    find_held();
+    bears.assign(seen.size() * Borne::stride, 0.);
+    for (std::size_t p = 0; p < places.size(); ++p)
+      for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
+        {
+          const Place  &place   = places[p];
+          const double  mass    = free_share(place, shares.all[k]) * place.mass;
+          double *const of_node = &bears[shares.all[k].node * Borne::stride];
+          of_node[Borne::all] += mass;
+          for (int d = 0; d < dim; ++d) // what rubs acts along all of them
+            of_node[Borne::along + d] +=
+              mass * (place.friction > 0 ? 1 : std::abs(place.normal[d]));
+        }
+    if (!at_nodes && shares_nodes())
+      {
+        see_those_of_others();
+        find_held();
+      }
+
+    inverse_mass.resize(seen.size());
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      {
+        const double mass = seen[i].record[Layout::mass];
+        inverse_mass[i]   = mass > 0 ? 1 / mass : 0;
+      }
+    velocity.assign(seen.size() * lanes, 0.);
+    momentum.assign(seen.size() * lanes, 0.);
+    relative.assign(places.size() * lanes, 0.);
+    given_by_place.assign(places.size() * lanes, 0.);
+    takes_part.assign(places.size(), 1);
+
+    for (std::size_t p = 0; p < places.size(); ++p)
+      {
+        double &sum = relative[p * lanes]; // s_p
+        for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
+          {
+            PlaceShare &share = shares.all[k];
+            // At the edge of what a function reaches it has a slope, but the
+            // node no mass.
+            if (inverse_mass[share.node] == 0)
+              share.value = 0;
+            sum += free_share(places[p], share) *
+                   borne_along(places[p], share.node) *
+                   inverse_mass[share.node];
+          }
+      }
+    complete();
+    for (std::size_t p = 0; p < places.size(); ++p)
+      places[p].relaxation =
+        relative[p * lanes] > 0 ? places[p].mass / relative[p * lanes] : 0;
+  }
+
+
+
+  // Of the mass that places bear at a node, sum m_q |n_q . n_p| at most: those
+  // across do not know of each other.
+  template <int dim>
+  double
+  ContactImpulses<dim>::borne_along(const Place        &place,
+                                    const std::uint32_t node) const
+  {
+    const double *const of_node = &bears[node * Borne::stride];
+    if (place.friction > 0)
+      return of_node[Borne::all];
+    double along = 0;
+    for (int d = 0; d < dim; ++d)
+      along += std::abs(place.normal[d]) * of_node[Borne::along + d];
+    return std::min(of_node[Borne::all], along);
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::heed_sides(const unsigned int             field,
+                                   const std::vector<Constraint> &constraints)
+  {
+    if (!constraints.empty())
+      heeded.emplace_back(field, &constraints);
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::find_held()
+  {
+    if (heeded.empty())
+      return;
+    held.clear();
+    held_components.assign(seen.size(), 0);
+    holding_side.assign(seen.size() * dim, 0);
+    for (const auto &[field, constraints] : heeded)
+      for (const Constraint &constraint : *constraints)
+        if (const std::uint32_t as = seen_as[field][constraint.node]; as != 0)
+          {
+            held.push_back({as - 1, &constraint});
+            if (!constraint.one_sided)
+              {
+                held_components[as - 1] |= 1u << constraint.component;
+                holding_side[(as - 1) * dim + constraint.component] =
+                  constraint.side;
+              }
+          }
+  }
+
+
+
+  // What rubs moves nodes along the surface as well.
+  template <int dim>
+  double
+  ContactImpulses<dim>::free_share(const Place      &place,
+                                   const PlaceShare &share) const
+  {
+    const double value = std::abs(share.value);
+    if (held_components.empty() || held_components[share.node] == 0)
+      return value;
+    Vector free = place.normal;
+    for (int d = 0; d < dim; ++d)
+      if (held_components[share.node] >> d & 1)
+        free[d] = 0;
+    const double norm = free.norm();
+    if (norm < least_free)
+      return 0;
+    return value * (place.friction > 0 ? 1 : norm);
+  }
+
+
+
+  // Nodes that only places of other ranks see get impulses as well.
+  template <int dim>
+  void
+  ContactImpulses<dim>::see_those_of_others()
+  {
+    const auto record_of = [this](const unsigned int  field,
+                                  const std::uint32_t node) {
+      return given[field].records.data() + node * Given::stride + Given::borne;
+    };
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      std::copy_n(&bears[i * Borne::stride],
+                  Borne::stride,
+                  record_of(seen[i].field, seen[i].number));
+    for (unsigned int field = 0; field < given.size(); ++field)
+      {
+        const auto clear_unseen = [&](const std::vector<std::uint32_t> &some) {
+          for (const std::uint32_t node : some)
+            if (seen_as[field][node] == 0)
+              std::fill_n(record_of(field, node), Borne::stride, 0.);
+        };
+        for (const auto &neighbour : nodes.node_plan().neighbours)
+          clear_unseen(neighbour.send);
+        clear_unseen(nodes.node_plan().received);
+      }
+    sum_given(Given::borne, Given::borne + Borne::stride);
+    for (unsigned int field = 0; field < given.size(); ++field)
+      for (const std::uint32_t node : nodes.node_plan().received)
+        if (record_of(field, node)[Borne::all] > 0)
+          see(field, node);
+    bears.resize(seen.size() * Borne::stride);
+    for (std::size_t i = 0; i < seen.size(); ++i)
+      std::copy_n(record_of(seen[i].field, seen[i].number),
+                  Borne::stride,
+                  &bears[i * Borne::stride]);
+  }
+
+
+
+  template void
+  ContactImpulses<2>::find_relaxation();
+  template void
+  ContactImpulses<2>::heed_sides(unsigned int, const std::vector<Constraint> &);
+  template void
+  ContactImpulses<3>::find_relaxation();
+  template void
+  ContactImpulses<3>::heed_sides(unsigned int, const std::vector<Constraint> &);
+} // namespace limber
