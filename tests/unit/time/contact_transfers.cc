@@ -105,36 +105,6 @@ TEST(ContactTransfers, FilteredDisksBounceOffEachOther)
 
 
 
-// A small disk comes down on another one on the floor, so that nodes in the
-// side are among those that contact moves: what these do not keep is the
-// side's.
-TEST(ContactTransfers, ImpulsesOfSidesExplainTheMomentum)
-{
-  const std::string scene = pair_of_disks +
-                            disk("lower", "0.02, 0.001", "0.001", "0; 0") +
-                            disk("upper", "0.0217, 0.0023", "0.001", "-2; -2");
-  for (const std::string kernel : {"quadratic", "cubic"})
-    for (const std::string transfer : {"fmpm", "xpic"})
-      for (const std::string order : {"1", "2", "4"})
-        for (const std::string side : {"slip", "no slip"})
-          {
-            SCOPED_TRACE(kernel + ", " + transfer + "(" + order + "), " + side);
-            SceneRun<2>  run(scene,
-                            {"Method/Kernel=" + kernel,
-                              "Method/Transfer=" + transfer,
-                              "Method/Transfer order=" + order,
-                              "Boundaries/bottom=" + side});
-            const double coming = run.totals().bodies[1].momentum.norm();
-            run.advance_to(4e-4);
-            const auto totals = run.totals();
-            EXPECT_GT(totals.bodies[0].momentum.norm(), 0.1 * coming);
-            EXPECT_GT(totals.side_impulse[2].norm(), 0.1 * coming);
-            EXPECT_LT(totals.momentum_error, 1e-12);
-          }
-}
-
-
-
 // The energy that the affine part takes is on record, as is that of contact.
 TEST(ContactTransfers, DisksBounceOffEachOtherWithAffineIncrements)
 {
