@@ -41,7 +41,7 @@ namespace limber
         const double strength = body->description.chequerboard_control;
         if (!(strength > 0) || body->implicit)
           continue;
-        if (vertices.n_fields() > 1) // clear() looks at nodes of the field only
+        if (vertices.n_fields() > 1)
           vertices.select(body->description.nodal_field);
         gather_chequerboards<dim>(vertices.owned_occupied_cells(),
                                   vertices.view(),
@@ -63,7 +63,9 @@ namespace limber
                                         body->cell_sums->view(),
                                         strength * wave_speed * step,
                                         body->cell_shift.data());
-        vertices.clear();
+        // Also those that the field has reached since its nodes were noted
+        for (const std::uint32_t node : vertices.active_nodes())
+          std::fill_n(vertices.record(node), NodeLayout<dim>::stride, 0.);
       }
   }
 

@@ -348,6 +348,65 @@ TEST(Contact, ControlsOfALiquidActInItsOwnField)
 
 
 
+// Nodes are those of the field where it has points; what the pressure control
+// of water writes to them has to go where water has come as well.
+TEST(Contact, WaterRisesAroundABlockThatFloats)
+{
+  SceneRun<2> run(R"(
+    set Bodies = water, block
+    subsection Contact
+      set Pairs = wet
+      subsection Pair wet
+        set Bodies = water, block
+      end
+    end
+    subsection Grid
+      set Cells = 20, 20
+    end
+    subsection Boundaries
+      set left = slip
+      set right = slip
+      set bottom = slip
+    end
+    subsection Loads
+      set Gravity = 0, -9.81
+    end
+    subsection Body water
+      set Shape = box
+      set Material = newtonian fluid
+      set Initial pressure = hydrostatic
+      subsection Box
+        set Lower corner = 0, 0
+        set Upper corner = 1, 0.5
+      end
+      subsection Newtonian fluid
+        set Density = 1000
+        set Bulk modulus = 1e6
+      end
+    end
+    subsection Body block
+      set Shape = box
+      set Material = neo hookean
+      subsection Box
+        set Lower corner = 0.3, 0.5
+        set Upper corner = 0.7, 0.7
+      end
+      subsection Neo hookean
+        set Density = 500
+        set Young's modulus = 1e5
+        set Poisson's ratio = 0.3
+      end
+    end
+    )");
+  run.advance_to(0.5);
+  const auto totals = run.totals();
+  EXPECT_LT(totals.momentum_error, 1e-12);
+  EXPECT_NEAR(totals.energy_drift, 0, 0.005);
+  EXPECT_LT(lowest(run, 1, 1), 0.45); // it has sunk in
+}
+
+
+
 // a = g (sin - mu cos) on a plate that yields, wherever its face lies in a
 // cell; while the block swings up and down, mu m g cos is mu (m g cos + dp_y /
 // dt).
