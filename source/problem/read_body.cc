@@ -99,9 +99,11 @@ namespace limber
         "Density control",
         "auto",
         admissible::number_from_to(0, 1, "0.2").or_word("auto"),
-        "Dimensionless: of what nodes hold beyond 1.02 of the room around them, "
-        "the share that a semi-implicit step pushes apart; 'auto' is 0.2 where "
-        "all bodies are liquids and do not fill the box, else 0.");
+        "Dimensionless: of what nodes hold beyond the room around them (1.02 of "
+        "it in semi-implicit steps), the share that is pushed apart while the "
+        "fastest point moves by 0.4 cells; 'auto' is 0.2 for liquids "
+        "that have their nodes for themselves (in semi-implicit steps: no solid "
+        "in the scene) and do not fill the box, else 0.");
       declare_word(parameters,
                    "History",
                    "keep",

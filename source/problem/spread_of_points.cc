@@ -60,21 +60,37 @@ namespace limber
 
 
 
-    /**
-     * Solids may have less volume than at first; and what is pushed apart in a
-     * full box presses on all of it.
-     */
+    /** Whether it is known what nodes should hold: solids may have less volume
+     * than at first. */
+    template <int dim>
+    bool
+    may_control_density(const Problem<dim> &problem, const Body<dim> &body)
+    {
+      if (problem.method.integration == TimeIntegration::semi_implicit)
+        return std::all_of(problem.bodies.begin(),
+                           problem.bodies.end(),
+                           [](const auto &other) { return other.is_liquid; });
+      return problem.method.integration == TimeIntegration::explicit_steps &&
+             body.is_liquid && body.treatment == Treatment::cell &&
+             problem.grid.kernel == KernelKind::linear &&
+             problem.grid.levels == 0 &&
+             std::count_if(problem.bodies.begin(),
+                           problem.bodies.end(),
+                           [&](const auto &other) {
+                             return other.nodal_field == body.nodal_field;
+                           }) == 1;
+    }
+
+
+
+    /** What is pushed apart in a full box presses on all of it. */
     template <int dim>
     void
     read_density_control(const Section      &section,
                          const Problem<dim> &problem,
                          Body<dim>          &body)
     {
-      const bool possible =
-        problem.method.integration == TimeIntegration::semi_implicit &&
-        std::all_of(problem.bodies.begin(),
-                    problem.bodies.end(),
-                    [](const auto &other) { return other.is_liquid; });
+      const bool possible  = may_control_density(problem, body);
       const bool automatic = section.text("Density control") == "auto";
       body.density_control = !automatic ? section.number("Density control") :
                              possible && !is_full(problem) ? density_control :
@@ -82,10 +98,10 @@ namespace limber
       if (body.density_control > 0 && !possible)
         throw InputError("The entry 'Density control' in " +
                          section.where("Density control") +
-                         " is for a scene of liquids alone, with time "
-                         "integration 'semi-implicit'. Usually one of "
-                         "them was changed alone. Set 'Density control = "
-                         "auto'.");
+                         " is for liquids alone: in 'semi-implicit' steps in "
+                         "the scene, in explicit ones at their nodes, with "
+                         "'cell', linear functions, equal cells. Set "
+                         "'Density control = auto'.");
     }
 
 

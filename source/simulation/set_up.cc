@@ -365,7 +365,8 @@ namespace limber
           body->nodal_means.emplace(grid.vertices);
         if (body->description.implicit_pressure)
           body->implicit.emplace(grid.n_cells());
-        else if (body->description.chequerboard_control > 0)
+        else if (body->description.chequerboard_control > 0 ||
+                 body->description.density_control > 0)
           body->cell_shift.reinit(grid.n_cells());
       }
     return bodies;

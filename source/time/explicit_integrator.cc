@@ -50,6 +50,7 @@ namespace limber
     , sweeps(parts)
     , liquid_means(parts, cut_cells ? &*cut_cells : nullptr)
     , stabilization(parts)
+    , density_control(parts, liquid_means, cut_cells ? &*cut_cells : nullptr)
     , relocation(parts, loads)
     , shifting(parts, cut_cells ? &*cut_cells : nullptr)
   {
@@ -124,6 +125,7 @@ namespace limber
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
     liquid_means.reinit();
+    density_control.reinit();
     shifting.reinit();
     loads.reinit();
     relocation.reinit();

@@ -25,13 +25,14 @@ namespace limber
                                 CutCells<dim> *const cut_cells)
     : parts(parts)
     , cut_cells(cut_cells)
-    , surroundings(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
     for (auto &body : parts.bodies)
       if (body->cell_sums)
         {
-          Group &group = by_field[body->description.nodal_field];
+          Group &group =
+            by_field.try_emplace(body->description.nodal_field, parts.grid)
+              .first->second;
           if (body->description.is_liquid &&
               body->stress->treatment().kind == Treatment::cell)
             group.liquids.push_back(body.get());
@@ -57,21 +58,23 @@ namespace limber
   void
   LiquidMeans<dim>::reinit()
   {
-    for (const Group &group : groups)
-      for (MaterialBody *const body : group.liquids)
-        {
-          body->volume_shares.reinit(parts.grid.n_cells());
-          std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
-          if (cut_cells && !group.is_implicit)
-            {
-              body->strain_shares.reinit(parts.grid.n_cells());
-              std::fill_n(body->strain_shares.data(), parts.grid.n_cells(), 1.);
-            }
-        }
-    if (std::any_of(groups.begin(), groups.end(), [](const Group &group) {
-          return group.fills_cells;
-        }))
-      surroundings.reinit();
+    for (Group &group : groups)
+      {
+        if (group.fills_cells)
+          group.surroundings.reinit();
+        for (MaterialBody *const body : group.liquids)
+          {
+            body->volume_shares.reinit(parts.grid.n_cells());
+            std::fill_n(body->volume_shares.data(), parts.grid.n_cells(), 1.);
+            if (cut_cells && !group.is_implicit)
+              {
+                body->strain_shares.reinit(parts.grid.n_cells());
+                std::fill_n(body->strain_shares.data(),
+                            parts.grid.n_cells(),
+                            1.);
+              }
+          }
+      }
   }
 
 
@@ -81,10 +84,10 @@ namespace limber
   LiquidMeans<dim>::find()
   {
     const NodalFields<dim> &vertices = parts.nodes.vertices();
-    for (const Group &group : groups)
+    for (Group &group : groups)
       {
         if (group.fills_cells)
-          surroundings.find(
+          group.surroundings.find(
             vertices,
             [&](const std::uint32_t cell) {
               return !is_covered(cell) &&
@@ -96,6 +99,21 @@ namespace limber
           for (const std::uint32_t cell : *cells)
             find(group, cell);
       }
+  }
+
+
+
+  template <int dim>
+  const Surroundings<dim> &
+  LiquidMeans<dim>::surroundings(const unsigned int field) const
+  {
+    const auto group =
+      std::find_if(groups.begin(), groups.end(), [&](const Group &each) {
+        return each.field == field;
+      });
+    Assert(group != groups.end() && group->fills_cells,
+           dealii::ExcInternalError());
+    return group->surroundings;
   }
 
 
@@ -134,7 +152,7 @@ namespace limber
     if (const auto *const cut = cut_cells ? cut_cells->cell(cell) : nullptr)
       cut_cells->wets(cell, group.field) =
         !in_cell.empty() &&
-        (surroundings.is_inside(cell) || reaches_surfaces(*cut));
+        (group.surroundings.is_inside(cell) || reaches_surfaces(*cut));
     if (group.fills_cells && !in_cell.empty() && !is_covered(cell) &&
         !holds(group.solids, cell))
       fill(group, cell);
@@ -184,7 +202,7 @@ namespace limber
   {
     const auto *const cut    = cut_cells ? cut_cells->cell(cell) : nullptr;
     const double      filled = filling(cell) / (cut ? cut->open : 1);
-    const bool        inside = surroundings.is_inside(cell);
+    const bool        inside = group.surroundings.is_inside(cell);
     unsigned int      n_open = 0, open = 0; // directions that end at a surface
     bool              before = true, behind = true;
     const double      full = (filled - nearly_full) / (1 - nearly_full);
@@ -194,15 +212,15 @@ namespace limber
       fill_open_part(*cut, std::min(std::max(full, 0.), 1.));
     else
       for (unsigned int d = 0; d < dim; ++d)
-        if (inside || (surroundings.is_bounded(cell, d, 0) &&
-                       surroundings.is_bounded(cell, d, 1)))
+        if (inside || (group.surroundings.is_bounded(cell, d, 0) &&
+                       group.surroundings.is_bounded(cell, d, 1)))
           set_mean(d, cut ? cut->monomials[1u << d] : 0.5);
         else
           {
             ++n_open;
             open   = d;
-            before = surroundings.is_bounded(cell, d, 0);
-            behind = surroundings.is_bounded(cell, d, 1);
+            before = group.surroundings.is_bounded(cell, d, 0);
+            behind = group.surroundings.is_bounded(cell, d, 1);
           }
     if (n_open == 1 && (before || behind))
       {

@@ -45,6 +45,16 @@ namespace limber
 
   template <int dim>
   void
+  ExplicitIntegrator<dim>::control_density()
+  {
+    density_control.act(point_speed * step / parts.grid.smallest_edge);
+    lap(Verb::stabilize);
+  }
+
+
+
+  template <int dim>
+  void
   ExplicitIntegrator<dim>::resist_hourglass()
   {
     stabilization.resist_hourglass(step, wave_speed);
@@ -585,6 +595,8 @@ namespace limber
   template void
   ExplicitIntegrator<2>::control_chequerboards();
   template void
+  ExplicitIntegrator<2>::control_density();
+  template void
   ExplicitIntegrator<2>::resist_hourglass();
   template void
   ExplicitIntegrator<2>::damp();
@@ -634,6 +646,8 @@ namespace limber
   ExplicitIntegrator<3>::clear();
   template void
   ExplicitIntegrator<3>::control_chequerboards();
+  template void
+  ExplicitIntegrator<3>::control_density();
   template void
   ExplicitIntegrator<3>::resist_hourglass();
   template void

@@ -26,10 +26,6 @@ namespace limber
     // shall not be drawn together.
     constexpr double largest_excess = 0.5;
 
-    // Of the room around a node: where obstacles leave less, a single point
-    // would be far too much.
-    constexpr double least_room = 0.1;
-
     // How near to a side of the box points are shifted, in cells: closer ones
     // leave the next nodes hardly any mass, but all of their force. To a side
     // that moves, a cell: when it comes back it takes along what is in between.
@@ -73,13 +69,15 @@ namespace limber
                                           const CutCells<dim> *const cut_cells)
     : parts(parts)
     , cut_cells(cut_cells)
-    , controls_density(std::any_of(parts.bodies.begin(),
-                                   parts.bodies.end(),
-                                   [](const auto &body) {
-                                     return body->description.density_control >
-                                            0;
-                                   }))
+    , controls_density(
+        std::any_of(parts.bodies.begin(),
+                    parts.bodies.end(),
+                    [](const auto &body) {
+                      return body->description.implicit_pressure &&
+                             body->description.density_control > 0;
+                    }))
     , surroundings(parts.grid)
+    , rooms(parts.grid, cut_cells)
     , potential(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
@@ -109,26 +107,7 @@ namespace limber
     surroundings.reinit();
     potential.reinit();
     records.reinit(std::size_t(parts.grid.vertices.n()) * Record::stride);
-    find_rooms();
-  }
-
-
-
-  template <int dim>
-  void
-  ParticleShifting<dim>::find_rooms()
-  {
-    const NodeTable<dim> &table = parts.grid.vertices;
-    rooms.reinit(table.n());
-    std::fill_n(rooms.data(), table.n(), 0.);
-    for (std::uint32_t cell = 0; cell < parts.grid.n_owned_cells(); ++cell)
-      for (unsigned int a = 0; a < n_corners; ++a)
-        rooms[surroundings.node_of(cell, a)] +=
-          volume_of(parts.grid.geometry[cell]) / n_corners;
-    table.give_to_masters(rooms.data(), 1, 0, 1);
-    const ExchangePlan all(table.shared);
-    room_exchange.start(all, rooms.data(), 0, 1);
-    room_exchange.finish(rooms.data());
+    rooms.reinit();
   }
 
 
@@ -169,17 +148,13 @@ namespace limber
 
 
 
-  // Of which obstacles take some, m^3; 0 where it does not count. In cells that
-  // they cut the control of semi-implicit steps alone keeps the volume better.
+  // m^3; 0 where it does not count. In cells that obstacles cut the control of
+  // semi-implicit steps alone keeps the volume better.
   template <int dim>
   double
   ParticleShifting<dim>::room_at(const std::uint32_t node) const
   {
-    if (cut_cells == nullptr ||
-        !(cut_cells->is_cut(node) || cut_cells->covered_corners()[node] > 0))
-      return rooms[node];
-    const double left = cut_cells->rooms()[node];
-    return left < least_room * rooms[node] || controls_density ? 0 : left;
+    return controls_density && rooms.is_at_obstacle(node) ? 0 : rooms.at(node);
   }
 
 

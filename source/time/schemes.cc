@@ -38,6 +38,7 @@ namespace limber
   ExplicitIntegrator<dim>::usf()
   {
     p2g_before_strain();
+    control_density();
     strain_at_start(step);
     p2g_force();
     accelerate_nodes();
@@ -53,6 +54,7 @@ namespace limber
   ExplicitIntegrator<dim>::usl()
   {
     p2g();
+    control_density();
     accelerate_nodes();
     account_loads(Layout::velocity);
     filter_velocity();
@@ -67,6 +69,7 @@ namespace limber
   ExplicitIntegrator<dim>::musl()
   {
     p2g();
+    control_density();
     accelerate_nodes();
     g2p_and_remap();
     account_loads(Layout::strain_velocity);
@@ -85,6 +88,7 @@ namespace limber
   ExplicitIntegrator<dim>::usavg()
   {
     p2g_before_strain();
+    control_density();
     strain_at_start(0.5 * step);
     p2g_force();
     accelerate_nodes();

@@ -177,7 +177,7 @@ namespace limber
     // Only above zero, with an implicit pressure; otherwise the law sees to it
     bool cuts_tension = false;
     // Of what nodes hold beyond their room, the share that is pushed apart in
-    // a step as long as motion allows; with an implicit pressure only
+    // a step as long as motion allows
     double density_control = 0;
     // of the volume ratios, and of the deviatoric strain
     HistoryTreatment history            = HistoryTreatment::keep;

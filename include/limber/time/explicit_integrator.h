@@ -6,6 +6,7 @@
 #include <limber/grid/boundary_conditions.h>
 #include <limber/time/body_sweeps.h>
 #include <limber/time/contact.h>
+#include <limber/time/density_control.h>
 #include <limber/time/full_mass_filter.h>
 #include <limber/time/liquid_means.h>
 #include <limber/time/obstacle_contact.h>
@@ -143,6 +144,8 @@ namespace limber
     void
     control_chequerboards();
     void
+    control_density();
+    void
     resist_hourglass();
     void
     damp();
@@ -237,6 +240,7 @@ namespace limber
     std::optional<ObstacleContact<dim>> obstacles;
     std::optional<SmoothSurfaces<dim>>  surfaces; // in cells that these cut
     Stabilization<dim>                  stabilization;
+    DensityControl<dim>                 density_control;
     Relocation<dim>                     relocation;
     ParticleShifting<dim>               shifting;
     std::optional<FullMassFilter<dim>>  full_mass; // for FMPM and XPIC alone

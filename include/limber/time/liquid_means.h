@@ -52,6 +52,11 @@ namespace limber
     void
     find();
 
+    /** What surrounds the cells of a liquid that is alone in this field of
+     * nodes and has means over cells; as find() has found it. */
+    const Surroundings<dim> &
+    surroundings(unsigned int field) const;
+
   private:
     using MaterialBody                    = limber::MaterialBody<dim>;
     static constexpr unsigned int n_nodes = 1 << dim;
@@ -59,10 +64,15 @@ namespace limber
     /** Liquids that give to the same nodes, and the solids that do. */
     struct Group
     {
+      explicit Group(const BackgroundGrid<dim> &grid)
+        : surroundings(grid)
+      {}
+
       std::vector<MaterialBody *> liquids, solids;
-      bool fills_cells   = false; // whether means over the cell are wanted
-      bool is_implicit   = false; // the pressure of the liquids
-      unsigned int field = 0;
+      bool fills_cells        = false; // whether means over the cell are wanted
+      bool is_implicit        = false; // the pressure of the liquids
+      unsigned int      field = 0;
+      Surroundings<dim> surroundings; // where cells are filled
     };
 
     /** One of the liquids in a cell. */
@@ -101,7 +111,6 @@ namespace limber
     CutCells<dim> *const cut_cells; // or null
     std::vector<Group>   groups;
     std::vector<Part>    in_cell;
-    Surroundings<dim>    surroundings;
   };
 } // namespace limber
 

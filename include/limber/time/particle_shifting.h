@@ -2,8 +2,8 @@
 #ifndef limber_time_particle_shifting_h
 #define limber_time_particle_shifting_h
 
-#include <limber/time/cut_cells.h>
 #include <limber/time/integrator.h>
+#include <limber/time/node_rooms.h>
 #include <limber/time/room_potential.h>
 #include <limber/time/surroundings.h>
 
@@ -100,8 +100,6 @@ namespace limber
     };
 
     void
-    find_rooms();
-    void
     find_excess(const Group &group);
     void
     make_room(const Group &group);
@@ -124,14 +122,14 @@ namespace limber
     }
 
     const RunParts<dim>        parts;
-    const CutCells<dim> *const cut_cells; // or null
-    const bool                 controls_density;
+    const CutCells<dim> *const cut_cells;        // or null
+    const bool                 controls_density; // with implicit pressures
     std::vector<Group>         groups;
     Surroundings<dim>          surroundings;
     RoomPotential<dim>         potential;
-    LazyArray<double>          rooms;   // by vertex, m^3
+    NodeRooms<dim>             rooms;
     LazyArray<double>          records; // by vertex
-    RecordExchange             room_exchange{1}, exchange{Record::stride};
+    RecordExchange             exchange{Record::stride};
     std::vector<double>        volume_ratios; // of the points of a body
     double                     travelled = 0; // in cells
   };

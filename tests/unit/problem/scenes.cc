@@ -269,6 +269,31 @@ TEST(Scenes, DensityIsNotControlledWhereThereIsNoRoom)
 
 
 
+// In explicit steps it takes nodes at which nothing but the liquid has mass.
+TEST(Scenes, DensityControlOfExplicitStepsIsForALiquidAloneAtItsNodes)
+{
+  const auto control = [](const std::string              &scene,
+                          const std::vector<std::string> &changes) {
+    std::vector<std::string> all = {"Method/Time integration=explicit"};
+    all.insert(all.end(), changes.begin(), changes.end());
+    return read_problem<2>(SceneFile(prm_folder() + scene, all))
+      .bodies[0]
+      .density_control;
+  };
+  const std::string vortices = "verification/taylor_green.prm",
+                    not_full = "Body water/Box/Upper corner=1, 0.9";
+  EXPECT_EQ(control(vortices, {}), 0);
+  EXPECT_EQ(control(vortices, {not_full}), 0.2);
+  EXPECT_EQ(control(vortices, {not_full, "Method/Kernel=quadratic"}), 0);
+  EXPECT_EQ(control(vortices, {not_full, "Body water/Locking treatment=none"}),
+            0);
+  EXPECT_EQ(control("verification/water_on_plate.prm",
+                    {"Method/Kernel=linear"}),
+            0);
+}
+
+
+
 // Parts of the lattice of 'regular' are in or out as a whole, so that others
 // fill a block whose faces do not lie in it.
 TEST(Scenes, PlacementFollowsTheFaces)

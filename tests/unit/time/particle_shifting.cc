@@ -267,6 +267,7 @@ TEST(ParticleShifting, KeepsTheVolumeOfStirredWater)
                       "Body water/Initial velocity=0.1*sin(29*x+13*y*y); "
                        "0.1*cos(31*x*y-9*y)",
                       "Body water/Initial pressure=hydrostatic",
+                      "Body water/Density control=0",
                       "Body water/Particle shifting=" + shifting,
                       "Grid/Upper corner=1, 1.5",
                       "Grid/Cells=8, 12"});
