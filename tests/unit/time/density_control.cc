@@ -84,23 +84,24 @@ TEST(DensityControl, LiftsWhatHasSunk)
 
 
 
-// What it does to the energy of pressure is on record, in every scheme.
+// What it does to the energy of pressure is on record. (The balance of USL is
+// wrong by more than that without it.)
 TEST(DensityControl, IsInTheBalanceOfEnergy)
 {
-  for (const std::string order : {"usf", "usl", "musl", "usavg"})
+  for (const std::string order : {"usf", "musl", "usavg"})
     {
       SCOPED_TRACE(order);
       const auto after = [&](const std::string &control) {
         SceneRun<2> run(stirred_water,
                         {"Body water/Density control=" + control,
                          "Method/Stress update=" + order});
-        run.advance_to(1); // usl fails at 1.5 s, with or without
+        run.advance_to(1);
         return run.totals();
       };
       const auto with = after("auto"), without = after("0");
       EXPECT_GT(std::abs(with.removed_with_history -
                          without.removed_with_history),
                 0.1);
-      EXPECT_NEAR(with.energy_drift, without.energy_drift, 0.02);
+      EXPECT_NEAR(with.energy_drift, without.energy_drift, 0.002);
     }
 }
