@@ -50,12 +50,14 @@ namespace
 
 
 
-  // Shifted points would have velocities of where they have been.
+  // Shifted points would have velocities of where they have been, and density
+  // control would give them the volume that their nodes tell.
   std::vector<std::string>
   overrides(const Variant &v)
   {
     return {"Body block/Material=" + v.law,
             "Body block/Particle shifting=0",
+            "Body block/Density control=0",
             "Body block/Locking treatment=" + v.treatment,
             "Method/Stress update=" + v.order,
             "Method/Transfer=" + v.transfer,
