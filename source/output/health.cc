@@ -98,8 +98,10 @@ namespace limber
       HealthLine line;
       line.value   = figures.drift;
       line.verdict = check.verdict(line.value);
-      line.text    = "the balance of energy leaves " + percent(figures.drift) +
-                  " of its scale, " + brief(figures.energy_scale) + " J";
+      line.text    = "the balance of energy leaves " +
+                  brief(figures.drift * figures.energy_scale) + " J, " +
+                  percent(figures.drift) + " of the largest energy, " +
+                  brief(figures.energy_scale) + " J";
       if (line.verdict != Verdict::good)
         line.text +=
           "; on record are " + brief(figures.loads) + " J from loads, " +

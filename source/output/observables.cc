@@ -37,19 +37,23 @@ namespace limber
                     const GridDescription<dim> &grid,
                     const Observable<dim>      &observable)
     {
-      const unsigned int   axis   = observable.axis;
       const double         sign   = observable.positive ? 1 : -1;
       const PointView<dim> points = body.points.view();
-      const double         spacing =
-        grid.edge(axis) / body.description.points_per_cell_edge[axis];
+      const double *const  x      = points.position[observable.axis];
+      const double *const  edge   = points.edge[observable.axis];
+      const double         half =
+        0.5 * grid.edge(observable.axis) /
+        body.description.points_per_cell_edge[observable.axis];
+      const bool has_classes = body.points.has_size_classes();
+      const auto half_edge   = [&](const std::size_t p) {
+        return edge != nullptr ? 0.5 * edge[p] :
+                 has_classes     ? half / (1u << body.points.size_class(p)) :
+                                   half;
+      };
       double largest = -std::numeric_limits<double>::infinity();
       for (std::size_t p = 0; p < points.size; ++p)
         {
-          const double end =
-            sign * points.position[axis][p] +
-            0.5 * (points.edge[axis] != nullptr ?
-                     points.edge[axis][p] :
-                     spacing / (1u << body.points.size_class(p)));
+          const double end = sign * x[p] + half_edge(p);
           if (end > largest && is_within(points, p, observable))
             largest = end;
         }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/output/totals.h>
+#include <limber/transfer/point_sums.h>
 
 #include <algorithm>
 #include <cmath>
@@ -51,41 +52,6 @@ namespace limber
 
 
 
-    /** Points [begin, end): few enough for plain sums to be accurate. */
-    template <int dim>
-    void
-    add_points(const PointView<dim> &points,
-               const std::size_t     begin,
-               const std::size_t     end,
-               double *const         body,
-               RowSums<dim>         &sums)
-    {
-      std::array<double, RowSums<dim>::stride> own{};
-      double absolute_momentum = 0, largest = 0;
-      for (std::size_t p = begin; p < end; ++p)
-        {
-          const double mass   = points.mass[p];
-          double       square = 0;
-          for (int d = 0; d < dim; ++d)
-            {
-              const double velocity = points.velocity[d][p];
-              square += velocity * velocity;
-              own[3 + d] += mass * velocity;
-              own[3 + dim + d] += mass * points.position[d][p];
-            }
-          own[0] += mass;
-          own[1] += 0.5 * mass * square;
-          absolute_momentum += mass * std::sqrt(square);
-          largest = square > largest ? square : largest;
-        }
-      for (unsigned int k = 0; k < own.size(); ++k)
-        body[k] += own[k];
-      sums.absolute_momentum() += absolute_momentum;
-      sums.largest[0] = std::max(sums.largest[0], largest);
-    }
-
-
-
     template <int dim>
     RowSums<dim>
     sum_own(const State<dim> &state)
@@ -93,16 +59,23 @@ namespace limber
       RowSums<dim> sums(state.bodies.size());
       for (unsigned int b = 0; b < state.bodies.size(); ++b)
         {
-          const MaterialBody<dim> &body   = *state.bodies[b];
-          const PointView<dim>     points = body.points.view();
-          constexpr std::size_t    block  = 512;
-          for (std::size_t p = 0; p < points.size; p += block)
-            add_points(
-              points, p, std::min(p + block, points.size), sums.body(b), sums);
+          const MaterialBody<dim> &body    = *state.bodies[b];
+          const PointView<dim>     points  = body.points.view();
+          const MotionSums<dim>    motion  = sum_motion(points);
+          double *const            of_body = sums.body(b);
+          of_body[0]                       = motion.mass;
+          of_body[1]                       = motion.kinetic_energy;
+          for (int d = 0; d < dim; ++d)
+            {
+              of_body[3 + d]       = motion.momentum[d];
+              of_body[3 + dim + d] = motion.mass_moment[d];
+            }
+          sums.absolute_momentum() += motion.absolute_momentum;
+          sums.largest[0] = std::max(sums.largest[0], motion.squared_speed);
           sums.points() += points.size;
 
           const StateSummary summary = body.stress->summarize(points);
-          sums.body(b)[2]            = summary.strain_energy;
+          of_body[2]                 = summary.strain_energy;
           sums.largest[1] = std::max(sums.largest[1], summary.largest_volume);
           sums.largest[2] = std::max(sums.largest[2], -summary.smallest_volume);
         }

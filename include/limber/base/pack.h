@@ -2,6 +2,8 @@
 #ifndef limber_base_pack_h
 #define limber_base_pack_h
 
+#include <limber/base/expected.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -580,6 +582,24 @@ namespace limber
           result &= mask[i];
         return result != 0;
       }
+  }
+
+
+
+  /**
+   * ln(b/a) of positive numbers, to round-off of (b - a) / a where they differ
+   * by less than two per cent: 2 artanh s, s = (b - a) / (b + a), by the series
+   * up to s^9.
+   */
+  template <class Number>
+  inline Number
+  logarithm_of_ratio(const Number &b, const Number &a)
+  {
+    const Number s = (b - a) / (b + a), z = s * s;
+    if (rarely(!all(z < 1e-4)))
+      return logarithm(b / a);
+    return 2. * s *
+           (1. + z * (1. / 3 + z * (1. / 5 + z * (1. / 7 + z * (1. / 9)))));
   }
 
 

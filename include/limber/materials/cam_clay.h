@@ -233,6 +233,13 @@ namespace limber
              (swelling * (exponential(-log_J / swelling) - 1.) + log_J);
     }
 
+    template <class Number>
+    Number
+    volumetric_energy_gain(const Number &from, const Number &to) const
+    {
+      return volumetric_energy(to) - volumetric_energy(from);
+    }
+
     template <int dim>
     void
     set_deviatoric_strain(State<dim, double>          &state,

@@ -132,6 +132,14 @@ namespace limber
       return 0.5 * bulk_modulus * (0.5 * (J * J - 1.) - logarithm(J));
     }
 
+    template <class Number>
+    Number
+    volumetric_energy_gain(const Number &from, const Number &to) const
+    {
+      return 0.5 * bulk_modulus *
+             (0.5 * (to - from) * (to + from) - logarithm_of_ratio(to, from));
+    }
+
     /** ln(be) / 2 */
     template <int dim>
     Deviator<dim, double>

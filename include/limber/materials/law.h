@@ -226,7 +226,8 @@ namespace limber
    *  - start_under(), admits(), where it does not take pressure: the state
    * under a given Cauchy stress, and whether the law may be in it;
    *  - volume_ratio(), stretch_along(), strain_energy(), volumetric_energy(),
-   *    wave_speed_squared() of a state; dynamic_viscosity();
+   *    wave_speed_squared() of a state; volumetric_energy_gain() from one value
+   *    of its volumetric variable to another; dynamic_viscosity();
    *  - is_elastic, whether the stress follows from the deformation alone;
    *  - is_plastic, whether it flows plastically: elastic coefficients then say
    *    nothing about its strain, and update() returns plastic work; then also

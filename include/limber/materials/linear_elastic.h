@@ -182,6 +182,13 @@ namespace limber
       return pressure * pressure / (2. * bulk_modulus);
     }
 
+    template <class Number>
+    Number
+    volumetric_energy_gain(const Number &from, const Number &to) const
+    {
+      return volumetric_energy(to) - volumetric_energy(from);
+    }
+
     template <int dim>
     Deviator<dim, double>
     deviatoric_strain(const State<dim, double> &state) const

@@ -189,6 +189,15 @@ namespace limber
       return bulk_modulus * (J - 1. - logarithm(J));
     }
 
+    template <class Number>
+    Number
+    volumetric_energy_gain(const Number &from, const Number &to) const
+    {
+      if (tait)
+        return volumetric_energy(to) - volumetric_energy(from);
+      return bulk_modulus * (to - from - logarithm_of_ratio(to, from));
+    }
+
     template <int dim, class Number>
     Number
     strain_energy(const State<dim, Number> &state) const

@@ -38,6 +38,21 @@ namespace limber
       }
     return n_batches;
   }
+
+
+
+  /**
+   * All points, wherever they are, a block at a time: few enough for plain sums
+   * over the points of a block to be accurate.
+   */
+  template <class Work>
+  __attribute__((always_inline)) inline void
+  for_each_block(const std::size_t n_points, const Work &work)
+  {
+    constexpr std::size_t block = 512;
+    for (std::size_t p = 0; p < n_points; p += block)
+      work(CellBatch{0, p, p + block < n_points ? p + block : n_points});
+  }
 } // namespace limber
 
 #endif

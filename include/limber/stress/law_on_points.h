@@ -24,16 +24,26 @@ namespace limber
     StateSummary
     summarize(const PointView<dim> &points) const override
     {
+      using Number = PointPack<dim>;
       StateSummary result;
-      for (std::size_t p = 0; p < points.size; ++p)
-        {
-          const auto state = state_of(points, p);
-          result.strain_energy += points.mass[p] * inverse_density *
-                                  law.template strain_energy<dim>(state);
-          const double J         = law.template volume_ratio<dim>(state);
-          result.smallest_volume = std::min(result.smallest_volume, J);
-          result.largest_volume  = std::max(result.largest_volume, J);
-        }
+      Number       smallest = broadcast<Number>(result.smallest_volume),
+             largest        = broadcast<Number>(result.largest_volume);
+      for_each_block(points.size, [&](const CellBatch &block) {
+        Number energy{};
+        for_each_pack<dim>(block, [&](const auto &lanes) {
+          const auto state = load_state<Number>(points, [&](const double *a) {
+            return lanes.load(a);
+          });
+          energy += lanes.only_active(lanes.load(points.mass)) *
+                    law.template strain_energy<dim>(state);
+          const Number J = law.template volume_ratio<dim>(state);
+          smallest       = smaller(J, smallest);
+          largest        = larger(J, largest);
+        });
+        result.strain_energy += sum(energy) * inverse_density;
+      });
+      result.smallest_volume = minimum(smallest);
+      result.largest_volume  = maximum(largest);
       return result;
     }
 
@@ -233,10 +243,10 @@ namespace limber
       if (change.any)
         {
           Number      &variable = volumetric_variable(state);
-          const Number before   = law.volumetric_energy(variable);
+          const Number before   = variable;
           variable += change.share * (change.mean - variable) + change.shift;
-          found.removed +=
-            mass * inverse_density * (before - law.volumetric_energy(variable));
+          found.removed -= mass * inverse_density *
+                           law.volumetric_energy_gain(before, variable);
         }
 
       const auto dissipation = law.template update<dim>(motion, state);

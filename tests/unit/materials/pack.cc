@@ -124,6 +124,33 @@ TYPED_TEST(PackOf, LogarithmIsGoodToRoundOffNextToOneToo)
 
 
 
+TYPED_TEST(PackOf, LogarithmOfARatioIsGoodToRoundOffOfTheDifference)
+{
+  constexpr int n = pack_width<TypeParam>;
+  for (const double from : {0.3, 1., 1.7})
+    for (int k = -9; k <= 120; ++k) // from closer than round-off to far apart
+      for (const double sign : {-1., 1.})
+        {
+          const double difference = sign * from * std::pow(10., -0.1 * k - 0.5);
+          const double to         = from + difference;
+          if (to <= 0)
+            continue;
+          const TypeParam found =
+            logarithm_of_ratio(broadcast<TypeParam>(to),
+                               broadcast<TypeParam>(from));
+          const double exact = std::log1p((to - from) / from);
+          // farther apart the ratio itself is rounded
+          const double rounded = std::abs(exact) > 0.02 ? 2.3e-16 : 0;
+          for (int i = 0; i < n; ++i)
+            EXPECT_NEAR(lane(found, i),
+                        exact,
+                        1e-15 * std::abs(exact) + rounded)
+              << to << " over " << from;
+        }
+}
+
+
+
 TYPED_TEST(PackOf, InverseCubeRootOfOneIsOne)
 {
   const TypeParam one = inverse_cube_root(broadcast<TypeParam>(1.));

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_transfer_point_sums_h
+#define limber_transfer_point_sums_h
+
+#include <limber/points/point_view.h>
+
+namespace limber
+{
+  /** What rows of the statistics, of which every step may write one, want of
+   * the points of a body. */
+  template <int dim>
+  struct MotionSums
+  {
+    double                  mass              = 0; // kg
+    double                  kinetic_energy    = 0; // J
+    double                  absolute_momentum = 0; // sum of m |v|, kg m/s
+    double                  squared_speed     = 0; // the largest, m^2/s^2
+    std::array<double, dim> momentum{};            // kg m/s
+    std::array<double, dim> mass_moment{};         // sum of m x, kg m
+  };
+
+  template <int dim>
+  MotionSums<dim>
+  sum_motion(const PointView<dim> &points);
+} // namespace limber
+
+#endif
