@@ -451,11 +451,6 @@ namespace limber
              "Time integration",
              "its equations have not been tried across a change of size",
              "'Time integration = explicit'");
-    if (filters_velocity(problem.method.transfer))
-      refuse(method,
-             "Transfer",
-             "the filter has not been tried across a change of size",
-             "'Transfer = flip'");
     for (const Body<dim> &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);
