@@ -58,15 +58,16 @@ namespace
         points.history[k][p] = state.history[k];
     }
 
-    /** The least size of what a law computes its variables from. */
+    /** The least size of what a law computes the variable k of its history
+     * from. */
     static double
-    size_computed_with(const Law &law)
+    size_computed_with(const Law &law, const int k)
     {
       // pc is the length of the ellipse in the p-q plane, less the attraction
       if constexpr (std::is_same_v<Law, CamClay>)
-        return law.attraction;
-      else
-        return 1;
+        if (k == index_of_variable<dim, Law>(1))
+          return law.attraction;
+      return 1;
     }
 
     void
@@ -86,7 +87,7 @@ namespace
           for (int k = 0; k < n_history; ++k)
             ASSERT_NEAR(a.history[k],
                         b.history[k],
-                        tolerance * std::max(size_computed_with(law),
+                        tolerance * std::max(size_computed_with(law, k),
                                              std::abs(b.history[k])));
         }
     }
