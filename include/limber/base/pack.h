@@ -44,8 +44,10 @@ namespace limber
   /** Of eight doubles at most. */
 #ifdef __AVX512F__
   inline constexpr int widest_pack = 8;
+  inline constexpr int n_registers = 32;
 #else
   inline constexpr int widest_pack = 4;
+  inline constexpr int n_registers = 16;
 #endif
 
   /** How many doubles a Number holds. */

@@ -198,43 +198,19 @@ namespace limber
   {
     static constexpr int dim = Basis::dim;
     using Window             = RecordWindow<dim, first, n_components>;
-    using Lanes              = typename Window::Lanes;
     static constexpr unsigned int width = Window::width;
     static constexpr unsigned int start = Window::start;
+    // What does not fit into a register goes one after the other.
+    using Part =
+      std::conditional_t<width <= widest_pack, typename Window::Lanes, Pack<4>>;
 
   public:
     __attribute__((always_inline))
     NodalCoefficients(const GridView<dim> &grid, const std::uint32_t cell)
     {
-      const auto &nodes = Basis::nodes_of(grid, cell);
-      const auto  read  = [&](const int i) __attribute__((always_inline))
-      {
-        return load<Lanes>(grid.nodes + nodes.node[i] + start);
-      };
-      const auto keep = [&](const int k, const Lanes &value)
-        __attribute__((always_inline))
-      {
-        store(value, &coefficients[k * width]);
-      };
-      if constexpr (Basis::n_nodes > 32) // than there are registers
-        Basis::template to_monomials_by_planes<Lanes>(
-          nodes,
-          read,
-          [&](const int k) __attribute__((always_inline)) {
-            return load<Lanes>(&coefficients[k * width]);
-          },
-          keep);
-      else
-        {
-          std::array<Lanes, Basis::n_nodes> a;
-#pragma GCC unroll 27
-          for (int i = 0; i < Basis::n_nodes; ++i)
-            a[i] = read(i);
-          Basis::to_monomials(a, nodes);
-#pragma GCC unroll 27
-          for (int i = 0; i < Basis::n_nodes; ++i)
-            keep(i, a[i]);
-        }
+#pragma GCC unroll 2
+      for (unsigned int lane = 0; lane < width; lane += pack_width<Part>)
+        transform(grid, Basis::nodes_of(grid, cell), lane);
     }
 
     /** Coefficients of one component, counted from the first slot. */
@@ -284,6 +260,43 @@ namespace limber
     }
 
   private:
+    /** The lanes of a part from @p lane on. */
+    template <class Nodes>
+    __attribute__((always_inline)) void
+    transform(const GridView<dim> &grid,
+              const Nodes         &nodes,
+              const unsigned int   lane)
+    {
+      const auto read = [&](const int i) __attribute__((always_inline))
+      {
+        return load<Part>(grid.nodes + nodes.node[i] + start + lane);
+      };
+      const auto keep = [&](const int k, const Part &value)
+        __attribute__((always_inline))
+      {
+        store(value, &coefficients[k * width + lane]);
+      };
+      if constexpr (dim == 3 && Basis::n_nodes > 2 * n_registers)
+        Basis::template to_monomials_by_planes<Part>(
+          nodes,
+          read,
+          [&](const int k) __attribute__((always_inline)) {
+            return load<Part>(&coefficients[k * width + lane]);
+          },
+          keep);
+      else
+        {
+          std::array<Part, Basis::n_nodes> a;
+#pragma GCC unroll 27
+          for (int i = 0; i < Basis::n_nodes; ++i)
+            a[i] = read(i);
+          Basis::to_monomials(a, nodes);
+#pragma GCC unroll 27
+          for (int i = 0; i < Basis::n_nodes; ++i)
+            keep(i, a[i]);
+        }
+    }
+
     // Rows within lines of the cache: what has just been stored across two of
     // them cannot be loaded before it is there.
     alignas(64) std::array<double, width * Basis::n_nodes> coefficients;

@@ -49,8 +49,9 @@ namespace limber
    * along d exchanged for the other one, times along[d]. If it @p begins the
    * sums, they need not be zero.
    *
-   * The sums of a plane of nodes stay in registers from point to point; what
-   * goes to it, to a row of it and to a node is formed one after the other.
+   * What goes to a plane of nodes, to a row of it and to a node is formed one
+   * after the other. The sums of a plane stay in registers from point to point;
+   * where the machine has too few of them, those of a row.
    */
   template <class Basis,
             bool has_alike,
@@ -68,63 +69,106 @@ namespace limber
     std::array<Record, Basis::n_nodes>                             &sums)
   {
     constexpr int dim = Basis::dim, n = Basis::n;
+    struct PlaneShare
+    {
+      Record alike;
+      Along  along_x, along_y;
+    };
+    const auto share_of = [&](const int plane, const int p)
+      __attribute__((always_inline))
+    {
+      PlaneShare share{};
+      if constexpr (has_alike)
+        share.alike = alike[p];
+      if constexpr (has_along)
+        {
+          share.along_x = along[0][p];
+          share.along_y = along[1][p];
+        }
+      if constexpr (dim == 3)
+        {
+          const double value = factors.value[2][plane][p];
+          if constexpr (has_alike)
+            share.alike *= value;
+          if constexpr (has_along)
+            {
+              share.alike += factors.other[2][plane][p] * along[2][p];
+              share.along_x *= value;
+              share.along_y *= value;
+            }
+        }
+      return share;
+    };
+    const auto add_row = [&](const PlaneShare &share,
+                             const int         j,
+                             const int         p,
+                             Record *const row) __attribute__((always_inline))
+    {
+      const double value  = factors.value[1][j][p];
+      Record       to_row = value * share.alike;
+      Along        slope{};
+      if constexpr (has_along)
+        {
+          to_row += factors.other[1][j][p] * share.along_y;
+          slope = value * share.along_x;
+        }
+#pragma GCC unroll 4
+      for (int i = 0; i < n; ++i)
+        {
+          row[i] += factors.value[0][i][p] * to_row;
+          if constexpr (has_along)
+            row[i] += factors.other[0][i][p] * slope;
+        }
+    };
+    // The sums of some nodes from the first on, while add(kept) adds to them
+    const auto keep_sums = [&](const auto count, const int first, auto &&add)
+      __attribute__((always_inline))
+    {
+      constexpr int              n_sums = std::decay_t<decltype(count)>::value;
+      std::array<Record, n_sums> kept;
+      if (begins)
+        set_zero(kept);
+      else
+#pragma GCC unroll 16
+        for (int i = 0; i < n_sums; ++i)
+          kept[i] = sums[first + i];
+      add(kept.data());
+#pragma GCC unroll 16
+      for (int i = 0; i < n_sums; ++i)
+        sums[first + i] = kept[i];
+    };
+
+    constexpr int  per_record = (pack_width<Record> + 3) / 4; // registers
+    constexpr bool plane_fits = n * n * per_record + 5 <= n_registers;
     for (int plane = 0; plane < Basis::n_nodes / (n * n); ++plane)
-      {
-        std::array<Record, n * n> of_plane;
-        if (begins)
-          set_zero(of_plane);
-        else
-#pragma GCC unroll 16
-          for (int i = 0; i < n * n; ++i)
-            of_plane[i] = sums[plane * n * n + i];
-        for (int p = 0; p < n_points; ++p)
-          {
-            Record to_plane{};
-            Along  along_x, along_y;
-            if constexpr (has_alike)
-              to_plane = alike[p];
-            if constexpr (has_along)
+      if constexpr (plane_fits)
+        keep_sums(
+          std::integral_constant<int, n * n>(),
+          plane * n * n,
+          [&](Record *const kept) __attribute__((always_inline)) {
+            for (int p = 0; p < n_points; ++p)
               {
-                along_x = along[0][p];
-                along_y = along[1][p];
-              }
-            if constexpr (dim == 3)
-              {
-                const double value = factors.value[2][plane][p];
-                if constexpr (has_alike)
-                  to_plane *= value;
-                if constexpr (has_along)
-                  {
-                    to_plane += factors.other[2][plane][p] * along[2][p];
-                    along_x *= value;
-                    along_y *= value;
-                  }
-              }
+                const PlaneShare share = share_of(plane, p);
 #pragma GCC unroll 4
-            for (int j = 0; j < n; ++j)
-              {
-                const double value  = factors.value[1][j][p];
-                Record       to_row = value * to_plane;
-                Along        slope{};
-                if constexpr (has_along)
-                  {
-                    to_row += factors.other[1][j][p] * along_y;
-                    slope = value * along_x;
-                  }
-#pragma GCC unroll 4
-                for (int i = 0; i < n; ++i)
-                  {
-                    Record &sum = of_plane[j * n + i];
-                    sum += factors.value[0][i][p] * to_row;
-                    if constexpr (has_along)
-                      sum += factors.other[0][i][p] * slope;
-                  }
+                for (int j = 0; j < n; ++j)
+                  add_row(share, j, p, kept + j * n);
               }
-          }
-#pragma GCC unroll 16
-        for (int i = 0; i < n * n; ++i)
-          sums[plane * n * n + i] = of_plane[i];
-      }
+          });
+      else
+        {
+          std::array<PlaneShare, AxisFactors<Basis, has_along>::width> shares;
+          for (int p = 0; p < n_points; ++p)
+            shares[p] = share_of(plane, p);
+#pragma GCC unroll 4
+          for (int j = 0; j < n; ++j)
+            keep_sums(
+              std::integral_constant<int, n>(),
+              (plane * n + j) * n,
+              [&](Record *const kept) __attribute__((always_inline)) {
+                for (int p = 0; p < n_points; ++p)
+                  add_row(shares[p], j, p, kept);
+              });
+        }
   }
 } // namespace limber
 

@@ -253,7 +253,8 @@ namespace limber
     if constexpr (Basis::degree == 2 && dim == 2 && What::momentum &&
                   What::force && !What::affine)
       give_by_directions(points, cell, nodes, lanes, xi, Vt, begins, of_batch);
-    else if constexpr (Basis::degree == 2 && (dim == 2 || !What::force))
+    else if constexpr (Basis::degree == 2 && !(dim == 3 && What::force) &&
+                       Basis::n_nodes <= n_registers)
       {
         const SplineWeights<Basis, What::force> weights(cell, nodes, xi);
         Sums                                    sums;
