@@ -83,10 +83,12 @@ namespace limber
     for (const std::uint32_t node : vertices.active_nodes())
       {
         const double room = rooms.at(node);
-        filling[node]     = room > 0 && !is_shared(field, node) ?
-                              vertices.record(field, node)[NodeLayout<dim>::mass] *
+        const bool   is_known =
+          room > 0 && at_surface[node] == 0 && !is_shared(field, node);
+        filling[node] = is_known ?
+                          vertices.record(field, node)[NodeLayout<dim>::mass] *
                             inverse_density / room :
-                              0;
+                          0;
       }
   }
 
@@ -134,10 +136,9 @@ namespace limber
                 parts.grid.geometry[cell].node[a] / NodeLayout<dim>::stride;
               if (!(filling[node] > 0))
                 continue;
-              const double e = J * filling[node] - 1;
-              if (e > 0 || at_surface[node] == 0)
-                excess +=
-                  std::min(std::max(e, -largest_excess), largest_excess);
+              excess +=
+                std::min(std::max(J * filling[node] - 1, -largest_excess),
+                         largest_excess);
             }
           shift -= share * excess / n_corners;
         }

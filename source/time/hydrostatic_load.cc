@@ -90,7 +90,7 @@ namespace limber
   {
     const auto is_there = [&](MaterialBody<dim> *const body) {
       return body->description.nodal_field == field &&
-             body->cell_sums->view().present_mass(cell) > 0;
+             body->cell_sums->present_mass(cell) > 0;
     };
     return std::any_of(liquids.begin(), liquids.end(), is_there) &&
            std::none_of(others.begin(), others.end(), is_there);
@@ -109,10 +109,9 @@ namespace limber
     for (MaterialBody<dim> *const body : liquids)
       if (body->description.nodal_field == field)
         {
-          const auto view = body->cell_sums->view();
-          mass += view.present_mass(cell);
-          filled += body->cell_sums->record(cell)[view.volumetric()] /
-                    body->stress->density();
+          mass += body->cell_sums->present_mass(cell);
+          filled +=
+            body->cell_sums->present_volumetric(cell) / body->stress->density();
         }
     double volume = open;
     for (unsigned int d = 0; d < dim; ++d)
@@ -134,11 +133,10 @@ namespace limber
     double mass = 0, pressure = 0; // the last times the volume
     for (MaterialBody<dim> *const body : liquids)
       if (body->description.nodal_field == field)
-        if (const auto   view    = body->cell_sums->view();
-            const double of_body = view.present_mass(cell))
+        if (const double of_body = body->cell_sums->present_mass(cell))
           {
             const double J =
-              body->cell_sums->record(cell)[view.volumetric()] / of_body;
+              body->cell_sums->present_volumetric(cell) / of_body;
             mass += of_body;
             pressure += of_body / body->stress->density() *
                         body->stress->volumetric_response(J).pressure;
@@ -160,13 +158,12 @@ namespace limber
   {
     for (const std::uint32_t node : nodes.active_nodes())
       pressures[node] = 0;
-    for (const std::uint32_t cell : nodes.owned_occupied_cells())
-      if (has_marked_node(cell) && holds_liquid_alone(field, cell))
-        {
-          const double of_cell = pressure_over_weight(field, cell);
-          for (unsigned int a = 0; a < n_corners; ++a)
-            pressures[surroundings.node_of(cell, a)] += of_cell;
-        }
+    for (const std::uint32_t cell : marked_cells)
+      {
+        const double of_cell = pressure_over_weight(field, cell);
+        for (unsigned int a = 0; a < n_corners; ++a)
+          pressures[surroundings.node_of(cell, a)] += of_cell;
+      }
     exchange_of_one.start(nodes.node_plan(), pressures.data(), 0, 1);
     exchange_of_one.finish(pressures.data());
   }
@@ -275,11 +272,14 @@ namespace limber
       std::fill_n(of_node(hanging.node), dim, 0.);
 
     mark_nodes(nodes);
-    find_pressures(nodes, field);
+    marked_cells.clear();
     for (const std::uint32_t cell : nodes.owned_occupied_cells())
+      if (has_marked_node(cell) && holds_liquid_alone(field, cell))
+        marked_cells.push_back(cell);
+    find_pressures(nodes, field);
+    for (const std::uint32_t cell : marked_cells)
       {
-        if (!has_marked_node(cell) || !holds_liquid_alone(field, cell) ||
-            (knows && cut_cells->is_covered(cell)))
+        if (knows && cut_cells->is_covered(cell))
           continue;
         const auto *const cut = knows ? cut_cells->cell(cell) : nullptr;
         if (cut && !cut->surfaces.empty() && !cut_cells->wets(cell, field))

@@ -254,10 +254,10 @@ namespace limber
           {
             const std::uint32_t cell = medium.cells[k];
             const std::uint32_t row  = medium.first + k;
-            const double mass   = body->cell_sums->view().present_mass(cell);
-            double      &kept   = medium.result(cell)[Result::dilation];
-            kept                = 0;
-            const double volume = medium.record(cell)[Record::volume];
+            const double        mass = body->cell_sums->present_mass(cell);
+            double             &kept = medium.result(cell)[Result::dilation];
+            kept                     = 0;
+            const double volume      = medium.record(cell)[Record::volume];
             // there points have what their volumes keep taken from them
             if (!(mass > 0) || !(volume > 0) ||
                 (!system.is_cut.empty() && system.is_cut[row]))

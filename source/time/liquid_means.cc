@@ -124,7 +124,7 @@ namespace limber
                           const std::uint32_t                cell) const
   {
     return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
-      return body->cell_sums->view().present_mass(cell) > 0;
+      return body->cell_sums->present_mass(cell) > 0;
     });
   }
 
@@ -137,7 +137,7 @@ namespace limber
     in_cell.clear();
     for (MaterialBody *const body : group.liquids)
       {
-        const double mass = body->cell_sums->view().present_mass(cell);
+        const double mass = body->cell_sums->present_mass(cell);
         if (mass > 0)
           in_cell.push_back({body,
                              body->cell_sums->record(cell),
@@ -176,7 +176,7 @@ namespace limber
     for (Part &part : in_cell)
       {
         const double J =
-          part.sums[part.body->cell_sums->view().volumetric()] / part.mass;
+          part.sums[part.body->cell_sums->stride - 1] / part.mass;
         part.share = 1 / part.body->stress->volumetric_response(J).stiffness;
         volume += part.volume;
         compliance += part.volume * part.share;

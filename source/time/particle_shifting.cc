@@ -142,7 +142,7 @@ namespace limber
                                const std::uint32_t                cell) const
   {
     return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
-      return body->cell_sums && body->cell_sums->view().present_mass(cell) > 0;
+      return body->cell_sums && body->cell_sums->present_mass(cell) > 0;
     });
   }
 

@@ -11,6 +11,7 @@ namespace limber
   {
     const NodeTable<dim> &table = grid.vertices;
     holding.reinit(table.n());
+    inside.reinit(grid.n_cells());
     cells_at.reinit(table.n());
     std::fill_n(cells_at.data(), table.n(), 0.);
     for (std::uint32_t cell = 0; cell < grid.n_owned_cells(); ++cell)
@@ -45,13 +46,16 @@ namespace limber
 
 
   template <int dim>
-  bool
-  Surroundings<dim>::is_inside(const std::uint32_t cell) const
+  void
+  Surroundings<dim>::find_inside(const std::vector<std::uint32_t> &cells)
   {
-    for (unsigned int a = 0; a < n_corners; ++a)
-      if (!is_surrounded(node_of(cell, a)))
-        return false;
-    return true;
+    for (const std::uint32_t cell : cells)
+      {
+        bool is_inside = true;
+        for (unsigned int a = 0; a < n_corners && is_inside; ++a)
+          is_inside = is_surrounded(node_of(cell, a));
+        inside[cell] = is_inside;
+      }
   }
 
 

@@ -363,6 +363,20 @@ namespace limber
     CellSums<dim>
     view();
 
+    /** The mass in a cell, before next sums are gathered, kg. */
+    double
+    present_mass(const std::uint32_t cell) const
+    {
+      return turn_of[cell] + 1 == turn ? record(cell)[CellSums<dim>::mass] : 0;
+    }
+
+    /** The sum of m times the volumetric variable, likewise, kg. */
+    double
+    present_volumetric(const std::uint32_t cell) const
+    {
+      return record(cell)[stride - 1];
+    }
+
     /** The sums of the present places. */
     const double *
     record(const std::uint32_t cell) const

@@ -21,9 +21,11 @@ namespace limber
    * drives them apart, along the whole way to the surface, as fast as sound. C
    * is the body's 'Density control' and s the way of the fastest point in the
    * step over the longest that semi-implicit steps take, 0.4 cells; their
-   * control, in PressureSystem, is the same source. Next to cells at a surface
-   * R_i is not known to be filled: only an excess counts there. Nodes with
-   * other bodies do not count. The energy that this takes or gives is on record
+   * control, in PressureSystem, is the same source. Nodes next to
+   * cells at a surface, where R_i is not known to be filled, and nodes with
+   * other bodies do not count. (If an excess alone counted at surfaces, noise
+   * would be rectified: it gave a dam break of many small cells .5 % more
+   * energy than there was.) The energy that this takes or gives is on record
    * as removed with histories.
    *
    * For bodies that are alone in their field of nodes, with linear functions,

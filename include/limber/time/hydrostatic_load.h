@@ -126,7 +126,8 @@ namespace limber
     // that is cut; of how many cells at a surface it is one
     std::vector<unsigned char> is_uneven;
     LazyArray<double>          at_surface;
-    LazyArray<double>          sums;      // by node, N
+    std::vector<std::uint32_t> marked_cells; // that hold liquid alone
+    LazyArray<double>          sums;         // by node, N
     LazyArray<double>          pressures; // by node, over the weight of a cell
     RecordExchange             exchange{dim}, exchange_of_one{1};
 

@@ -126,8 +126,8 @@ namespace limber
     const bool                 controls_density; // with implicit pressures
     std::vector<Group>         groups;
     Surroundings<dim>          surroundings;
-    RoomPotential<dim>         potential;
     NodeRooms<dim>             rooms;
+    RoomPotential<dim>         potential;
     LazyArray<double>          records; // by vertex
     RecordExchange             exchange{Record::stride};
     std::vector<double>        volume_ratios; // of the points of a body

@@ -71,8 +71,7 @@ namespace limber
       for_each_in(const std::uint32_t cell, const Work &work) const
       {
         for (MaterialBody<dim> *const body : bodies)
-          if (const double mass = body->cell_sums->view().present_mass(cell);
-              mass > 0)
+          if (const double mass = body->cell_sums->present_mass(cell); mass > 0)
             work(*body, mass);
       }
 
@@ -80,7 +79,7 @@ namespace limber
       is_in(const std::uint32_t cell) const
       {
         return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
-          return body->cell_sums->view().present_mass(cell) > 0;
+          return body->cell_sums->present_mass(cell) > 0;
         });
       }
 

@@ -44,15 +44,21 @@ namespace limber
       if (taken != nullptr)
         for (const std::uint32_t node : vertices.active_nodes())
           holding[node] += taken[node];
+      find_inside(vertices.owned_occupied_cells());
+      find_inside(vertices.ghost_occupied_cells());
     }
 
     /** Whether all cells around a vertex do. */
     bool
     is_surrounded(std::uint32_t node) const;
 
-    /** Whether all cells around the vertices of a cell do. */
+    /** Whether all cells around the vertices of a cell do; of cells that were
+     * occupied when find() looked. */
     bool
-    is_inside(std::uint32_t cell) const;
+    is_inside(const std::uint32_t cell) const
+    {
+      return inside[cell];
+    }
 
     /** Whether a neighbour of a cell does, at the lower end (0) of a direction
      * or the upper (1). */
@@ -90,6 +96,9 @@ namespace limber
         to[node_of(cell, a)] += 1u << a;
     }
 
+    void
+    find_inside(const std::vector<std::uint32_t> &cells);
+
     bool
     hangs(const std::uint32_t node) const
     {
@@ -101,6 +110,7 @@ namespace limber
     // something: the sum of 2^k, the vertex being their corner k
     LazyArray<double> cells_at, holding;
     RecordExchange    exchange{1};
+    LazyArray<bool>   inside; // by cell
     // By vertex, what it hangs on; null: it does not. Empty where none hangs
     std::vector<const HangingNode *> masters_of;
   };

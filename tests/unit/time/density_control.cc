@@ -34,6 +34,38 @@ namespace
 
 
 
+  const std::string dam_break = R"(
+    set Bodies = water
+    subsection Body water
+      set Shape = box
+      set Points per cell edge = 2
+      set Material = newtonian fluid
+      set Initial pressure = hydrostatic
+      subsection Box
+        set Lower corner = 0, 0
+        set Upper corner = 1, 2
+      end
+      subsection Newtonian fluid
+        set Density = 1000
+        set Bulk modulus = 4e6
+      end
+    end
+    subsection Grid
+      set Upper corner = 5, 3
+      set Cells = 60, 36
+    end
+    subsection Boundaries
+      set left = slip
+      set right = slip
+      set bottom = slip
+      set top = slip
+    end
+    subsection Loads
+      set Gravity = 0, -9.81
+    end)";
+
+
+
   /** Bring all points nearer to the floor, by this factor; they know nothing of
    * it. */
   void
@@ -104,4 +136,19 @@ TEST(DensityControl, IsInTheBalanceOfEnergy)
                 0.1);
       EXPECT_NEAR(with.energy_drift, without.energy_drift, 0.002);
     }
+}
+
+
+
+// Nodes at surfaces that counted an excess alone made energy of noise: a dam
+// break with four points in a cell, whose surfaces are long, got 1.1 % of its
+// energy in addition.
+TEST(DensityControl, MakesNoEnergyAtSurfaces)
+{
+  SceneRun<2>  run(dam_break);
+  const double at_first = run.totals().all.total_energy();
+  run.advance_to(0.68);
+  const double at_last = run.totals().all.total_energy();
+  EXPECT_LT(at_last, 1.005 * at_first);
+  EXPECT_GT(at_last, 0.99 * at_first);
 }
