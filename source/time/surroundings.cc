@@ -11,6 +11,7 @@ namespace limber
   {
     const NodeTable<dim> &table = grid.vertices;
     holding.reinit(table.n());
+    surrounded.reinit(table.n());
     inside.reinit(grid.n_cells());
     cells_at.reinit(table.n());
     std::fill_n(cells_at.data(), table.n(), 0.);
@@ -28,19 +29,20 @@ namespace limber
 
 
   template <int dim>
-  bool
-  Surroundings<dim>::is_surrounded(const std::uint32_t node) const
+  void
+  Surroundings<dim>::find_surrounded(const std::vector<std::uint32_t> &nodes)
   {
     const auto is_full = [&](const std::uint32_t node) {
       return holding[node] == cells_at[node];
     };
-    if (!hangs(node))
-      return is_full(node);
-    const auto &masters = masters_of[node]->masters;
-    return is_full(node) &&
-           std::all_of(masters.begin(), masters.end(), [&](const auto &master) {
-             return is_full(master.first);
-           });
+    for (const std::uint32_t node : nodes)
+      surrounded[node] = is_full(node);
+    if (masters_of.empty())
+      return;
+    for (const std::uint32_t node : nodes)
+      if (const HangingNode *const hanging = masters_of[node])
+        for (const auto &[master, weight] : hanging->masters)
+          surrounded[node] = surrounded[node] && is_full(master);
   }
 
 
@@ -52,8 +54,8 @@ namespace limber
     for (const std::uint32_t cell : cells)
       {
         bool is_inside = true;
-        for (unsigned int a = 0; a < n_corners && is_inside; ++a)
-          is_inside = is_surrounded(node_of(cell, a));
+        for (unsigned int a = 0; a < n_corners; ++a)
+          is_inside &= surrounded[node_of(cell, a)];
         inside[cell] = is_inside;
       }
   }

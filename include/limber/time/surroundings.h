@@ -44,16 +44,22 @@ namespace limber
       if (taken != nullptr)
         for (const std::uint32_t node : vertices.active_nodes())
           holding[node] += taken[node];
-      find_inside(vertices.owned_occupied_cells());
-      find_inside(vertices.ghost_occupied_cells());
+      find_surrounded(vertices.active_nodes());
+      for (const auto *const cells :
+           {&vertices.owned_occupied_cells(), &vertices.ghost_occupied_cells()})
+        find_inside(*cells);
     }
 
-    /** Whether all cells around a vertex do. */
+    /** Whether all cells around a vertex do that was active when find() looked.
+     */
     bool
-    is_surrounded(std::uint32_t node) const;
+    is_surrounded(const std::uint32_t node) const
+    {
+      return surrounded[node];
+    }
 
-    /** Whether all cells around the vertices of a cell do; of cells that were
-     * occupied when find() looked. */
+    /** Whether all cells around the vertices of a cell do that was occupied
+     * then. */
     bool
     is_inside(const std::uint32_t cell) const
     {
@@ -97,6 +103,8 @@ namespace limber
     }
 
     void
+    find_surrounded(const std::vector<std::uint32_t> &nodes);
+    void
     find_inside(const std::vector<std::uint32_t> &cells);
 
     bool
@@ -110,7 +118,8 @@ namespace limber
     // something: the sum of 2^k, the vertex being their corner k
     LazyArray<double> cells_at, holding;
     RecordExchange    exchange{1};
-    LazyArray<bool>   inside; // by cell
+    LazyArray<bool>   surrounded; // by vertex
+    LazyArray<bool>   inside;     // by cell
     // By vertex, what it hangs on; null: it does not. Empty where none hangs
     std::vector<const HangingNode *> masters_of;
   };
