@@ -134,11 +134,10 @@ namespace limber
             {
               const std::uint32_t node =
                 parts.grid.geometry[cell].node[a] / NodeLayout<dim>::stride;
-              if (!(filling[node] > 0))
-                continue;
-              excess +=
-                std::min(std::max(J * filling[node] - 1, -largest_excess),
-                         largest_excess);
+              if (filling[node] > 0)
+                excess += std::clamp(J * filling[node] - 1,
+                                     -largest_excess,
+                                     largest_excess);
             }
           shift -= share * excess / n_corners;
         }

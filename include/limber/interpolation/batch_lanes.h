@@ -276,7 +276,8 @@ namespace limber
       {
         store(value, &coefficients[k * width + lane]);
       };
-      if constexpr (dim == 3 && Basis::n_nodes > 2 * n_registers)
+      // With 27 nodes all at once is faster even where some are spilled.
+      if constexpr (Basis::n_nodes > 32)
         Basis::template to_monomials_by_planes<Part>(
           nodes,
           read,
