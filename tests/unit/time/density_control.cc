@@ -34,38 +34,6 @@ namespace
 
 
 
-  const std::string dam_break = R"(
-    set Bodies = water
-    subsection Body water
-      set Shape = box
-      set Points per cell edge = 2
-      set Material = newtonian fluid
-      set Initial pressure = hydrostatic
-      subsection Box
-        set Lower corner = 0, 0
-        set Upper corner = 1, 2
-      end
-      subsection Newtonian fluid
-        set Density = 1000
-        set Bulk modulus = 4e6
-      end
-    end
-    subsection Grid
-      set Upper corner = 5, 3
-      set Cells = 60, 36
-    end
-    subsection Boundaries
-      set left = slip
-      set right = slip
-      set bottom = slip
-      set top = slip
-    end
-    subsection Loads
-      set Gravity = 0, -9.81
-    end)";
-
-
-
   /** Bring all points nearer to the floor, by this factor; they know nothing of
    * it. */
   void
@@ -145,7 +113,12 @@ TEST(DensityControl, IsInTheBalanceOfEnergy)
 // energy in addition.
 TEST(DensityControl, MakesNoEnergyAtSurfaces)
 {
-  SceneRun<2>  run(dam_break);
+  SceneRun<2>  run(stirred_water,
+                  {"Body water/Initial velocity=0; 0",
+                    "Body water/Box/Upper corner=1, 2",
+                    "Body water/Newtonian fluid/Bulk modulus=4e6",
+                    "Grid/Upper corner=5, 3",
+                    "Grid/Cells=60, 36"});
   const double at_first = run.totals().all.total_energy();
   run.advance_to(0.68);
   const double at_last = run.totals().all.total_energy();
