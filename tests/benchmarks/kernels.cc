@@ -16,7 +16,8 @@
  *
  *     kernels [REPETITIONS [KERNEL]]
  *
- * 40 of them with linear functions, if not told otherwise.
+ * 40 of them with linear functions, if not told otherwise; kernels whose nodes
+ * all points of a cell share: linear, quadratic, cubic.
  */
 using namespace limber;
 
@@ -289,6 +290,15 @@ main(int argc, char **argv)
     n_repetitions = std::max(1, std::atoi(argv[1]));
   if (argc > 2)
     kernel = argv[2];
+  if (kernel != "linear" && kernel != "quadratic" && kernel != "cubic")
+    {
+      std::fprintf(stderr,
+                   "Error: The kernel '%s' is none of linear, quadratic, "
+                   "cubic, whose nodes all points of a cell share. Others are "
+                   "measured by block.py.\n",
+                   kernel.c_str());
+      return 1;
+    }
   measure_all<2>();
   measure_all<3>();
   return 0;

@@ -24,7 +24,7 @@ namespace limber
    * control, in PressureSystem, is the same source. Nodes next to
    * cells at a surface, where R_i is not known to be filled, and nodes with
    * other bodies do not count. (If an excess alone counted at surfaces, noise
-   * would be rectified: it gave a dam break of many small cells .5 % more
+   * would be rectified: it gave dam breaks with four points in a cell 1 % more
    * energy than there was.) The energy that this takes or gives is on record
    * as removed with histories.
    *
