@@ -294,8 +294,7 @@ main(int argc, char **argv)
     {
       std::fprintf(stderr,
                    "Error: The kernel '%s' is none of linear, quadratic, "
-                   "cubic, whose nodes all points of a cell share. Others are "
-                   "measured by block.py.\n",
+                   "cubic, whose nodes all points of a cell share.\n",
                    kernel.c_str());
       return 1;
     }
