@@ -20,8 +20,8 @@ namespace limber
         "auto",
         admissible::positive_integers(dim, true, "2").or_word("auto"),
         "Number of points along the edge of a cell, for all "
-        "directions or for each; auto: 2, but 3 of solids "
-        "with splines in the current frame.");
+        "directions or for each; auto: 2, but 3 of liquids, "
+        "and of solids with splines in the current frame.");
       declare_word(parameters,
                    "Placement",
                    "auto",

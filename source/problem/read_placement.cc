@@ -45,9 +45,12 @@ namespace limber
       if (section.text(entry) != "auto")
         points = section.numbers(entry);
       else
-        // With two splines creep some ten times as much with every crossing.
-        points = {is_spline(grid.kernel) && !body.is_liquid &&
-                      body.frame == Frame::current ?
+        // Liquids stretch their lattice of points, and at twice the length
+        // cells between two stacks of points are empty: their pressure is
+        // noise. With two points solids with splines creep some ten times as
+        // much with every crossing.
+        points = {body.is_liquid || (is_spline(grid.kernel) &&
+                                     body.frame == Frame::current) ?
                     3. :
                     2.};
       for (unsigned int d = 0; d < dim; ++d)
