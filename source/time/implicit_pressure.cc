@@ -22,6 +22,9 @@ namespace limber
     // near are held again; then they are only let go, so often at most. What
     // comes near nevertheless is held in the next step.
     constexpr unsigned int most_changes = 4, most_releases = 6;
+
+    // In cells along an axis, of what makes room in a step.
+    constexpr double longest_way_to_room = 0.25;
   } // namespace
 
 
@@ -56,6 +59,8 @@ namespace limber
     cells.reinit();
     system.reinit();
     force.reinit(std::size_t(parts.nodes.table.n()) * dim);
+    way.reinit(std::size_t(parts.nodes.table.n()) * dim);
+    has_way_to_room = false;
   }
 
 
@@ -91,22 +96,22 @@ namespace limber
       }
     if (obstacles != nullptr)
       meet_obstacles();
-    const auto before = spent.iterations;
-    solve_equations(end, step, share);
+    const auto before   = spent.iterations;
+    double     residual = solve_equations(end, step, share);
     std::vector<double> impulses; // of nodes that obstacles hold
     if (obstacles != nullptr)
       {
-        sum_forces(true);
+        sum_forces(system.pressures, true);
         for (unsigned int k = 1; k < most_changes + most_releases &&
                                  system.release_nodes(step, k < most_changes);
              ++k)
           {
-            solve_equations(end, step, share);
-            sum_forces(true);
+            residual = solve_equations(end, step, share);
+            sum_forces(system.pressures, true);
           }
         impulses = system.impulses_on_nodes(step);
       }
-    sum_forces(false);
+    sum_forces(system.pressures, false);
     ++spent.steps;
     spent.most_iterations =
       std::max<unsigned int>(spent.most_iterations, spent.iterations - before);
@@ -116,6 +121,7 @@ namespace limber
     push_nodes(step);
     if (obstacles != nullptr)
       press_on_obstacles(step, impulses);
+    find_way_to_room(step, residual);
   }
 
 
@@ -165,7 +171,7 @@ namespace limber
 
 
   template <int dim>
-  void
+  double
   ImplicitPressure<dim>::solve_equations(const double end,
                                          const double step,
                                          const double share)
@@ -183,6 +189,42 @@ namespace limber
     for (std::uint32_t row = 0; row < cells.n; ++row)
       system.pressures[row] *= system.scales[row];
     spent.solutions += solved;
+    return residual;
+  }
+
+
+
+  // With the tension that has been cut, and the surfaces that press.
+  template <int dim>
+  void
+  ImplicitPressure<dim>::find_way_to_room(const double step,
+                                          const double residual)
+  {
+    has_way_to_room = system.ask_for_room();
+    if (!has_way_to_room)
+      return;
+    std::vector<double> pressures;
+    spent.iterations +=
+      solver.solve_again(system.equations, residual, pressures);
+    for (std::uint32_t row = 0; row < cells.n; ++row)
+      pressures[row] *= system.scales[row];
+    sum_forces(pressures, obstacles != nullptr);
+
+    const double          longest = longest_way_to_room * parts.grid.smallest_edge;
+    const NodeTable<dim> &table   = parts.nodes.table;
+    for (const std::uint32_t node : table.masters)
+      std::fill_n(&way[std::size_t(node) * dim], dim, 0.);
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const of_node = &way[std::size_t(node) * dim];
+        std::copy_n(parts.nodes.record(node) + Layout::pressure_force,
+                    dim,
+                    of_node);
+        system.push(node, step * step, of_node);
+        for (int d = 0; d < dim; ++d)
+          of_node[d] = std::min(std::max(of_node[d], -longest), longest);
+      }
+    table.take_from_masters(way.data(), dim, 0, dim);
   }
 
 
@@ -269,8 +311,7 @@ namespace limber
             const double of_cell = system.former[row].compliance *
                                    (system.former[row].pressure - pressure) /
                                    volume;
-            const double beyond =
-              system.flux(number, cell) / volume - system.growth[row];
+            const double beyond = system.flux(number, cell) / volume;
             kept = !medium.is_liquid()       ? dilation :
                    medium.bodies.size() == 1 ? beyond :
                                                beyond + dilation - of_cell;
@@ -298,42 +339,90 @@ namespace limber
 
 
 
+  // Of a body of the medium, by its mean divergence of a nodal field, times a
+  // factor.
   template <int dim>
+  template <class Field>
   void
-  ImplicitPressure<dim>::complete_dilations(const double step)
+  ImplicitPressure<dim>::add_flow_to_dilations(Medium            &medium,
+                                               MaterialBody<dim> &body,
+                                               const double       factor,
+                                               const Field       &field)
   {
-    for (Medium &medium : cells.media)
+    for (const std::uint32_t cell : medium.cells)
       {
-        if (!medium.is_liquid())
+        const double *const own = medium.record(cell);
+        double &dilation        = medium.result(cell)[Result::dilation];
+        dilation                = body.implicit->dilation[cell];
+        if (!(own[Record::volume] > 0))
           continue;
-        for (auto *const body : medium.bodies)
-          {
-            for (const std::uint32_t cell : medium.cells)
-              {
-                const double *const own = medium.record(cell);
-                double &dilation        = medium.result(cell)[Result::dilation];
-                dilation                = body->implicit->dilation[cell];
-                if (!(own[Record::volume] > 0))
-                  continue;
-                double flow = 0;
-                for (unsigned int a = 0; a < n_nodes; ++a)
-                  for (int d = 0; d < dim; ++d)
-                    flow += own[Record::rows + a * dim + d] *
-                            parts.nodes.record(
-                              cells.node_of(cell, a))[Layout::velocity + d];
-                dilation += step * flow / own[Record::volume];
-              }
-            body->implicit->is_whole = true;
-            keep_dilation(medium, *body);
-          }
+        double flow = 0;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          for (int d = 0; d < dim; ++d)
+            flow += own[Record::rows + a * dim + d] *
+                    field(cells.node_of(cell, a), d);
+        dilation += factor * flow / own[Record::volume];
       }
+    keep_dilation(medium, body);
   }
 
 
 
   template <int dim>
   void
-  ImplicitPressure<dim>::sum_forces(const bool with_surfaces)
+  ImplicitPressure<dim>::complete_dilations(const double step)
+  {
+    const auto velocity = [this](const std::uint32_t node, const int d) {
+      return parts.nodes.record(node)[Layout::velocity + d];
+    };
+    for (Medium &medium : cells.media)
+      if (medium.is_liquid())
+        for (auto *const body : medium.bodies)
+          {
+            add_flow_to_dilations(medium, *body, step, velocity);
+            body->implicit->is_whole = true;
+          }
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::make_room(const double step)
+  {
+    if (!has_way_to_room)
+      return;
+    const bool has_solids =
+      std::any_of(parts.bodies.begin(), parts.bodies.end(), [](const auto &b) {
+        return !b->description.is_liquid;
+      });
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      for (int d = 0; d < dim; ++d)
+        {
+          double *const record = parts.nodes.record(node);
+          const double  speed  = way_to_room(node, d) / step;
+          record[Layout::velocity + d] += speed;
+          if (has_solids)
+            record[Layout::strain_velocity + d] += speed;
+        }
+    const auto of_node = [this](const std::uint32_t node, const int d) {
+      return way_to_room(node, d);
+    };
+    for (Medium &medium : cells.media)
+      for (auto *const body : medium.bodies)
+        if (medium.is_liquid() != body->implicit->is_whole)
+          add_flow_to_dilations(medium,
+                                *body,
+                                medium.is_liquid() ? -1. : 1.,
+                                of_node);
+  }
+
+
+
+  template <int dim>
+  void
+  ImplicitPressure<dim>::sum_forces(const std::vector<double> &pressures,
+                                    const bool                 with_surfaces)
   {
     NodalFields<dim> &nodes = parts.nodes;
     for (const std::uint32_t node : nodes.active_nodes())
@@ -347,13 +436,13 @@ namespace limber
               nodes.record(
                 cells.node_of(cell, a))[Layout::pressure_force + d] +=
                 medium.record(cell)[Record::rows + a * dim + d] *
-                system.pressures[medium.first + k];
+                pressures[medium.first + k];
         }
     if (with_surfaces)
       for (std::uint32_t k = 0; k < cells.surfaces.n_of_rank(); ++k)
         {
           const auto  &piece = cells.surfaces.pieces[k];
-          const double q     = system.pressures[cells.first_of_surfaces() + k];
+          const double q     = pressures[cells.first_of_surfaces() + k];
           for (unsigned int a = 0; a < n_nodes; ++a)
             for (int d = 0; d < dim; ++d)
               nodes.record(

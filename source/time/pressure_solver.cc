@@ -75,10 +75,16 @@ namespace limber
     iterate(double accuracy);
     void
     prepare_iterations(const PressureEquations &equations);
+    bool
+    factorise(const PressureEquations &equations);
     std::optional<unsigned int>
     solve_directly(const PressureEquations &equations,
                    double                   accuracy,
                    std::vector<double>     &solution);
+    unsigned int
+    solve_iteratively(const PressureEquations &equations,
+                      double                   accuracy,
+                      std::vector<double>     &solution);
 
     bool
     prepare_factor(const PressureEquations &equations);
@@ -260,18 +266,24 @@ namespace limber
 
 
 
-  // Returns how often the factor was used: round-off leaves a residual in cells
-  // that hardly give way. Nothing where that does not get better, as in a
-  // closed vessel whose mean pressure nothing fixes.
+  bool
+  PressureSolver::Methods::factorise(const PressureEquations &equations)
+  {
+    gather(equations.values, whole.width, whole.values);
+    return factor.factorise(whole);
+  }
+
+
+
+  // With the factor. Returns how often it was used: round-off leaves a residual
+  // in cells that hardly give way. Nothing where that does not get better, as
+  // in a closed vessel whose mean pressure nothing fixes.
   std::optional<unsigned int>
   PressureSolver::Methods::solve_directly(const PressureEquations &equations,
                                           const double             accuracy,
                                           std::vector<double>     &solution)
   {
-    gather(equations.values, whole.width, whole.values);
     gather(equations.right_side, 1, whole.right_side);
-    if (!factor.factorise(whole))
-      return {};
     std::vector<double> found(whole.n, 0.), residual = whole.right_side;
     for (unsigned int n = 1; n <= most_repetitions; ++n)
       {
@@ -302,6 +314,23 @@ namespace limber
 
 
 
+  // With the matrix and the multigrid as they are, from the solution as it is.
+  unsigned int
+  PressureSolver::Methods::solve_iteratively(const PressureEquations &equations,
+                                             const double             accuracy,
+                                             std::vector<double>     &solution)
+  {
+    std::copy(solution.begin(), solution.end(), x.begin());
+    std::copy(equations.right_side.begin(),
+              equations.right_side.end(),
+              b.begin());
+    const unsigned int iterations = iterate(accuracy);
+    std::copy(x.begin(), x.end(), solution.begin());
+    return iterations;
+  }
+
+
+
   PressureSolver::PressureSolver(const MPI_Comm communicator)
     : methods(std::make_unique<Methods>(communicator))
   {}
@@ -321,22 +350,19 @@ namespace limber
       return 0;
     if (methods->is_direct)
       {
-        if (const auto n =
-              methods->solve_directly(equations, accuracy, solution))
-          return *n;
+        if (methods->factorise(equations))
+          if (const auto n =
+                methods->solve_directly(equations, accuracy, solution))
+            return *n;
         methods->is_direct = false;
         methods->prepare_iterations(equations);
       }
     methods->set_values(equations);
-    std::copy(solution.begin(), solution.end(), methods->x.begin());
-    std::copy(equations.right_side.begin(),
-              equations.right_side.end(),
-              methods->b.begin());
-
     const bool is_new = !methods->has_multigrid;
     if (is_new)
       methods->make_multigrid();
-    const unsigned int iterations = methods->iterate(accuracy);
+    const unsigned int iterations =
+      methods->solve_iteratively(equations, accuracy, solution);
     if (is_new)
       {
         methods->iterations_when_new = iterations;
@@ -345,8 +371,25 @@ namespace limber
     else if (iterations > methods->iterations_when_new)
       methods->more_iterations += iterations - methods->iterations_when_new;
     methods->has_multigrid = methods->more_iterations < iterations_of_making;
-
-    std::copy(methods->x.begin(), methods->x.end(), solution.begin());
     return iterations;
+  }
+
+
+
+  unsigned int
+  PressureSolver::solve_again(const PressureEquations &equations,
+                              const double             accuracy,
+                              std::vector<double>     &solution)
+  {
+    if (equations.n_all == 0)
+      return 0;
+    solution.assign(equations.n, 0.);
+    if (methods->is_direct)
+      if (const auto n =
+            methods->solve_directly(equations, accuracy, solution))
+        return *n;
+    if (methods->is_direct)
+      return solve(equations, accuracy, solution);
+    return methods->solve_iteratively(equations, accuracy, solution);
   }
 } // namespace limber

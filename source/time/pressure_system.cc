@@ -471,10 +471,45 @@ namespace limber
       couple_on_lattice(medium.record(cell) + Record::rows, cell, row, step);
     else
       couple_over_levels(number, cell, row, step);
-    equations.right_side[row] += volume * growth[row];
     equations.values[corners.empty() ?
                        begin + number * in_body + place_in_row<dim>(0, 0) :
                        entry_of(row, number, cell)] += former[row].compliance;
+  }
+
+
+
+  template <int dim>
+  bool
+  PressureSystem<dim>::ask_for_room()
+  {
+    equations.right_side.assign(equations.n, 0.);
+    int any = 0;
+    for (const Medium &medium : cells.media)
+      for (std::size_t k = 0; k < medium.cells.size(); ++k)
+        {
+          const std::uint32_t row = medium.first + k;
+          if (growth[row] == 0 || (!is_cut.empty() && is_cut[row]))
+            continue;
+          any = 1;
+          equations.right_side[row] =
+            scales[row] * medium.record(medium.cells[k])[Record::volume] *
+            growth[row];
+        }
+    return dealii::Utilities::MPI::max(any, parts.grid.communicator) > 0;
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::push(const std::uint32_t node,
+                            const double        step,
+                            double *const       force) const
+  {
+    for (int d = 0; d < dim; ++d)
+      force[d] *= step * mobility_of(node, d);
+    if (to_hold != nullptr && held_as[node] > 0)
+      move(node, force);
   }
 
 

@@ -56,13 +56,12 @@ namespace limber
                Base::obstacles ? &*Base::obstacles : nullptr)
     , hourglass(std::size_t(parts.nodes.table.n()) * dim)
     , viscosity_acts(!this->full_mass && is_viscous())
-    , remaps(
-        viscosity_acts ||
-        (!this->full_mass && std::any_of(parts.bodies.begin(),
-                                         parts.bodies.end(),
-                                         [](const auto &body) {
-                                           return !body->description.is_liquid;
-                                         })))
+    , has_solids(std::any_of(parts.bodies.begin(),
+                             parts.bodies.end(),
+                             [](const auto &body) {
+                               return !body->description.is_liquid;
+                             }))
+    , remaps(viscosity_acts || (!this->full_mass && has_solids))
     , lightest_solid(lightest_solid_of(parts))
   {}
 
@@ -132,8 +131,35 @@ namespace limber
     account(Layout::velocity);
     this->filter_velocity();
     const double expected = energy_to_points();
-    this->g2p_update_stress_and_move();
-    this->parts.ledger.viscous += expected - energy_of_points();
+    this->g2p();
+    const double weighs = make_room();
+    this->update_stress_and_move(this->step, false);
+    this->parts.ledger.viscous += expected - weighs - energy_of_points();
+  }
+
+
+
+  // When points have got their velocities. Returns the work of gravity. What
+  // this takes from its energy, and from that of stress, is on record as
+  // removed by a change of state.
+  template <int dim>
+  double
+  SemiImplicitIntegrator<dim>::make_room()
+  {
+    double of_gravity = 0, of_stress = 0;
+    for (const std::uint32_t node : this->parts.nodes.active_nodes())
+      if (this->parts.nodes.owns(node))
+        for (int d = 0; d < dim; ++d)
+          {
+            const double way = pressure.way_to_room(node, d);
+            of_gravity += this->parts.nodes.record(node)[Layout::mass] *
+                          this->parts.problem.loads.gravity[d] * way;
+            if (has_solids)
+              of_stress += impulse_of_stress(node, d) / this->step * way;
+          }
+    this->parts.ledger.history += of_gravity + of_stress;
+    pressure.make_room(this->step);
+    return of_gravity;
   }
 
 
@@ -164,6 +190,7 @@ namespace limber
     if (lightest_solid > 0)
       strain_by_heavy_nodes();
     this->interpolate_hanging();
+    make_room();
     this->update_stress_and_move(this->step, true);
   }
 

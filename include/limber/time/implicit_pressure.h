@@ -14,7 +14,7 @@ namespace limber
    * without these pressures,
    *
    *   v1 = v* + dt M^-1 B^T P1,
-   *   C (P1 - P0) = - dt B v1 - gamma T P1 + V e,   C = V / kappa,
+   *   C (P1 - P0) = - dt B v1 - gamma T P1,   C = V / kappa,
    *
    * where P0 and kappa = -J d(J p)/dJ are those of the mean J of the cell. The
    * liquids in a cell are one medium, of one pressure: C and C P0 are the sums
@@ -22,15 +22,23 @@ namespace limber
    * (P0_k - P1)/kappa_k. This is one symmetric positive definite system, with
    * one unknown for each cell of each medium,
    *
-   *   (C + dt^2 B M^-1 B^T + gamma T) P1 = C P0 - dt B v* + V e.
+   *   (C + dt^2 B M^-1 B^T + gamma T) P1 = C P0 - dt B v*.
    *
    * T sees the patterns that B^T does not let act on any node around which all
    * cells are occupied, those that alternate in two directions or more: with
    * gamma = 1 the wide Laplacian B M^-1 B^T becomes the compact one. Its rows
-   * sum up to zero: volume goes from cell to cell. e is that part of its volume
-   * by which a cell is to grow as its nodes have more material than there is
-   * room for. Neither depends on the bulk modulus, which may be as large as
-   * numbers are.
+   * sum up to zero: volume goes from cell to cell. It does not depend on the bulk
+   * modulus, which may be as large as numbers are.
+   *
+   * Where nodes have more material than there is room for, a cell is to grow by
+   * a part e of its volume. The same matrix finds the way w of nodes that does
+   * it with the least motion,
+   *
+   *   (C + dt^2 B M^-1 B^T + gamma T) P_e = V e,   w = dt^2 M^-1 B^T P_e.
+   *
+   * Points go this way and keep velocity, pressure and J (T. Kugelstadt et al.,
+   * IEEE Trans. Vis. Comput. Graph. 27, 2021): as a part of the velocity it
+   * would have to be stopped by the pressure of the next step.
    *
    * Sides that hold a component of a node take the pressure on it: its entry
    * of M^-1 is zero.
@@ -78,6 +86,21 @@ namespace limber
      */
     void
     complete_dilations(double step);
+
+    /**
+     * Add to the new velocity what makes room (see above), when it is to move
+     * points and does nothing else any more: liquids that it strains are not
+     * strained by that, solids are. Collective.
+     */
+    void
+    make_room(double step);
+
+    /** The way that make_room() adds to a component of a node, m. */
+    double
+    way_to_room(const std::uint32_t node, const int d) const
+    {
+      return has_way_to_room ? way[std::size_t(node) * dim + d] : 0;
+    }
 
     /**
      * When sides have acted: the kinetic energy that is lost, likewise. The
@@ -138,12 +161,20 @@ namespace limber
                  double                   pressure) const;
     void
     meet_obstacles();
-    void
+    double
     solve_equations(double end, double step, double share);
     void
-    sum_forces(bool with_surfaces);
+    sum_forces(const std::vector<double> &pressures, bool with_surfaces);
     void
     push_nodes(double step);
+    void
+    find_way_to_room(double step, double residual);
+    template <class Field>
+    void
+    add_flow_to_dilations(Medium            &medium,
+                          MaterialBody<dim> &body,
+                          double             factor,
+                          const Field       &field);
     void
     press_on_obstacles(double                     step,
                        const std::vector<double> &impulses_on_nodes);
@@ -154,6 +185,9 @@ namespace limber
     PressureSystem<dim>         system;
     // Of the pressures, by node and component, N
     LazyArray<double> force;
+    // w, likewise, m
+    bool              has_way_to_room = false;
+    LazyArray<double> way;
     PressureSolver    solver;
     Effort            spent;
   };

@@ -57,6 +57,13 @@ namespace limber
           double                   accuracy,
           std::vector<double>     &solution);
 
+    /** The same with the matrix of the last solve() and another right side,
+     * from zero. Collective. */
+    unsigned int
+    solve_again(const PressureEquations &equations,
+                double                   accuracy,
+                std::vector<double>     &solution);
+
   private:
     struct Methods;
     std::unique_ptr<Methods> methods;

@@ -15,7 +15,7 @@ namespace limber
 {
   /**
    * The equations of the implicit pressure, see ImplicitPressure: their
-   * pattern, C + dt^2 B M^-1 B^T + gamma T, and C P0 - dt B v* + V e; and those
+   * pattern, C + dt^2 B M^-1 B^T + gamma T, and C P0 - dt B v*; V e; and those
    * of the pressures on the surfaces of obstacles.
    */
   template <int dim>
@@ -68,6 +68,19 @@ namespace limber
      */
     bool
     cut_tension(bool may_return);
+
+    /**
+     * Let the right side be V e, where there is pressure, for the pressures
+     * that would make the room. Returns whether any room is wanting. After the
+     * pressures have been found; collective.
+     */
+    bool
+    ask_for_room();
+
+    /** What a force on a node does to its velocity within a step of so many
+     * seconds, but for what holds it. */
+    void
+    push(std::uint32_t node, double step, double *force) const;
 
     /** Of nodes that obstacles hold: what they are to do in a new step. */
     void

@@ -48,6 +48,8 @@ namespace limber
     update_liquids();
     void
     update_all();
+    double
+    make_room();
     void
     strain_by_heavy_nodes();
     double
@@ -64,6 +66,7 @@ namespace limber
     ImplicitPressure<dim> pressure;
     LazyArray<double>     hourglass; // forces by node and component, N
     const bool            viscosity_acts;
+    const bool            has_solids;
     const bool            remaps; // for solids and viscous liquids
     // Its density, kg/m^3; 0 where the pressure of some solid is explicit
     const double lightest_solid;
