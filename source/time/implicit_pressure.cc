@@ -204,7 +204,7 @@ namespace limber
     if (!has_way_to_room)
       return;
     std::vector<double> pressures;
-    spent.iterations +=
+    spent.for_room +=
       solver.solve_again(system.equations, residual, pressures);
     for (std::uint32_t row = 0; row < cells.n; ++row)
       pressures[row] *= system.scales[row];

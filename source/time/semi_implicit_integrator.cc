@@ -91,6 +91,10 @@ namespace limber
               "; solved " +
                 brief(double(spent.solutions) / double(spent.steps)) +
                 " times a step, as tension is cut off" :
+              "") +
+           (spent.for_room > 0 ?
+              "; for the density control " +
+                brief(double(spent.for_room) / double(spent.steps)) :
               "");
   }
 

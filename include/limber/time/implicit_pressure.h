@@ -132,6 +132,7 @@ namespace limber
     {
       unsigned long steps = 0, solutions = 0, iterations = 0;
       unsigned int  most_iterations = 0; // in a step
+      unsigned long for_room        = 0; // iterations, not among these
     };
 
     const Effort &

@@ -348,6 +348,50 @@ TEST(ImplicitPressure, DrawsTogetherWhatIsInside)
 
 
 
+// Points that stand too close go apart and keep velocity, pressure and volume:
+// were the way a part of the velocity, the pressure of the next step would have
+// to stop it. Their weight is lifted on the way, which is on record.
+TEST(ImplicitPressure, MakesRoomWithoutForce)
+{
+  const auto run_with = [](const std::string &control) {
+    auto run =
+      std::make_unique<SceneRun<2>>(vessel,
+                                    std::vector<std::string>{
+                                      gravity,
+                                      "Body water/Particle shifting=0",
+                                      "Body water/Density control=" + control});
+    const PointView<2> points = run->points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      if (std::abs(points.position[1][p] - 2) < 1)
+        points.mass[p] *= 1.1;
+    run->advance(0.02);
+    return run;
+  };
+  const auto   without = run_with("0"), with = run_with("0.2");
+  const auto   points = with->points();
+  const double K      = 1e15;
+  double       way = 0, work = 0;
+  for (std::size_t p = 0; p < points.size; ++p)
+    {
+      EXPECT_LT((with->velocity(p) - without->velocity(p)).norm(), 1e-9);
+      EXPECT_NEAR(points.pressure[p] / without->points().pressure[p], 1, 1e-9);
+      const auto shift = with->position(p) - without->position(p);
+      way              = std::max(way, shift.norm());
+      work += points.mass[p] * 10 * shift[1];
+    }
+  EXPECT_GT(way, 0.005);
+  EXPECT_LT(way, 0.1);
+  EXPECT_GT(work, 0);
+  // almost all of it as history: the points of a cell spread evenly, by v - w
+  const double history = with->ledger.history - without->ledger.history;
+  const double viscous = with->ledger.viscous - without->ledger.viscous;
+  EXPECT_NEAR(history / -work, 1, 2e-3);
+  EXPECT_NEAR((history + viscous) / -work, 1, 1e-6);
+  EXPECT_NEAR(energy(*with, K), energy(*without, K), 1e-6 * work);
+}
+
+
+
 // A turning drop keeps its size: points follow curves, not tangents.
 TEST(ImplicitPressure, LetsAVortexTurn)
 {
