@@ -289,17 +289,31 @@ namespace limber
 
 
 
-    /** Whether a body ends with a face in a side that holds it. */
+    /**
+     * Whether a body ends with a face in a side that holds it; or, in steps of
+     * Newton's method, with faces in sides that together hold it against every
+     * translation, as planes of symmetry do. What moves freely may be thrown
+     * off such planes.
+     */
     template <int dim>
     bool
     is_held(const Body<dim> &body, const Problem<dim> &problem)
     {
+      std::array<bool, dim> holds{};
       for (unsigned int side = 0; side < 2 * dim; ++side)
-        if (problem.sides[side].held == HeldComponents::all &&
-            !problem.sides[side].one_sided &&
-            has_face_in(side, body, problem.grid))
-          return true;
-      return false;
+        {
+          const Side<dim> &wall = problem.sides[side];
+          if (wall.held == HeldComponents::none || wall.one_sided ||
+              !has_face_in(side, body, problem.grid))
+            continue;
+          if (wall.held == HeldComponents::all)
+            return true;
+          holds[side / 2] = true;
+        }
+      return is_solved_by_newton(problem.method.integration) &&
+             std::all_of(holds.begin(),
+                         holds.end(),
+                         [](const bool of_direction) { return of_direction; });
     }
 
 

@@ -49,8 +49,8 @@ namespace limber
         // cells between two stacks of points are empty: their pressure is
         // noise. With two points solids with splines creep some ten times as
         // much with every crossing.
-        points = {body.is_liquid || (is_spline(grid.kernel) &&
-                                     body.frame == Frame::current) ?
+        points = {body.is_liquid ||
+                      (is_spline(grid.kernel) && body.frame == Frame::current) ?
                     3. :
                     2.};
       for (unsigned int d = 0; d < dim; ++d)

@@ -87,7 +87,8 @@ namespace limber
 
   template <int dim>
   void
-  GhostPenalty<dim>::find(const NumberedNodes<dim> &nodes, const double modulus)
+  GhostPenalty<dim>::find(const NumberedNodes<dim>  &nodes,
+                          const std::vector<double> &moduli)
   {
     clear();
     along                              = nodes.n_along();
@@ -117,8 +118,8 @@ namespace limber
               }
           // h^(2p-1) / ((2p+1) p!^2) area / h^2p: jumps are differences over
           // h^p
-          face.stiffness =
-            modulus * area / nodes.edge(d) / (along == 2 ? 3 : 20);
+          face.stiffness = std::min(moduli[c], moduli[*other]) * area /
+                           nodes.edge(d) / (along == 2 ? 3 : 20);
           face.difference           = difference_of(along,
                                           ends_of(nodes, c, d),
                                           ends_of(nodes, *other, d));

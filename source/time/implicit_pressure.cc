@@ -96,8 +96,8 @@ namespace limber
       }
     if (obstacles != nullptr)
       meet_obstacles();
-    const auto before   = spent.iterations;
-    double     residual = solve_equations(end, step, share);
+    const auto          before   = spent.iterations;
+    double              residual = solve_equations(end, step, share);
     std::vector<double> impulses; // of nodes that obstacles hold
     if (obstacles != nullptr)
       {
@@ -204,14 +204,13 @@ namespace limber
     if (!has_way_to_room)
       return;
     std::vector<double> pressures;
-    spent.for_room +=
-      solver.solve_again(system.equations, residual, pressures);
+    spent.for_room += solver.solve_again(system.equations, residual, pressures);
     for (std::uint32_t row = 0; row < cells.n; ++row)
       pressures[row] *= system.scales[row];
     sum_forces(pressures, obstacles != nullptr);
 
-    const double          longest = longest_way_to_room * parts.grid.smallest_edge;
-    const NodeTable<dim> &table   = parts.nodes.table;
+    const double longest = longest_way_to_room * parts.grid.smallest_edge;
+    const NodeTable<dim> &table = parts.nodes.table;
     for (const std::uint32_t node : table.masters)
       std::fill_n(&way[std::size_t(node) * dim], dim, 0.);
     for (const std::uint32_t node : parts.nodes.active_nodes())
@@ -312,9 +311,9 @@ namespace limber
                                    (system.former[row].pressure - pressure) /
                                    volume;
             const double beyond = system.flux(number, cell) / volume;
-            kept = !medium.is_liquid()       ? dilation :
-                   medium.bodies.size() == 1 ? beyond :
-                                               beyond + dilation - of_cell;
+            kept                = !medium.is_liquid()       ? dilation :
+                                  medium.bodies.size() == 1 ? beyond :
+                                                              beyond + dilation - of_cell;
             // its part of what the cell does on nodes
             lost += elastic_work(*body, part, pressure) -
                     pressure * part.volume * (of_cell - beyond);
@@ -351,9 +350,9 @@ namespace limber
   {
     for (const std::uint32_t cell : medium.cells)
       {
-        const double *const own = medium.record(cell);
-        double &dilation        = medium.result(cell)[Result::dilation];
-        dilation                = body.implicit->dilation[cell];
+        const double *const own      = medium.record(cell);
+        double             &dilation = medium.result(cell)[Result::dilation];
+        dilation                     = body.implicit->dilation[cell];
         if (!(own[Record::volume] > 0))
           continue;
         double flow = 0;

@@ -69,7 +69,7 @@ namespace limber
     // in motion nodes have inertia, and the penalty would damp it
     if (parts.problem.method.ghost_penalty > 0 &&
         parts.problem.method.integration == TimeIntegration::quasi_static)
-      ghost.find(nodes, parts.problem.method.ghost_penalty * modulus());
+      ghost.find(nodes, moduli_of_penalty());
     else
       ghost.clear();
     solver.reset();
@@ -78,7 +78,8 @@ namespace limber
     forces_of_pressures.assign(size(), 0.);
     if (pressures != nullptr)
       pressures->find();
-    noise = 1e-14 * modulus() * std::pow(parts.grid.smallest_edge, dim - 1) *
+    noise = 1e-14 * largest_modulus() *
+            std::pow(parts.grid.smallest_edge, dim - 1) *
             std::sqrt(double(size()));
   }
 
@@ -87,11 +88,35 @@ namespace limber
   // Young's, of the stiffest body
   template <int dim>
   double
-  NewtonEquations<dim>::modulus() const
+  NewtonEquations<dim>::largest_modulus() const
   {
     double result = 0;
     for (const auto &response : responses)
       result = std::max(result, response->young_modulus());
+    return result;
+  }
+
+
+
+  // g E of the softest body in each cell, Pa.
+  template <int dim>
+  std::vector<double>
+  NewtonEquations<dim>::moduli_of_penalty() const
+  {
+    std::vector<double> result(nodes.n_cells(), largest_modulus());
+    for (std::size_t b = 0; b < responses.size(); ++b)
+      {
+        const double modulus = responses[b]->young_modulus();
+        for_each_batch(parts.bodies[b]->points.view(),
+                       [&](const CellBatch &batch) {
+                         double &of_cell = result[nodes.number_of(batch.cell)];
+                         of_cell         = std::min(of_cell, modulus);
+                       });
+      }
+    if (nodes.is_parallel())
+      dealii::Utilities::MPI::min(result, parts.grid.communicator, result);
+    for (double &modulus : result)
+      modulus *= parts.problem.method.ghost_penalty;
     return result;
   }
 

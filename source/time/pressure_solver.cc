@@ -385,8 +385,7 @@ namespace limber
       return 0;
     solution.assign(equations.n, 0.);
     if (methods->is_direct)
-      if (const auto n =
-            methods->solve_directly(equations, accuracy, solution))
+      if (const auto n = methods->solve_directly(equations, accuracy, solution))
         return *n;
     if (methods->is_direct)
       return solve(equations, accuracy, solution);

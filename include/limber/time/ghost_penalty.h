@@ -49,10 +49,11 @@ namespace limber
     /**
      * Find the faces: those of a cell that has a neighbour without points, and
      * of its neighbours with points. What lies beyond a side of the box does
-     * not count. @p modulus: g E, Pa.
+     * not count. @p moduli: g E by cell, Pa; a face has the smaller one, as
+     * where two materials meet the derivative does jump.
      */
     void
-    find(const NumberedNodes<dim> &nodes, double modulus);
+    find(const NumberedNodes<dim> &nodes, const std::vector<double> &moduli);
 
     const std::vector<Face> &
     faces() const

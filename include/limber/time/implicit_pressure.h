@@ -27,8 +27,8 @@ namespace limber
    * T sees the patterns that B^T does not let act on any node around which all
    * cells are occupied, those that alternate in two directions or more: with
    * gamma = 1 the wide Laplacian B M^-1 B^T becomes the compact one. Its rows
-   * sum up to zero: volume goes from cell to cell. It does not depend on the bulk
-   * modulus, which may be as large as numbers are.
+   * sum up to zero: volume goes from cell to cell. It does not depend on the
+   * bulk modulus, which may be as large as numbers are.
    *
    * Where nodes have more material than there is room for, a cell is to grow by
    * a part e of its volume. The same matrix finds the way w of nodes that does

@@ -215,7 +215,9 @@ namespace limber
     static constexpr double default_mixed = 20;
 
     double
-    modulus() const;
+    largest_modulus() const;
+    std::vector<double>
+    moduli_of_penalty() const;
     void
     find_held();
     void

@@ -89,11 +89,19 @@ namespace limber
       return {&numbers[cell * in_cell], in_cell};
     }
 
-    /** Of a cell of this rank's grid in which it has points. */
+    /** Of a cell of this rank's grid in which it has points, among those with
+     * points. */
+    std::size_t
+    number_of(const std::uint32_t cell) const
+    {
+      return index_of_local[cell];
+    }
+
+    /** Of its nodes. */
     Numbers
     numbers_in(const std::uint32_t cell) const
     {
-      return of_cell(index_of_local[cell]);
+      return of_cell(number_of(cell));
     }
 
     /** Whether a cell of that index ends at the lower and upper side. */

@@ -527,11 +527,11 @@ TEST(Scenes, LiquidsThatSpreadHaveThreePointsAlongAnEdge)
 {
   for (const std::string steps : {"explicit", "semi-implicit"})
     {
-      const auto problem = read_problem<2>(
-        SceneFile(prm_folder() + "dam_break.prm",
-                  {"Body water/Points per cell edge=auto",
-                   "Method/Stress update=auto",
-                   "Method/Time integration=" + steps}));
+      const auto problem =
+        read_problem<2>(SceneFile(prm_folder() + "dam_break.prm",
+                                  {"Body water/Points per cell edge=auto",
+                                   "Method/Stress update=auto",
+                                   "Method/Time integration=" + steps}));
       EXPECT_EQ(problem.bodies[0].points_per_cell_edge[0], 3u);
       EXPECT_EQ(problem.bodies[0].points_per_cell_edge[1], 3u);
     }

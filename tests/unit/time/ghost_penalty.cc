@@ -66,7 +66,7 @@ namespace
       , p(kernel == "linear" ? 1 : 2)
     {
       nodes.update();
-      penalty.find(nodes, modulus);
+      penalty.find(nodes, std::vector<double>(nodes.n_cells(), modulus));
     }
 
     /** Of the values of field(node, component) at the nodes. */

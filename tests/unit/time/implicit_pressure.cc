@@ -354,12 +354,11 @@ TEST(ImplicitPressure, DrawsTogetherWhatIsInside)
 TEST(ImplicitPressure, MakesRoomWithoutForce)
 {
   const auto run_with = [](const std::string &control) {
-    auto run =
-      std::make_unique<SceneRun<2>>(vessel,
-                                    std::vector<std::string>{
-                                      gravity,
-                                      "Body water/Particle shifting=0",
-                                      "Body water/Density control=" + control});
+    auto run = std::make_unique<SceneRun<2>>(
+      vessel,
+      std::vector<std::string>{gravity,
+                               "Body water/Particle shifting=0",
+                               "Body water/Density control=" + control});
     const PointView<2> points = run->points();
     for (std::size_t p = 0; p < points.size; ++p)
       if (std::abs(points.position[1][p] - 2) < 1)
