@@ -398,6 +398,7 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
           set Upper corner = )" + upper_corner +
                                     R"(
         end
+        set Points per cell edge = 2
         set Material = newtonian fluid
         subsection Newtonian fluid
           set Density      = 1000
@@ -519,6 +520,45 @@ TEST(Scenes, AutomaticChoicesFollowTheMaterial)
                                      std::string::npos;
                             }),
               2);
+}
+
+
+
+// Planes of symmetry hold what stands still, and not what may be thrown off.
+TEST(Scenes, AutomaticFrameBetweenPlanesOfSymmetry)
+{
+  const std::string block = R"(
+    set End time = 1
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Upper corner = 2, 1
+      end
+      set Material = neo hookean
+    end
+    subsection Grid
+      set Upper corner = 4, 4
+      set Cells = 8, 8
+    end
+    subsection Boundaries
+      set right = free
+      set top = free
+    end)";
+  const auto        frame = [&](const std::string &steps,
+                         const std::string &left) {
+    return read_problem<2>(
+             SceneFile(ParameterText{block, FileFormat::prm, "scene"},
+                       {"Method/Time integration=" + steps,
+                        "Method/Time step=" +
+                          std::string(steps == "explicit" ? "0" : "0.1"),
+                        "Boundaries/left=" + left}))
+      .bodies[0]
+      .frame;
+  };
+  EXPECT_EQ(frame("quasi-static", "slip"), Frame::initial);
+  EXPECT_EQ(frame("implicit", "slip"), Frame::initial);
+  EXPECT_EQ(frame("explicit", "slip"), Frame::current);
+  EXPECT_EQ(frame("quasi-static", "free"), Frame::current);
 }
 
 

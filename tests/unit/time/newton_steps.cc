@@ -332,6 +332,71 @@ TEST(NewtonSteps, FewIterationsWhereABeamTurns)
 
 
 // A body that nothing holds has no place of equilibrium, and nothing has moved.
+// Two bars in a row, the first one stiffer by a factor, are pulled: where they
+// meet the strain jumps, which costs next to nothing.
+TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
+{
+  const std::string bar = R"(
+      set Points per cell edge = 2
+      set Material = linear elastic
+      subsection Linear elastic
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0
+      end
+      )";
+  const std::string bars = R"(
+    set End time = 1
+    set Bodies = first, second
+    subsection Body first
+      subsection Box
+        set Upper corner = 4, 3
+      end)" + bar + R"(
+    end
+    subsection Body second
+      subsection Box
+        set Lower corner = 4, 0
+        set Upper corner = 8, 3
+      end)" + bar + R"(
+    end
+    subsection Grid
+      set Upper corner = 10, 5
+      set Cells = 10, 5
+    end
+    subsection Boundaries
+      set right = free
+      set top = free
+    end
+    subsection Loads
+      set Face loads = pull
+      subsection Face load pull
+        set Body = second
+        set Face = right
+        set Traction = 1000; 0
+      end
+    end
+    subsection Method
+      set Time integration = quasi-static
+    end)";
+  for (const double ratio : {1., 1e2, 1e5})
+    {
+      SceneRun<2> run(bars,
+                      {"Body first/Linear elastic/Young's modulus=" +
+                       digits(1e6 * ratio)});
+      const auto  before = run.positions(1);
+      run.advance(1);
+      const auto after = run.positions(1);
+      double     error = 0;
+      for (std::size_t p = 0; p < after.size(); ++p)
+        error =
+          std::max(error,
+                   std::abs((after[p] - before[p])[0] -
+                            1e-3 * (4 / ratio + before[p][0] - 4)));
+      EXPECT_LT(error, 2e-3 * 4e-3) << ratio;
+    }
+}
+
+
+
 TEST(NewtonSteps, FreeMotionIsNamed)
 {
   struct Case
