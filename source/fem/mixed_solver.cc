@@ -16,14 +16,12 @@ namespace limber
     constexpr unsigned int most_vectors = 150;
     // of the preconditioned residual
     constexpr double accuracy = 1e-10;
-    // All by counting iterations and seconds; with A^-1 itself instead of the
-    // cycle half as many would do where cells are full, and three quarters to
-    // nine tenths where they are cut.
-    constexpr unsigned int chebyshev_degree = 10;
-    // largest over smallest eigenvalue that the polynomial cares for
-    constexpr double    chebyshev_range = 50;
+    // All by counting iterations and seconds. The degree of the polynomial is
+    // over the square root of its range of eigenvalues: an eighth of the error
+    // is left.
+    constexpr double    chebyshev_degree = 1.4;
     const MultigridForm multigrid_form{3, "MGV", 1.5};
-    constexpr double    weight_of_pressure = 0.8;
+    constexpr double    weight_of_pressure = 0.6;
 
     using Vector = dealii::LinearAlgebra::distributed::BlockVector<double>;
 
@@ -31,20 +29,6 @@ namespace limber
 
     using Chebyshev =
       dealii::PreconditionChebyshev<dealii::SparseMatrix<double>, NodalVector>;
-
-
-
-    // What the volume of a cell gives in to its pressure, inverted: the exact
-    // inverse of MixedSolver, given Q^-1 of the change @p volume
-    double
-    pressure_of(const double volume,
-                const double by_inverse_of_q,
-                const double compliance,
-                const double kept)
-    {
-      const double share = 1 / (1 + kept * compliance);
-      return share * (share * by_inverse_of_q + kept * volume);
-    }
 
 
 
@@ -83,7 +67,8 @@ namespace limber
 
     private:
       mutable Vector      unscaled, image;
-      mutable NodalVector volume;
+      NodalVector         share; // 1 - a
+      mutable NodalVector volume, shared_volume;
     };
 
 
@@ -96,7 +81,9 @@ namespace limber
       , multigrid(multigrid)
       , of_pressure(of_pressure)
       , scale(2)
-      , volume(equations.compliance->size())
+      , share(equations.compliance->size())
+      , volume(share.size())
+      , shared_volume(share.size())
     {
       scale.block(0).reinit(equations.stiffness->m());
       scale.block(1).reinit(volume.size());
@@ -104,11 +91,14 @@ namespace limber
       for (std::size_t k = 0; k < scale.block(0).size(); ++k)
         scale.block(0)[k] = std::sqrt(equations.stiffness->diag_element(k));
       for (std::size_t c = 0; c < volume.size(); ++c)
-        scale.block(1)[c] =
-          1 / std::sqrt(pressure_of(1,
-                                    1 / equations.of_pressure->diag_element(c),
-                                    (*equations.compliance)[c],
-                                    (*equations.kept)[c]));
+        {
+          const double kept = (*equations.kept)[c];
+          share[c]          = 1 / (1 + kept * (*equations.compliance)[c]);
+          scale.block(1)[c] =
+            1 / std::sqrt(
+                  share[c] *
+                  (share[c] / equations.of_pressure->diag_element(c) + kept));
+        }
       inverse_scale = scale;
       for (unsigned int b = 0; b < 2; ++b)
         for (double &value : inverse_scale.block(b))
@@ -128,13 +118,12 @@ namespace limber
       equations.rows->vmult(volume, unknowns.block(0));
       volume -= right_sides.block(1);
       NodalVector &pressure = unknowns.block(1);
-      of_pressure.vmult(pressure, volume);
+      shared_volume         = volume;
+      shared_volume.scale(share);
+      of_pressure.vmult(pressure, shared_volume);
       for (std::size_t c = 0; c < volume.size(); ++c)
-        pressure[c] =
-          weight_of_pressure * pressure_of(volume[c],
-                                           pressure[c],
-                                           (*equations.compliance)[c],
-                                           (*equations.kept)[c]);
+        pressure[c] = weight_of_pressure * share[c] *
+                      (pressure[c] + (*equations.kept)[c] * volume[c]);
     }
   } // namespace
 
@@ -160,18 +149,17 @@ namespace limber
                    rigid_motions,
                    multigrid_form);
     Chebyshev::AdditionalData settings;
-    settings.degree              = chebyshev_degree;
-    settings.smoothing_range     = chebyshev_range;
+    settings.smoothing_range = 1 / equations.least_share;
+    settings.degree =
+      std::ceil(chebyshev_degree * std::sqrt(settings.smoothing_range));
     settings.eig_cg_n_iterations = 0;
-    // of a matrix whose eigenvalues are 1 at most and whose diagonal is 3/4 or
-    // more, in space 1/2, before the inverse of the bulk modulus joins both
-    settings.max_eigenvalue = dim == 2 ? 4. / 3. : 2.;
+    settings.max_eigenvalue      = 1;
     settings.preconditioner =
       std::make_shared<dealii::DiagonalMatrix<NodalVector>>();
     NodalVector &diagonal = settings.preconditioner->get_vector();
     diagonal.reinit(equations.of_pressure->m());
     for (std::size_t c = 0; c < equations.of_pressure->m(); ++c)
-      diagonal[c] = 1 / equations.of_pressure->diag_element(c);
+      diagonal[c] = 1 / (*equations.bound)[c];
     methods->of_pressure.initialize(*equations.of_pressure, settings);
   }
 

@@ -6,25 +6,113 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace limber
 {
   namespace
   {
-    constexpr std::uint32_t not_numbered = 0xffffffffu;
-
-    // Of what an unbounded body gives in to a pressure that alternates: the
-    // share that cells know of. The rest is for surfaces and sides, found by
-    // counting iterations.
-    constexpr double alternating_share = 0.97;
+    // Of pressures that put no force on a node: the share that this node feels
+    // none of. The rest is for the other nodes, found by counting iterations.
+    constexpr double unfelt_share = 0.999;
 
     // A cell that is hardly filled hangs on nodes that others hold: it gives in
     // to its pressure as these do, by the diagonal of their stiffness, and not
     // as if its own shear modulus alone held it. The factor makes both the same
     // in a full cell amidst others.
     constexpr double of_diagonal = 3;
+
+
+
+    /** A node's volumes, of one body. */
+    template <int dim>
+    struct VolumesAround
+    {
+      void
+      add(const std::size_t volume, const unsigned int corner)
+      {
+        volumes[n_volumes] = volume;
+        corners[n_volumes] = corner;
+        ++n_volumes;
+      }
+
+      unsigned int                        n_volumes = 0;
+      std::array<std::uint32_t, 1 << dim> volumes;
+      std::array<unsigned char, 1 << dim> corners; // that the node is of each
+    };
   } // namespace
+
+
+
+  /**
+   * Of pressures around a node, divided by scales: which part it feels. Whole
+   * are a constant pressure, and what puts a force on the node; of the rest
+   * little.
+   */
+  template <int dim>
+  class AveragedVolumes<dim>::Felt
+  {
+  public:
+    Felt(const VolumesAround<dim>  &around,
+         const std::vector<Volume> &volumes,
+         const std::vector<double> &scale)
+    {
+      std::array<double, 1 << dim> direction;
+      for (int d = -1; d < dim; ++d)
+        {
+          for (unsigned int i = 0; i < around.n_volumes; ++i)
+            {
+              const std::size_t c = around.volumes[i];
+              // zero where all nodes of a cell are held
+              direction[i] =
+                d < 0 || scale[c] == 0 ?
+                  scale[c] :
+                  volumes[c].row[around.corners[i] * dim + d] / scale[c];
+            }
+          add(direction, around.n_volumes);
+        }
+    }
+
+    double
+    operator()(const unsigned int i, const unsigned int j) const
+    {
+      double result = i == j ? 1 - unfelt_share : 0;
+      for (unsigned int k = 0; k < n_directions; ++k)
+        result += unfelt_share * directions[k][i] * directions[k][j];
+      return result;
+    }
+
+  private:
+    void
+    add(std::array<double, 1 << dim> &direction, const unsigned int n)
+    {
+      const auto length = [&] {
+        return std::sqrt(std::inner_product(
+          direction.begin(), direction.begin() + n, direction.begin(), 0.));
+      };
+      const double before = length();
+      for (unsigned int twice = 0; twice < 2; ++twice)
+        for (unsigned int k = 0; k < n_directions; ++k)
+          {
+            const double part = std::inner_product(direction.begin(),
+                                                   direction.begin() + n,
+                                                   directions[k].begin(),
+                                                   0.);
+            for (unsigned int i = 0; i < n; ++i)
+              direction[i] -= part * directions[k][i];
+          }
+      const double after = length();
+      if (after <= 1e-6 * before)
+        return;
+      for (unsigned int i = 0; i < n; ++i)
+        directions[n_directions][i] = direction[i] / after;
+      ++n_directions;
+    }
+
+    unsigned int                                      n_directions = 0;
+    std::array<std::array<double, 1 << dim>, dim + 1> directions;
+  };
 
 
 
@@ -92,6 +180,8 @@ namespace limber
     equations.rows        = &rows;
     equations.compliance  = &compliance;
     equations.of_pressure = &of_pressure;
+    equations.bound       = &bound;
+    equations.least_share = least_share;
     equations.kept        = &kept;
     solver.emplace(dim, motions, equations);
   }
@@ -99,9 +189,10 @@ namespace limber
 
 
   // What volumes give in to pressures, where the matrix keeps nothing of their
-  // stiffness, 1/K + B A^-1 B^T, nearly: V/G, but nothing where pressures
-  // alternate from cell to cell in two directions or more, as they move no
-  // node. Of s = sin^2(k/2) along x and y, B A^-1 B^T is nearly proportional to
+  // stiffness, 1/K + B A^-1 B^T, nearly: 1/(G V), but nothing where pressures
+  // of the cells around a node put no force on it and differ. In full cells
+  // these alternate from cell to cell in two directions or more: of
+  // s = sin^2(k/2) along x and y, B A^-1 B^T is nearly proportional to
   // 1 - 2 s_x s_y / (s_x + s_y), and this matrix to 1 - s_x s_y, both zero in
   // the pattern alone.
   template <int dim>
@@ -110,32 +201,32 @@ namespace limber
     const dealii::TrilinosWrappers::SparseMatrix &stiffness)
   {
     constexpr unsigned int n = 1 << dim;
-    using Around = std::array<std::uint32_t, n>; // volumes around a node
-    std::vector<Around> complete;
-    Around              nothing;
-    nothing.fill(not_numbered);
+    using Around             = VolumesAround<dim>;
+    std::vector<Around> all_around;
     for (std::size_t begin = 0, end; begin < volumes.size(); begin = end)
       {
-        std::vector<Around> around(nodes.size(), nothing);
+        std::vector<Around> around(nodes.size());
         for (end = begin;
              end < volumes.size() && volumes[end].body == volumes[begin].body;
              ++end)
           for (unsigned int i = 0; i < n; ++i)
-            around[volumes[end].numbers[i]][n - 1 - i] = end;
+            around[volumes[end].numbers[i]].add(end, i);
         for (const Around &of_node : around)
-          if (std::count(of_node.begin(), of_node.end(), not_numbered) == 0)
-            complete.push_back(of_node);
+          if (of_node.n_volumes > 0)
+            all_around.push_back(of_node);
       }
 
     dealii::DynamicSparsityPattern pattern(volumes.size(), volumes.size());
-    for (std::size_t c = 0; c < volumes.size(); ++c)
-      pattern.add(c, c);
-    for (const Around &of_node : complete)
-      for (const std::uint32_t c : of_node)
-        pattern.add_entries(c, of_node.begin(), of_node.end());
+    for (const Around &of_node : all_around)
+      for (unsigned int i = 0; i < of_node.n_volumes; ++i)
+        pattern.add_entries(of_node.volumes[i],
+                            of_node.volumes.begin(),
+                            of_node.volumes.begin() + of_node.n_volumes);
     of_pressure.clear();
     pressure_pattern.copy_from(pattern);
     of_pressure.reinit(pressure_pattern);
+    bound.clear();
+    least_share = 1;
     std::vector<double> root(volumes.size());
     for (std::size_t c = 0; c < volumes.size(); ++c)
       {
@@ -148,26 +239,26 @@ namespace limber
               of_nodes += volumes[c].row[k] * volumes[c].row[k] /
                           stiffness.diag_element(column);
           }
-        root[c] =
-          std::sqrt(std::min(1 / volumes[c].shear, of_diagonal * of_nodes));
-        of_pressure.add(c,
-                        c,
-                        1 / (volumes[c].kept + volumes[c].stiffness) +
-                          root[c] * root[c]);
+        const double softness =
+          std::min(1 / volumes[c].shear, of_diagonal * of_nodes);
+        root[c]             = std::sqrt(softness / n);
+        const double direct = 1 / (volumes[c].kept + volumes[c].stiffness);
+        of_pressure.add(c, c, direct);
+        bound.push_back(direct + softness);
+        least_share =
+          std::min(least_share,
+                   (direct + (1 - unfelt_share) * softness) / bound.back());
       }
-    for (const Around &of_node : complete)
-      for (unsigned int directions = 0; directions < n; ++directions)
-        if (__builtin_popcount(directions) >= 2)
-          for (unsigned int i = 0; i < n; ++i)
-            for (unsigned int j = 0; j < n; ++j)
-              {
-                const double sign =
-                  __builtin_popcount((i ^ j) & directions) % 2 == 0 ? 1 : -1;
-                of_pressure.add(of_node[i],
-                                of_node[j],
-                                -alternating_share * sign * root[of_node[i]] *
-                                  root[of_node[j]] / (n * n));
-              }
+    for (const Around &of_node : all_around)
+      {
+        const Felt felt(of_node, volumes, root);
+        for (unsigned int i = 0; i < of_node.n_volumes; ++i)
+          for (unsigned int j = 0; j < of_node.n_volumes; ++j)
+            of_pressure.add(of_node.volumes[i],
+                            of_node.volumes[j],
+                            root[of_node.volumes[i]] * felt(i, j) *
+                              root[of_node.volumes[j]]);
+      }
   }
 
 

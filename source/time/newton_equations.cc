@@ -16,8 +16,10 @@ namespace limber
   {
     // In mixed form the matrix keeps what volumes resist with in a material
     // whose bulk modulus is that many shear moduli (nu = .35): multigrid then
-    // sees one that is well compressible, and not the deviator alone. Found by
-    // counting iterations.
+    // sees one that is well compressible, and not the deviator alone. In cells
+    // that are cut it is more, over the square root of the part that is filled:
+    // their nodes hang on those of others, which are stiffer. Found by counting
+    // iterations.
     constexpr double kept_bulk = 3;
   } // namespace
 
@@ -66,6 +68,7 @@ namespace limber
   {
     nodes.update();
     find_held();
+    find_places();
     // in motion nodes have inertia, and the penalty would damp it
     if (parts.problem.method.ghost_penalty > 0 &&
         parts.problem.method.integration == TimeIntegration::quasi_static)
@@ -224,7 +227,8 @@ namespace limber
       {
         tangent->clear();
         volumes->clear();
-        is_factorised = false;
+        is_factorised           = false;
+        displacement_of_tangent = displacement;
       }
     int admissible = 1;
     for (std::size_t b = 0; b < responses.size() && admissible; ++b)
@@ -302,12 +306,16 @@ namespace limber
     CellResponse                              &response)
   {
     const double bulk_over_shear = responses[body]->bulk_over_shear();
-    double       kept            = response.volume_stiffness;
-    if (is_iterated() && mixed && bulk_over_shear > kept_bulk &&
-        response.volume_stiffness > 0)
+    const double shear           = response.volume_stiffness / bulk_over_shear;
+    const double of_full_cell    = responses[body]->young_modulus() *
+                                (3 + 1 / bulk_over_shear) / 9 *
+                                nodes.volume_of_cell();
+    const double to_keep =
+      kept_bulk * std::sqrt(shear * std::max(shear, of_full_cell));
+    double kept = response.volume_stiffness;
+    if (is_iterated() && mixed && kept > to_keep)
       {
-        const double shear = response.volume_stiffness / bulk_over_shear;
-        kept               = kept_bulk * shear;
+        kept = to_keep;
         typename AveragedVolumes<dim>::Volume volume;
         volume.body = body;
         std::copy(numbers.begin(), numbers.end(), volume.numbers.begin());
@@ -347,18 +355,66 @@ namespace limber
 
 
 
-  // One after the other
+  // Where nodes are at the start of the step. In the initial frame the lattice
+  // stays where the body was at first; what moves with each node follows from
+  // the points in its cells, as far as they tell a linear motion exactly.
+  template <int dim>
+  void
+  NewtonEquations<dim>::find_places()
+  {
+    places = nodes.places();
+    if (std::none_of(parts.bodies.begin(),
+                     parts.bodies.end(),
+                     [](const auto &body) {
+                       return body->points.view().in_initial_frame();
+                     }))
+      return;
+    constexpr unsigned int n = dim + 1; // numbers of a node: sum and weight
+    std::vector<double>    sums(nodes.size() * n);
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points = body->points.view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          for (const std::uint32_t number : nodes.numbers_in(points.cell[p]))
+            {
+              double *const sum = &sums[number * n];
+              for (int d = 0; d < dim; ++d)
+                {
+                  double place = points.position[d][p];
+                  for (int e = 0; e < dim; ++e)
+                    place += (points.in_initial_frame() ?
+                                points.deformation[d * dim + e][p] :
+                                double(d == e)) *
+                             (nodes.places()[number][e] - points.place[e][p]);
+                  sum[d] += points.mass[p] * place;
+                }
+              sum[dim] += points.mass[p];
+            }
+      }
+    nodes.sum(sums);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (int d = 0; d < dim; ++d)
+        places[i][d] = sums[i * n + d] / sums[i * n + dim];
+  }
+
+
+
+  // One after the other, of the body as it was where the tangent was taken
   template <int dim>
   std::vector<double>
   NewtonEquations<dim>::rigid_motions() const
   {
     std::vector<double> result(n_rigid_motions<dim> * size());
-    for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
-      for (std::size_t k = 0; k < size(); ++k)
-        result[m * size() + k] = rigid_motion<dim>(m,
-                                                   k % dim,
-                                                   nodes.places()[k / dim],
-                                                   nodes.places()[0]);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      {
+        dealii::Point<dim> place = places[i];
+        for (int d = 0; d < dim; ++d)
+          place[d] += displacement_of_tangent[i * dim + d];
+        for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
+          for (int d = 0; d < dim; ++d)
+            result[m * size() + i * dim + d] =
+              rigid_motion<dim>(m, d, place, places[0]);
+      }
     return result;
   }
 
@@ -424,13 +480,11 @@ namespace limber
   NewtonEquations<dim>::solve_condensed(NodalVector       &solution,
                                         const NodalVector &right_side)
   {
-    if (!solver || solver->direct == is_iterated())
+    if (!is_factorised || solver->direct == is_iterated())
       {
-        is_factorised = false;
         solver.emplace(!is_iterated(), dim, rigid_motions(), most_iterations);
+        solver->set_matrix(tangent->values());
       }
-    if (!is_factorised)
-      solver->set_matrix(tangent->values());
     is_factorised = true;
     return solver->solve(solution, right_side);
   }

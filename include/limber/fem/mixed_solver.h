@@ -25,10 +25,10 @@ namespace limber
    * With A0 what is in it besides, the pressures then have, in terms of
    * Q = (C^-1 + D)^-1 + B A0^-1 B^T and a = D / (C^-1 + D), the exact inverse
    *
-   *   (C + B A^-1 B^T)^-1 = (1 - a) ((1 - a) Q^-1 + D),
+   *   (C + B A^-1 B^T)^-1 = (1 - a) (Q^-1 (1 - a) + D)
    *
-   * where D is a multiple of C^-1 (Woodbury's formula); the preconditioner is
-   * this with the caller's approximation of Q.
+   * (Woodbury's formula), where a is diagonal; the preconditioner is this with
+   * the caller's approximation of Q.
    */
   class MixedSolver
   {
@@ -40,6 +40,10 @@ namespace limber
       const std::vector<double>                    *compliance  = nullptr; // C
       const std::vector<double>                    *kept        = nullptr; // D
       const dealii::SparseMatrix<double>           *of_pressure = nullptr; // Q
+      // A diagonal matrix M: all eigenvalues of M^-1 Q are between the least
+      // share and 1.
+      const std::vector<double> *bound       = nullptr;
+      double                     least_share = 1;
     };
 
     /** @p rigid_motions: see make_multigrid(). */

@@ -70,6 +70,8 @@ namespace limber
           NodalVector                                  &solution);
 
   private:
+    class Felt;
+
     void
     make_solver(const dealii::TrilinosWrappers::SparseMatrix &stiffness,
                 const std::vector<double>                    &motions);
@@ -82,7 +84,8 @@ namespace limber
     std::vector<Volume>               volumes;
     dealii::SparsityPattern           rows_pattern, pressure_pattern;
     dealii::SparseMatrix<double>      rows, of_pressure;
-    std::vector<double>               compliance, kept;
+    std::vector<double>               compliance, kept, bound; // MixedSolver
+    double                            least_share = 1;
     std::optional<MixedSolver>        solver;
   };
 } // namespace limber

@@ -221,6 +221,8 @@ namespace limber
     void
     find_held();
     void
+    find_places();
+    void
     add_volume(std::size_t                          body,
                typename NumberedNodes<dim>::Numbers numbers,
                CellResponse                        &response);
@@ -245,12 +247,14 @@ namespace limber
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
     NumberedNodes<dim>                                   nodes;
-    std::vector<unsigned char> held, side_of; // by equation
-    GhostPenalty<dim>          ghost;
-    std::vector<double>        by_node, former_by_node; // displacements, m
-    std::vector<double>        total_forces, forces_of_pressures;
-    FollowerPressure<dim>     *pressures    = nullptr; // or none
-    double                     total_energy = 0, energy_of_jumps = 0, noise = 0;
+    std::vector<unsigned char>      held, side_of; // by equation
+    GhostPenalty<dim>               ghost;
+    std::vector<dealii::Point<dim>> places; // of nodes, as the step begins
+    std::vector<double>             displacement_of_tangent; // m
+    std::vector<double>             by_node, former_by_node; // displacements, m
+    std::vector<double>             total_forces, forces_of_pressures;
+    FollowerPressure<dim>          *pressures = nullptr; // or none
+    double total_energy = 0, energy_of_jumps = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;
     const std::unique_ptr<AveragedVolumes<dim>> volumes;

@@ -124,6 +124,16 @@ namespace limber
       return edges[direction];
     }
 
+    /** Of a whole cell, m^dim. */
+    double
+    volume_of_cell() const
+    {
+      double result = 1;
+      for (int d = 0; d < dim; ++d)
+        result *= edges[d];
+      return result;
+    }
+
     /** Replace values by their sums over all ranks. Collective. */
     void
     sum(double *values, std::size_t n) const;
