@@ -391,29 +391,17 @@ namespace limber
   {
     if (!has_way_to_room)
       return;
-    const bool has_solids =
-      std::any_of(parts.bodies.begin(), parts.bodies.end(), [](const auto &b) {
-        return !b->description.is_liquid;
-      });
     for (const std::uint32_t node : parts.nodes.active_nodes())
       for (int d = 0; d < dim; ++d)
-        {
-          double *const record = parts.nodes.record(node);
-          const double  speed  = way_to_room(node, d) / step;
-          record[Layout::velocity + d] += speed;
-          if (has_solids)
-            record[Layout::strain_velocity + d] += speed;
-        }
+        parts.nodes.record(node)[Layout::velocity + d] +=
+          way_to_room(node, d) / step;
     const auto of_node = [this](const std::uint32_t node, const int d) {
       return way_to_room(node, d);
     };
     for (Medium &medium : cells.media)
       for (auto *const body : medium.bodies)
-        if (medium.is_liquid() != body->implicit->is_whole)
-          add_flow_to_dilations(medium,
-                                *body,
-                                medium.is_liquid() ? -1. : 1.,
-                                of_node);
+        if (!body->implicit->is_whole)
+          add_flow_to_dilations(medium, *body, -1, of_node);
   }
 
 

@@ -90,7 +90,9 @@ namespace limber
           if (std::find(group.liquids.begin(),
                         group.liquids.end(),
                         body.get()) == group.liquids.end())
-            group.others.push_back(body.get());
+            (body->description.nodal_field == field ? group.neighbours :
+                                                      group.others)
+              .push_back(body.get());
         groups.push_back(std::move(group));
       }
     reinit();
@@ -168,7 +170,8 @@ namespace limber
     surroundings.find(
       vertices,
       [&](const std::uint32_t cell) {
-        return holds(group.liquids, cell) || holds(group.others, cell);
+        return holds(group.liquids, cell) || holds(group.neighbours, cell) ||
+               holds(group.others, cell);
       },
       cut_cells ? cut_cells->covered_corners() : nullptr);
 
@@ -177,8 +180,9 @@ namespace limber
         std::fill_n(record(node), Record::stride, 0.);
     for (const HangingNode &hanging : table.hanging)
       std::fill_n(record(hanging.node), Record::stride, 0.);
-    for (MaterialBody *const body : group.liquids)
-      add_volumes(*body);
+    for (const auto *const bodies : {&group.liquids, &group.neighbours})
+      for (MaterialBody *const body : *bodies)
+        add_volumes(*body);
     mark_cells(group);
     table.give_to_masters(records.data(), Record::stride, 0, Record::stride);
     exchange.start(vertices.node_plan(), records.data(), 0, Record::stride);

@@ -56,12 +56,13 @@ namespace limber
                Base::obstacles ? &*Base::obstacles : nullptr)
     , hourglass(std::size_t(parts.nodes.table.n()) * dim)
     , viscosity_acts(!this->full_mass && is_viscous())
-    , has_solids(std::any_of(parts.bodies.begin(),
-                             parts.bodies.end(),
-                             [](const auto &body) {
-                               return !body->description.is_liquid;
-                             }))
-    , remaps(viscosity_acts || (!this->full_mass && has_solids))
+    , remaps(
+        viscosity_acts ||
+        (!this->full_mass && std::any_of(parts.bodies.begin(),
+                                         parts.bodies.end(),
+                                         [](const auto &body) {
+                                           return !body->description.is_liquid;
+                                         })))
     , lightest_solid(lightest_solid_of(parts))
   {}
 
@@ -143,27 +144,22 @@ namespace limber
 
 
 
-  // When points have got their velocities. Returns the work of gravity. What
-  // this takes from its energy, and from that of stress, is on record as
-  // removed by a change of state.
+  // When points have got their velocities. Returns the work of gravity, which is
+  // on record as removed by a change of state.
   template <int dim>
   double
   SemiImplicitIntegrator<dim>::make_room()
   {
-    double of_gravity = 0, of_stress = 0;
+    double work = 0;
     for (const std::uint32_t node : this->parts.nodes.active_nodes())
       if (this->parts.nodes.owns(node))
         for (int d = 0; d < dim; ++d)
-          {
-            const double way = pressure.way_to_room(node, d);
-            of_gravity += this->parts.nodes.record(node)[Layout::mass] *
-                          this->parts.problem.loads.gravity[d] * way;
-            if (has_solids)
-              of_stress += impulse_of_stress(node, d) / this->step * way;
-          }
-    this->parts.ledger.history += of_gravity + of_stress;
+          work += this->parts.nodes.record(node)[Layout::mass] *
+                  this->parts.problem.loads.gravity[d] *
+                  pressure.way_to_room(node, d);
+    this->parts.ledger.history += work;
     pressure.make_room(this->step);
-    return of_gravity;
+    return work;
   }
 
 

@@ -89,8 +89,8 @@ namespace limber
 
     /**
      * Add to the new velocity what makes room (see above), when it is to move
-     * points and does nothing else any more: liquids that it strains are not
-     * strained by that, solids are. Collective.
+     * points and does nothing else any more: where it strains them as well,
+     * this part is taken out of their dilations. Collective.
      */
     void
     make_room(double step);

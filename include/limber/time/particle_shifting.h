@@ -83,10 +83,11 @@ namespace limber
     using MaterialBody                      = limber::MaterialBody<dim>;
     static constexpr unsigned int n_corners = 1 << dim;
 
-    /** Liquids that give to the same nodes, and all other bodies. */
+    /** Liquids that give to the same nodes; other bodies that do, which take
+     * their room; and those with nodes of their own. */
     struct Group
     {
-      std::vector<MaterialBody *> liquids, others;
+      std::vector<MaterialBody *> liquids, neighbours, others;
     };
 
     /** Of a vertex: the volume of points around it (m^3), later the excess g;

@@ -66,7 +66,6 @@ namespace limber
     ImplicitPressure<dim> pressure;
     LazyArray<double>     hourglass; // forces by node and component, N
     const bool            viscosity_acts;
-    const bool            has_solids;
     const bool            remaps; // for solids and viscous liquids
     // Its density, kg/m^3; 0 where the pressure of some solid is explicit
     const double lightest_solid;
