@@ -182,6 +182,57 @@ TEST(ParticleShifting, MakesRoomForAnEvenExcess)
 
 
 
+// A lid that has sunk half a cell into the water presses it aside, to where the
+// surface is free, and stays where it is.
+template <int dim>
+void
+expect_to_go_aside()
+{
+  const std::string z = dim == 3 ? ", 0" : "", end = dim == 3 ? ", 0.5" : "";
+  SceneRun<dim>     run(half_full_box(
+    dim,
+    "set Frame = current\nend\nset Bodies = water, lid\n"
+        "subsection Body lid\n set Shape = box\n subsection Box\n"
+        " set Lower corner = 0, 0.4375" +
+      z + "\n set Upper corner = 0.5, 0.75" + end +
+      "\n end\n set Frame = current\n set Placement = cut\n"
+          " set Material = neo hookean\n"));
+  const auto        under_lid = [&]() {
+    const auto points = run.points();
+    double     mass   = 0;
+    for (std::size_t p = 0; p < points.size; ++p)
+      if (points.position[0][p] < 0.5 && points.position[1][p] > 0.4375)
+        mass += points.mass[p];
+    return mass;
+  };
+  const auto lid = run.positions(1);
+  run.integrator.reinit();
+  const RunParts<dim> parts{
+    run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  const double          before = under_lid();
+  ParticleShifting<dim> shifting(parts, nullptr);
+  for (unsigned int time = 0; time < 10; ++time)
+    {
+      shifting.follow(0.2);
+      shifting.shift();
+      run.integrator.reinit();
+    }
+  EXPECT_LT(under_lid(), 0.6 * before);
+  const auto after = run.positions(1);
+  for (std::size_t p = 0; p < lid.size(); ++p)
+    EXPECT_EQ(lid[p], after[p]);
+}
+
+
+
+TEST(ParticleShifting, GoesAsideForSolids)
+{
+  expect_to_go_aside<2>();
+  expect_to_go_aside<3>();
+}
+
+
+
 // Between a wall below and a surface four cells above it a source of 1 has the
 // potential (16 - y^2) / 2, exactly so at the nodes, along the other axes none.
 template <int dim>
