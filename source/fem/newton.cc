@@ -206,23 +206,40 @@ namespace limber
 
 
 
+  // A scene in equilibrium says which loads act at a time. Those of one in
+  // motion are not taken on their way, which inertia is part of, but from
+  // nothing to what they are at the end.
+  template <int dim>
+  void
+  ReferenceSolver<dim>::choose_loads(const double time)
+  {
+    const Problem<dim> &problem = model.problem;
+    const bool          is_told =
+      problem.method.integration == TimeIntegration::quasi_static;
+    time_of_loads = is_told ? time : problem.end_time;
+    load_factor   = is_told && !problem.loads.factor.empty() ?
+                      problem.loads.factor.value({}, time) :
+                      time / problem.end_time;
+  }
+
+
+
   // A load step that Newton's method does not manage is taken in parts.
   template <int dim>
   void
   ReferenceSolver<dim>::load_step(const double step)
   {
-    const double end  = model.problem.end_time;
-    double       time = state.time, part = step;
-    NodalVector  velocity = model.make_vector(), none = velocity;
+    double      time = state.time, part = step;
+    NodalVector velocity = model.make_vector(), none = velocity;
     while (time < state.time + step * (1 - 1e-9))
       {
         const NodalVector former = state.displacement;
         part                     = std::min(part, state.time + step - time);
-        load_factor              = (time + part) / end;
+        choose_loads(time + part);
         model.held().prescribe(
           time, former, time + part, state.displacement, velocity, none);
         follow_held(former);
-        if (solve(end, 0, false))
+        if (solve(time_of_loads, 0, false))
           {
             state.displacement.update_ghost_values();
             state.plastic_work += model.accept(state.displacement);
@@ -315,11 +332,15 @@ namespace limber
   template double
   ReferenceSolver<2>::unbalance(const double, const double);
   template void
+  ReferenceSolver<2>::choose_loads(const double);
+  template void
   ReferenceSolver<2>::load_step(const double);
   template void
   ReferenceSolver<2>::newmark_step(const double, const unsigned int);
   template double
   ReferenceSolver<3>::unbalance(const double, const double);
+  template void
+  ReferenceSolver<3>::choose_loads(const double);
   template void
   ReferenceSolver<3>::load_step(const double);
   template void

@@ -99,6 +99,11 @@ namespace limber
     if (method == ReferenceMethod::quasi_static)
       {
         step_limit = model.problem.end_time / request.load_steps;
+        choose_loads(0);
+        unbalance(time_of_loads, 0);
+        former_load      = load;
+        former_support   = support;
+        state.side_force = model.held().sum_over_sides(support);
         return;
       }
 

@@ -145,7 +145,9 @@ namespace limber
     choose_side_contact(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));
-    problem.reference  = read_reference(root.subsection("Reference"));
+    problem.reference  = read_reference(root.subsection("Reference"),
+                                       problem.method,
+                                       problem.end_time);
     read_exact_solution(root.subsection("Exact solution"), problem);
     read_observables(root, problem);
     read_checks(root, problem);

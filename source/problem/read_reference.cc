@@ -4,6 +4,10 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace limber
 {
   void
@@ -18,7 +22,7 @@ namespace limber
                  "fields do not lock near incompressibility.");
     declare_word(parameters,
                  "Method",
-                 "implicit",
+                 "auto",
                  reference_method_words(),
                  "How the finite elements are led to the end time.");
     parameters.declare("Elements over depth",
@@ -54,10 +58,11 @@ namespace limber
                        "smallest element. Loads and sides that move faster "
                        "than the body vibrates need a shorter one.");
     parameters.declare("Load steps",
-                       "1",
-                       admissible::positive_integer("10"),
-                       "Equal parts in which 'quasi-static' applies the loads, "
-                       "no unit.");
+                       "auto",
+                       admissible::positive_integer("10").or_word("auto"),
+                       "Equal parts of the time in which 'quasi-static' "
+                       "applies the loads, no unit; auto: as many as steps of "
+                       "a quasi-static run, else 1.");
     parameters.declare("Tolerance",
                        "1e-8",
                        admissible::number_between(0, 1, "1e-8"),
@@ -75,17 +80,43 @@ namespace limber
 
 
 
+  namespace
+  {
+    // Steps of the run, but for those that it halves.
+    unsigned int
+    steps_of_run(const Method &method, const double end_time)
+    {
+      if (method.integration != TimeIntegration::quasi_static)
+        return 1;
+      constexpr unsigned int unless_given = 10; // as NewtonIntegrator has it
+      constexpr double       most         = std::numeric_limits<int>::max();
+      if (method.time_step == 0)
+        return unless_given;
+      const double n = std::ceil(end_time / method.time_step * (1 - 1e-9));
+      return static_cast<unsigned int>(std::clamp(n, 1., most));
+    }
+  } // namespace
+
+
+
   ReferenceRequest
-  read_reference(const Section &section)
+  read_reference(const Section &section,
+                 const Method  &method,
+                 const double   end_time)
   {
     ReferenceRequest request;
     request.element = read_word(section, "Element", reference_element_words());
     request.method  = read_word(section, "Method", reference_method_words());
+    if (section.text("Method") == "auto" &&
+        method.integration == TimeIntegration::quasi_static)
+      request.method = ReferenceMethod::quasi_static;
     request.over_depth  = section.number("Elements over depth");
     request.mesh_file   = section.text("Mesh file");
     request.refinements = section.number("Refinements");
     request.time_step   = section.number("Time step");
-    request.load_steps  = section.number("Load steps");
+    request.load_steps  = section.text("Load steps") == "auto" ?
+                            steps_of_run(method, end_time) :
+                            section.number("Load steps");
     request.tolerance   = section.number("Tolerance");
     request.frequencies = section.number("Frequencies");
     if (!section.is_empty("Elements"))

@@ -223,10 +223,14 @@ namespace limber
     static const Words<ReferenceMethod> words = {
       {"quasi-static",
        ReferenceMethod::quasi_static,
-       "equilibrium, the loads of the end time in equal steps"},
+       "equilibrium; the loads follow 'Loads/Load factor' where 'Method/Time "
+       "integration' is quasi-static, else those of the end time grow evenly"},
       {"implicit",
        ReferenceMethod::implicit_steps,
        "Newmark's method with the damping of Hilber, Hughes and Taylor"},
+      {"auto",
+       ReferenceMethod::implicit_steps,
+       "'quasi-static' where 'Method/Time integration' is, else 'implicit'"},
       {"explicit",
        ReferenceMethod::explicit_steps,
        "central differences, lumped mass"}};

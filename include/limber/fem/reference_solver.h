@@ -101,6 +101,8 @@ namespace limber
     follow_held(const NodalVector &former);
     double
     round_off_of_forces() const;
+    void
+    choose_loads(const double time);
     double
     unbalance(const double time, const double mass_factor);
     void
@@ -123,9 +125,10 @@ namespace limber
     NodalVector internal, load, inertia, unbalanced, support;
     NodalVector former_load, former_support;
     NodalVector net_force, former_net_force; // all but inertia
-    NodalVector predicted;       // displacement without the new acceleration, m
-    double      load_factor = 1; // share of gravity and loads that acts
-    double      rest        = 0; // unbalanced share of the forces
+    NodalVector predicted; // displacement without the new acceleration, m
+    double      load_factor   = 1; // share of gravity and loads that acts
+    double      time_of_loads = 0; // in equilibrium, s
+    double      rest          = 0; // unbalanced share of the forces
 
     std::optional<FastestMode<dim>> fastest_mode; // where explicit steps ask
   };

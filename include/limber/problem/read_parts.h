@@ -294,7 +294,9 @@ namespace limber
   declare_reference(Parameters &parameters, const unsigned int dim);
 
   ReferenceRequest
-  read_reference(const Section &section);
+  read_reference(const Section &section,
+                 const Method  &method,
+                 const double   end_time);
 
   void
   declare_exact_solution(Parameters &parameters, const unsigned int dim);

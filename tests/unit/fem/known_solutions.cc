@@ -376,3 +376,81 @@ TEST(MeshFile, ABallTwistsAtItsExactFrequency)
   // what is left without the error of second order
   EXPECT_NEAR((4 * errors[1] - errors[0]) / 3, 0, 0.002);
 }
+
+
+
+// A bar without lateral strain, u = sigma / E at its end: under the load factor
+// of a scene in equilibrium, at the times of its steps, and for one in motion
+// under the growing load of its end.
+TEST(ReferenceInEquilibrium, FollowsTheLoadsOfTheScene)
+{
+  const std::string bar           = R"(
+    set End time = 1
+    set Bodies = bar
+    subsection Body bar
+      subsection Box
+        set Upper corner = 1, 0.5
+      end
+      set Material = linear elastic
+      subsection Linear elastic
+        set Density = 1
+        set Young's modulus = 100
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 1
+    end
+    subsection Loads
+      set Face loads = pull
+      subsection Face load pull
+        set Body = bar
+        set Face = right
+        set Traction = 1 + t; 0
+      end
+    end)";
+  const auto        displacements = [&](const std::vector<std::string> &changes,
+                                 const unsigned int              n_steps) {
+    const auto problem = problem_from<2>(bar, changes);
+    EXPECT_EQ(problem.reference.method, ReferenceMethod::quasi_static);
+    EXPECT_EQ(problem.reference.load_steps, n_steps);
+    SolidModel<2>       model(problem, MPI_COMM_WORLD);
+    ReferenceSolver<2>  solver(model);
+    std::vector<double> result;
+    for (unsigned int k = 0; k < n_steps; ++k)
+      {
+        solver.advance(solver.longest_step());
+        const auto &u = solver.motion().displacement;
+        result.push_back(
+          100 *
+          sample_at(model, dealii::Point<2>(1, 0.5), u, u).displacement[0]);
+      }
+    return result;
+  };
+  const auto expect_all = [](const std::vector<double> &found,
+                             const std::vector<double> &exact) {
+    ASSERT_EQ(found.size(), exact.size());
+    for (std::size_t k = 0; k < exact.size(); ++k)
+      EXPECT_NEAR(found[k], exact[k], 1e-6) << k;
+  };
+  const std::string quasi_static = "Method/Time integration=quasi-static";
+
+  // up and back to nothing
+  expect_all(displacements({quasi_static,
+                            "Method/Time step=0.25",
+                            "Loads/Load factor=if(t<0.5, 2*t, 2-2*t)"},
+                           4),
+             {0.625, 1.5, 0.875, 0});
+  expect_all(displacements({quasi_static, "Reference/Load steps=2"}, 2),
+             {0.75, 2});
+  expect_all(displacements(
+               {"Reference/Method=quasi-static", "Reference/Load steps=2"}, 2),
+             {1, 2});
+  expect_all(displacements({"Reference/Method=quasi-static"}, 1), {2});
+  EXPECT_EQ(problem_from<2>(bar, {quasi_static}).reference.load_steps, 10u);
+  EXPECT_EQ(problem_from<2>(bar).reference.method,
+            ReferenceMethod::implicit_steps);
+  EXPECT_EQ(problem_from<2>(bar, {quasi_static, "Reference/Method=implicit"})
+              .reference.method,
+            ReferenceMethod::implicit_steps);
+}
