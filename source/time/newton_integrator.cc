@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace limber
 {
@@ -19,6 +20,15 @@ namespace limber
     constexpr double share_of_run = 0.1;
     // Halved more often than this a step will not be found.
     constexpr unsigned int most_halvings = 10;
+
+
+
+    double
+    size_of(const std::vector<double> &forces)
+    {
+      return std::sqrt(
+        std::inner_product(forces.begin(), forces.end(), forces.begin(), 0.));
+    }
   } // namespace
 
 
@@ -83,6 +93,7 @@ namespace limber
     result.point_speed  = std::sqrt(extremes.speed_squared);
     result.displacement = extremes.displacement;
     result.step         = next_step;
+    result.force        = largest_force;
     result.face_pieces  = loads.pieces();
     return result;
   }
@@ -96,6 +107,7 @@ namespace limber
     extremes.speed_squared = former.point_speed * former.point_speed;
     extremes.displacement  = former.displacement;
     next_step              = std::min(longest, former.step);
+    largest_force          = former.force;
     loads.restore(former.face_pieces);
     reinit();
   }
@@ -324,6 +336,12 @@ namespace limber
     Values       net(equations.size()); // as they would accelerate
     for (std::size_t k = 0; k < equations.size(); ++k)
       net[k] = former_loads[k] + former_pressure[k] - equations.forces()[k];
+    if (!in_motion)
+      largest_force = std::max({largest_force,
+                                size_of(former_loads),
+                                size_of(former_pressure),
+                                size_of(equations.forces())});
+    question.largest_former_force = largest_force;
     pressures.set(time + step, load_factor(time + step));
     question.pressure_at_rest.assign(equations.size(), 0.);
     pressures.add_forces(displacement, question.pressure_at_rest);

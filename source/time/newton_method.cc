@@ -114,6 +114,7 @@ namespace limber
                                    norm(equations.forces()),
                                    std::sqrt(of_inertia),
                                    known_share * std::sqrt(of_momentum),
+                                   question.largest_former_force,
                                    equations.round_off()});
     return norm(left) / scale;
   }

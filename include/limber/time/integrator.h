@@ -37,6 +37,7 @@ namespace limber
     unsigned long                       steps_since_filter = 0;
     double                              step               = 0; // s
     double                              way_since_shifting = 0; // cells
+    double                              force = 0; // the largest so far, N
     typename ExternalLoads<dim>::Pieces face_pieces;
   };
 

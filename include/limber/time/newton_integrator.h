@@ -140,6 +140,7 @@ namespace limber
     double       last_step = 0, wave_speed = 0;
     StepExtremes extremes;
 
+    double        largest_force      = 0; // in equilibrium so far, N
     double        lost_between_steps = 0; // J
     double        lost_in_time       = 0; // by generalised-alpha, J
     std::string   obstacle;               // why the last step failed

@@ -46,6 +46,9 @@ namespace limber
     std::vector<double> inertia; // what multiplies displacements, kg/s^2
     // displacement without acceleration, m
     std::vector<double> inertial_displacement;
+    // In equilibrium, N: what is unloaded has no forces at the end to compare
+    // with.
+    double largest_former_force = 0;
   };
 
 
