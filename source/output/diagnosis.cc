@@ -128,6 +128,15 @@ namespace limber
 
 
 
+    /** By its word, as 'auto' may have chosen none. */
+    std::string
+    remedy_for_locking(const KernelKind kernel)
+    {
+      return kernel == KernelKind::linear ? "cell" : "node";
+    }
+
+
+
     template <int dim>
     Diagnosis
     diagnose_wrong(const Symptoms &symptoms, const Problem<dim> &problem)
@@ -142,7 +151,8 @@ namespace limber
                     "in cells of body '" + body.body +
                       "' the pressure scatters by " +
                       brief(body.pressure_scatter) + " times its mean. Set '" +
-                      start + "Locking treatment = auto'."};
+                      start + "Locking treatment = " +
+                      remedy_for_locking(problem.grid.kernel) + "'."};
           if (averaged && body.chequerboard > 1)
             return {"chequerboard",
                     "neighbouring cells of body '" + body.body +
@@ -198,9 +208,12 @@ namespace limber
       return {};
     if (unstable)
       {
-        const Diagnosis found = diagnose_unstable(symptoms, problem);
+        Diagnosis found = diagnose_unstable(symptoms, problem);
         if (!found.mode.empty())
-          return found;
+          {
+            found.is_unstable = true;
+            return found;
+          }
       }
     const Diagnosis found = diagnose_wrong(symptoms, problem);
     if (!found.mode.empty())

@@ -122,7 +122,7 @@ namespace limber
              ", " + brief(figures.adaptation) +
                " J where points were joined or divided" :
              "");
-      line.entry = "Method/Courant number";
+      line.entry = figures.step_entry;
       return line;
     }
 
@@ -146,13 +146,26 @@ namespace limber
       const bool counts = is_elastic && figures.may_hit;
       if (counts && figures.energy_scale > 0)
         line.value = figures.contact / figures.energy_scale;
-      line.verdict = check.verdict(line.value);
-      line.text    = counts ?
-                       percent(line.value) +
-                      " of the energy scale was lost where elastic bodies hit "
-                         "each other, obstacles or sides" :
-                       "no elastic bodies that may hit something";
-      if (line.verdict != Verdict::good)
+      line.verdict       = check.verdict(line.value);
+      const bool created = line.value < 0;
+      line.text =
+        counts ? percent(std::abs(line.value)) + " of the energy scale was " +
+                   (created ? "created" : "lost") +
+                   " where elastic bodies hit each other, obstacles or "
+                   "sides" :
+                 "no elastic bodies that may hit something";
+      if (line.verdict == Verdict::good)
+        return line;
+      const bool is_uneven =
+        std::any_of(figures.bodies.begin(),
+                    figures.bodies.end(),
+                    [](const BodyFigures &body) { return !body.is_cut; });
+      if (created)
+        line.text += std::string(", and contact should create none. Take "
+                                 "smaller cells") +
+                     (is_uneven ? ", or 'Placement = cut'" : "") +
+                     "; smaller steps do not help";
+      else
         line.text += ": points come to rest against what they hit one by one, "
                      "in each impact those of about half a cell. Take smaller "
                      "cells, or a smaller 'Courant number'; for what turns on "
@@ -177,7 +190,7 @@ namespace limber
       if (line.verdict != Verdict::good)
         line.text += ": nodes of hardly any mass at the side move too fast; "
                      "take shorter steps";
-      line.entry = "Method/Courant number";
+      line.entry = figures.step_entry;
       return line;
     }
 

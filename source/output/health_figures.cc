@@ -199,6 +199,9 @@ namespace limber
     figures.put_back        = totals.put_back;
     figures.put_back_way    = totals.put_back_way;
     figures.against_splines = state.problem.grid.against_splines;
+    if (state.problem.method.time_step > 0 ||
+        is_solved_by_newton(state.problem.method.integration))
+      figures.step_entry = "Method/Time step";
 
     const auto unseen = unseen_energy(state);
     for (std::size_t b = 0; b < unseen.size(); ++b)

@@ -110,11 +110,15 @@ namespace limber
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
     integrator->synchronise();
-    const Diagnosis suspected      = look_for_cause(/*unstable=*/true);
-    const bool      a_side_is_open = std::any_of(
+    Diagnosis  suspected      = look_for_cause(/*unstable=*/true);
+    const bool a_side_is_open = std::any_of(
       problem.sides.begin(), problem.sides.end(), [](const Side<dim> &side) {
         return side.held == HeldComponents::none || !side.velocity.empty();
       });
+    // A body that is wrong inside goes through an open side like others.
+    if (failure.kind == FailureKind::lost_points && a_side_is_open &&
+        !suspected.is_unstable)
+      suspected = {};
     std::string message =
       std::string(failure.what()) + " " +
       (suspected.mode.empty() ? usual_cause(failure.kind, a_side_is_open) :

@@ -44,6 +44,7 @@ namespace limber
   {
     std::string mode; // "small cut cell", ...; empty: nothing stands out
     std::string text; // the numbers that show it and the entry to change
+    bool        is_unstable = false; // which ends runs and throws points away
   };
 
   /**

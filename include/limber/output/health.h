@@ -105,6 +105,8 @@ namespace limber
     // Taken or given on record
     double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
            contact = 0, adaptation = 0, sides = 0, loads = 0;
+    // The entry that sets the length of steps
+    std::string step_entry = "Method/Courant number";
   };
 
 

@@ -58,6 +58,7 @@ namespace limber::test
     run.problem.method.transfer = Transfer::aflip;
     const Diagnosis found       = diagnose(seen, run.problem, true);
     EXPECT_EQ(found.mode, "affine velocity");
+    EXPECT_TRUE(found.is_unstable);
     EXPECT_NE(found.text.find("'Method/Transfer = flip'"), std::string::npos);
     run.problem.method.transfer = Transfer::apic; // has a bound
     EXPECT_NE(diagnose(seen, run.problem, true).mode, "affine velocity");
@@ -93,7 +94,13 @@ namespace limber::test
     EXPECT_NEAR(seen.bodies[0].pressure_scatter, 10, 0.1);
     const Diagnosis found = diagnose(seen, run.problem, false);
     EXPECT_EQ(found.mode, "locking");
-    EXPECT_NE(found.text.find("Locking treatment"), std::string::npos);
+    EXPECT_NE(found.text.find("Locking treatment = cell'"), std::string::npos);
+    run.problem.grid.kernel = KernelKind::quadratic;
+    EXPECT_NE(
+      diagnose(seen, run.problem, false).text.find("Locking treatment = node'"),
+      std::string::npos);
+    // which is no reason why points get lost
+    EXPECT_FALSE(diagnose(seen, run.problem, true).is_unstable);
   }
 
 

@@ -104,13 +104,27 @@ namespace limber::test
     figures       = sound();
     figures.drift = -0.2;
     expect_bad("energy", figures, "Courant number");
+    figures.step_entry = "Method/Time step";
+    expect_bad("energy", figures, "Method/Time step");
 
     figures         = sound();
     figures.may_hit = true;
     figures.contact = 15;
     expect_bad("impacts", figures, "Grid/Cells");
+    EXPECT_NE(line("impacts", figures)
+                .text.find("15 % of the energy scale was "
+                           "lost"),
+              std::string::npos);
     figures.contact = -15;
     expect_bad("impacts", figures, "Grid/Cells");
+    HealthLine created = line("impacts", figures);
+    EXPECT_EQ(created.text.find("15 % of the energy scale was created"), 0u)
+      << created.text;
+    EXPECT_EQ(created.text.find("Courant"), std::string::npos) << created.text;
+    EXPECT_NE(created.text.find("Placement = cut"), std::string::npos);
+    figures.bodies[0].is_cut = true;
+    created                  = line("impacts", figures);
+    EXPECT_EQ(created.text.find("Placement"), std::string::npos);
 
     figures              = sound();
     figures.points       = 400;
