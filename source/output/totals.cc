@@ -297,7 +297,12 @@ namespace limber
     dealii::Tensor<1, dim> unexplained =
       totals.all.momentum - start.momentum + ledger.lost_momentum -
       ledger.gravity_impulse - ledger.load_impulse;
+    // Loads in balance have no sum to compare with, but they strain; what that
+    // stores could move the bodies.
+    const double of_strain =
+      std::sqrt(2 * totals.all.mass * std::abs(totals.all.strain_energy));
     double     scale   = std::max({absolute_momentum,
+                                   of_strain,
                                    ledger.gravity_impulse.norm(),
                                    ledger.load_impulse.norm()});
     const auto explain = [&](const dealii::Tensor<1, dim> &impulse) {

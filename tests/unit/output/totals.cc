@@ -102,4 +102,23 @@ namespace limber::test
     EXPECT_NEAR(totals.momentum_error, 0.5, 1e-12);
     EXPECT_NEAR(balance.state().momentum_scale, 500 * 10 * time, 1e-10);
   }
+
+
+
+  /** Tractions that pull at two ends have no sum but round-off. */
+  TEST(Totals, RoundOffOfLoadsInBalanceIsNoErrorOfMomentum)
+  {
+    SampleRun<2> run(false);
+    Balance<2>   balance(run.state);
+    const auto   points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      points.pressure[p] = 1000;
+    run.state.ledger.load_impulse[0] = 1e-13;
+    const Totals<2> totals           = balance.evaluate(run.state);
+    EXPECT_GT(totals.all.strain_energy, 0);
+    EXPECT_LT(totals.momentum_error, 1e-13);
+    EXPECT_NEAR(balance.state().momentum_scale,
+                std::sqrt(2 * 500 * totals.all.strain_energy),
+                1e-10);
+  }
 } // namespace limber::test
