@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
 #include <limber/output/observables.h>
 
 #include <algorithm>
@@ -29,8 +31,21 @@ namespace limber
 
 
 
-    /** The largest coordinate times the sign on this rank; a point is half a
-     * spacing of its size in. */
+    /** How far in from the end of a cell its outermost points are seeded, as a
+     * share of its edge. */
+    template <int dim>
+    double
+    depth_of_points(const Body<dim> &body, const unsigned int axis)
+    {
+      const unsigned int n = body.points_per_cell_edge[axis];
+      return body.placement == Placement::gauss ?
+               dealii::QGauss<1>(n).point(0)[0] :
+               0.5 / n;
+    }
+
+
+
+    /** The largest coordinate times the sign on this rank. */
     template <int dim>
     double
     extreme_of_body(const MaterialBody<dim>    &body,
@@ -41,9 +56,8 @@ namespace limber
       const PointView<dim> points = body.points.view();
       const double *const  x      = points.position[observable.axis];
       const double *const  edge   = points.edge[observable.axis];
-      const double         half =
-        0.5 * grid.edge(observable.axis) /
-        body.description.points_per_cell_edge[observable.axis];
+      const double         half   = grid.edge(observable.axis) *
+                          depth_of_points(body.description, observable.axis);
       const bool has_classes = body.points.has_size_classes();
       const auto half_edge   = [&](const std::size_t p) {
         return edge != nullptr ? 0.5 * edge[p] :

@@ -2,6 +2,7 @@
 #include <limber/output/observables.h>
 
 #include <gtest/gtest.h>
+#include <support/scene_run.h>
 
 #include <cmath>
 
@@ -147,6 +148,45 @@ namespace limber::test
     EXPECT_NEAR(values[1], 0, 1e-14);
     EXPECT_NEAR(values[2], 0.25, 1e-14);
     EXPECT_TRUE(std::isnan(values[3]));
+  }
+
+
+
+  // Points of Gauss stand nearer to the ends of their cells than even ones.
+  TEST(Observables, ExtremesOfPointsOfGaussAreThoseOfTheBody)
+  {
+    for (const std::string n : {"1", "2", "3"})
+      {
+        SceneRun<2> run(R"(
+          set Bodies = bar
+          subsection Body bar
+            subsection Box
+              set Lower corner = 0.25, 0
+              set Upper corner = 1, 0.5
+            end
+            set Placement = gauss
+            set Material = neo hookean
+          end
+          subsection Grid
+            set Upper corner = 2, 1
+            set Cells = 8, 4
+          end
+          set Observables = low, high
+          subsection Observable low
+            set Type = extreme coordinate
+            set Direction = -x
+          end
+          subsection Observable high
+            set Type = extreme coordinate
+            set Direction = x
+          end)",
+                        {"Body bar/Frame=initial",
+                         "Body bar/Points per cell edge=" + n});
+        const auto  values =
+          Observables<2>(run.state()).evaluate(run.state(), run.totals());
+        EXPECT_NEAR(values[0], 0.25, 1e-14) << n;
+        EXPECT_NEAR(values[1], 1, 1e-14) << n;
+      }
   }
 
 
