@@ -144,8 +144,8 @@ namespace limber
 
 
 
-  // When points have got their velocities. Returns the work of gravity, which is
-  // on record as removed by a change of state.
+  // When points have got their velocities. Returns the work of gravity, which
+  // is on record as removed by a change of state.
   template <int dim>
   double
   SemiImplicitIntegrator<dim>::make_room()

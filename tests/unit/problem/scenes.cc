@@ -544,8 +544,7 @@ TEST(Scenes, AutomaticFrameBetweenPlanesOfSymmetry)
       set right = free
       set top = free
     end)";
-  const auto        frame = [&](const std::string &steps,
-                         const std::string &left) {
+  const auto frame = [&](const std::string &steps, const std::string &left) {
     return read_problem<2>(
              SceneFile(ParameterText{block, FileFormat::prm, "scene"},
                        {"Method/Time integration=" + steps,

@@ -366,7 +366,7 @@ TEST(NewtonSteps, WhatIsUnloadedComesBackAndStays)
 // meet the strain jumps, which costs next to nothing.
 TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
 {
-  const std::string bar = R"(
+  const std::string bar  = R"(
       set Points per cell edge = 2
       set Material = linear elastic
       subsection Linear elastic
@@ -417,10 +417,9 @@ TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
       const auto after = run.positions(1);
       double     error = 0;
       for (std::size_t p = 0; p < after.size(); ++p)
-        error =
-          std::max(error,
-                   std::abs((after[p] - before[p])[0] -
-                            1e-3 * (4 / ratio + before[p][0] - 4)));
+        error = std::max(error,
+                         std::abs((after[p] - before[p])[0] -
+                                  1e-3 * (4 / ratio + before[p][0] - 4)));
       EXPECT_LT(error, 2e-3 * 4e-3) << ratio;
     }
 }
