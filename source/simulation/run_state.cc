@@ -97,7 +97,7 @@ namespace limber
   {
     archive &state.wave_speed &state.point_speed &state.displacement &state
       .largest_mass &state.steps_since_filter &state.step &state
-      .way_since_shifting &state.force &state.face_pieces;
+      .way_since_shifting &state.largest_force &state.face_pieces;
   }
 
 

@@ -294,7 +294,8 @@ namespace limber
             steps_since_filter,
             step,
             shifting.way_since(),
-            loads.pieces()};
+            loads.pieces(),
+            0};
   }
 
 

@@ -89,12 +89,12 @@ namespace limber
   NewtonIntegrator<dim>::state() const
   {
     IntegratorState<dim> result;
-    result.wave_speed   = wave_speed;
-    result.point_speed  = std::sqrt(extremes.speed_squared);
-    result.displacement = extremes.displacement;
-    result.step         = next_step;
-    result.force        = largest_force;
-    result.face_pieces  = loads.pieces();
+    result.wave_speed    = wave_speed;
+    result.point_speed   = std::sqrt(extremes.speed_squared);
+    result.displacement  = extremes.displacement;
+    result.step          = next_step;
+    result.largest_force = largest_force;
+    result.face_pieces   = loads.pieces();
     return result;
   }
 
@@ -107,7 +107,7 @@ namespace limber
     extremes.speed_squared = former.point_speed * former.point_speed;
     extremes.displacement  = former.displacement;
     next_step              = std::min(longest, former.step);
-    largest_force          = former.force;
+    largest_force          = former.largest_force;
     loads.restore(former.face_pieces);
     reinit();
   }

@@ -37,8 +37,8 @@ namespace limber
     unsigned long                       steps_since_filter = 0;
     double                              step               = 0; // s
     double                              way_since_shifting = 0; // cells
-    double                              force = 0; // the largest so far, N
     typename ExternalLoads<dim>::Pieces face_pieces;
+    double largest_force = 0; // so far, of steps in equilibrium, N
   };
 
 

@@ -189,15 +189,15 @@ void
 expect_to_go_aside()
 {
   const std::string z = dim == 3 ? ", 0" : "", end = dim == 3 ? ", 0.5" : "";
-  SceneRun<dim>     run(half_full_box(
-    dim,
-    "set Frame = current\nend\nset Bodies = water, lid\n"
-        "subsection Body lid\n set Shape = box\n subsection Box\n"
-        " set Lower corner = 0, 0.4375" +
-      z + "\n set Upper corner = 0.5, 0.75" + end +
-      "\n end\n set Frame = current\n set Placement = cut\n"
-          " set Material = neo hookean\n"));
-  const auto        under_lid = [&]() {
+  SceneRun<dim>     run(
+    half_full_box(dim,
+                  "set Frame = current\nend\nset Bodies = water, lid\n"
+                      "subsection Body lid\n set Shape = box\n subsection Box\n"
+                      " set Lower corner = 0, 0.4375" +
+                    z + "\n set Upper corner = 0.5, 0.75" + end +
+                    "\n end\n set Frame = current\n set Placement = cut\n"
+                        " set Material = neo hookean\n"));
+  const auto under_lid = [&]() {
     const auto points = run.points();
     double     mass   = 0;
     for (std::size_t p = 0; p < points.size; ++p)
