@@ -24,6 +24,7 @@ namespace
       subsection Box
         set Upper corner = 16, 1
       end
+      set Points per cell edge = 2
       set Material = newtonian fluid
       subsection Newtonian fluid
         set Density = 1000
