@@ -7,6 +7,7 @@
 #include <limber/base/text.h>
 #include <limber/base/unforeseen.h>
 #include <limber/output/run_folder.h>
+#include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_problem.h>
 #include <limber/problem/size_estimate.h>
 #include <limber/simulation/command_line.h>
@@ -31,6 +32,7 @@ namespace
   {
     const Problem<dim> problem = read_problem<dim>(scene);
     check_size(problem, Task::run, this_machine(MPI_COMM_WORLD));
+    check_moving_sides(problem);
     for (const std::string &setting : command.overrides)
       console.say("From the command line: " + printable(setting) + ".");
     for (const std::string &warning : scene.warnings())

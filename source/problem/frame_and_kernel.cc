@@ -4,6 +4,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -190,135 +191,6 @@ namespace limber
 
 
     /**
-     * Whether the body ends in a side with a face, not in a line or a corner
-     * as a ball does that lies on the floor.
-     */
-    template <int dim>
-    bool
-    has_face_in(const unsigned int          side,
-                const Body<dim>            &body,
-                const GridDescription<dim> &grid)
-    {
-      constexpr unsigned int samples   = 16;
-      const unsigned int     normal    = side / 2;
-      const Corners<dim>     box       = body.shape->bounding_box();
-      const double           tolerance = 1e-6 * grid.edge(normal);
-
-      dealii::Point<dim> place;
-      place[normal] = side % 2 == 0 ? grid.lower[normal] + tolerance :
-                                      grid.upper[normal] - tolerance;
-      if (place[normal] < box.first[normal] ||
-          place[normal] > box.second[normal])
-        return false;
-      const unsigned int count = dim == 2 ? samples : samples * samples;
-      for (unsigned int i = 0; i < count; ++i)
-        {
-          for (unsigned int d = 0, rest = i; d < dim; ++d)
-            if (d != normal)
-              {
-                place[d] = box.first[d] + (rest % samples + 0.5) / samples *
-                                            (box.second[d] - box.first[d]);
-                rest /= samples;
-              }
-          if (body.shape->contains(place))
-            return true;
-        }
-      return false;
-    }
-
-
-
-    /**
-     * Whether a body on which nothing acts stays clear of the sides for ever,
-     * also if it grows by a fifth: its centre is at rest whatever it does
-     * otherwise. One that flies meets a side in the end, and a run may be
-     * extended. From places on a lattice.
-     */
-    template <int dim>
-    bool
-    stays_clear(const Section      &root,
-                const Body<dim>    &body,
-                const Problem<dim> &problem)
-    {
-      if (problem.loads.body_force || problem.loads.gravity.norm() > 0 ||
-          !root.subsection("Loads").list("Face loads").empty())
-        return false;
-      constexpr unsigned int          n   = dim == 2 ? 64 : 20;
-      const Corners<dim>              box = body.shape->bounding_box();
-      std::vector<dealii::Point<dim>> inside;
-      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
-        {
-          dealii::Point<dim> place;
-          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
-            place[d] = box.first[d] +
-                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
-          if (body.shape->contains(place))
-            inside.push_back(place);
-        }
-      if (inside.empty())
-        return false;
-      dealii::Point<dim>     centre;
-      dealii::Tensor<1, dim> mean; // velocity, m/s
-      double                 fastest = 0, radius = 0;
-      for (const auto &place : inside)
-        {
-          centre += place / double(inside.size());
-          if (body.initial_velocity.empty())
-            continue;
-          const auto velocity = body.initial_velocity.vector(place, 0);
-          mean += velocity / double(inside.size());
-          fastest = std::max(fastest, velocity.norm());
-        }
-      if (mean.norm() > 1e-9 * fastest)
-        return false;
-      for (const auto &place : inside)
-        radius = std::max(radius, place.distance(centre));
-      radius += 0.5 / n * box.first.distance(box.second);
-      for (unsigned int side = 0; side < 2 * dim; ++side)
-        {
-          const unsigned int d    = side / 2;
-          const double       room = side % 2 == 0 ?
-                                      centre[d] - problem.grid.lower[d] :
-                                      problem.grid.upper[d] - centre[d];
-          if (problem.sides[side].held != HeldComponents::none &&
-              room < 1.2 * radius + problem.grid.edge(d))
-            return false;
-        }
-      return true;
-    }
-
-
-
-    /**
-     * Whether a body ends with a face in a side that holds it; or, in steps of
-     * Newton's method, with faces in sides that together hold it against every
-     * translation, as planes of symmetry do. What moves freely may be thrown
-     * off such planes.
-     */
-    template <int dim>
-    bool
-    is_held(const Body<dim> &body, const Problem<dim> &problem)
-    {
-      std::array<bool, dim> holds{};
-      for (unsigned int side = 0; side < 2 * dim; ++side)
-        {
-          const Side<dim> &wall = problem.sides[side];
-          if (wall.held == HeldComponents::none || wall.one_sided ||
-              !has_face_in(side, body, problem.grid))
-            continue;
-          if (wall.held == HeldComponents::all)
-            return true;
-          holds[side / 2] = true;
-        }
-      return is_solved_by_newton(problem.method.integration) &&
-             std::all_of(holds.begin(),
-                         holds.end(),
-                         [](const bool of_direction) { return of_direction; });
-    }
-
-
-
-    /**
      * Why a body may meet something that its initial frame would not notice;
      * empty if it is held or if there is nothing to meet. A side where it may
      * slide is also one from which it may lift.
@@ -341,7 +213,10 @@ namespace limber
                    in_quotes(side_names(dim)[side]);
         }
       return is_held(body, problem) || !walls ||
-                 stays_clear(root, body, problem) ?
+                 stays_clear(
+                   !root.subsection("Loads").list("Face loads").empty(),
+                   body,
+                   problem) ?
                "" :
                "it may meet a side, as none holds it, not all are 'free', and "
                "it is not at rest clear of them";

@@ -88,10 +88,9 @@ namespace limber
     {
       if (method.integration != TimeIntegration::quasi_static)
         return 1;
-      constexpr unsigned int unless_given = 10; // as NewtonIntegrator has it
-      constexpr double       most         = std::numeric_limits<int>::max();
+      constexpr double most = std::numeric_limits<int>::max();
       if (method.time_step == 0)
-        return unless_given;
+        return default_load_steps;
       const double n = std::ceil(end_time / method.time_step * (1 - 1e-9));
       return static_cast<unsigned int>(std::clamp(n, 1., most));
     }

@@ -16,8 +16,6 @@ namespace limber
     // A step that took no more iterations may be followed by a longer one.
     constexpr unsigned int quick  = 5;
     constexpr double       growth = 1.25;
-    // Of a quasi-static run that does not say how long its steps are
-    constexpr double share_of_run = 0.1;
     // Halved more often than this a step will not be found.
     constexpr unsigned int most_halvings = 10;
 
@@ -46,7 +44,7 @@ namespace limber
     , scheme(parts.problem.method.spectral_radius)
     , longest(parts.problem.method.time_step > 0 ?
                 parts.problem.method.time_step :
-                share_of_run * parts.problem.end_time)
+                parts.problem.end_time / default_load_steps)
     , next_step(longest)
   {
     equations.set_pressures(&pressures);

@@ -65,6 +65,9 @@ namespace limber
            integration == TimeIntegration::quasi_static;
   }
 
+  /** Of a quasi-static run whose 'Time step' is 0. */
+  constexpr unsigned int default_load_steps = 10;
+
   /** When in a step the stress follows the motion. */
   enum class StressUpdateOrder
   {

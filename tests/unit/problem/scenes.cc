@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_problem.h>
 
 #include <gtest/gtest.h>
@@ -488,6 +489,49 @@ TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
   EXPECT_EQ(problem.observables[1].second_axis, 2u);
   EXPECT_EQ(problem.observables[1].body, "pin");
   EXPECT_TRUE(problem.output.fields.empty());
+}
+
+
+
+TEST(Scenes, SidesThatMoveInwardLetGoBodiesOfTheCurrentFrame)
+{
+  // An edge is 0.1 m, so that it may move by 0.05 m.
+  const auto check = [](const std::string &velocity, const std::string &frame) {
+    check_moving_sides(read_problem<2>(scene_of(R"(
+      set End time = 2
+      set Bodies = block
+      subsection Body block
+        set Frame = )" + frame + R"(
+      end
+      subsection Boundaries
+        set left  = velocity
+        set right = no slip
+        subsection Side left
+          set Velocity = )" + velocity + R"(
+        end
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end)")));
+  };
+  EXPECT_NO_THROW(check("0.024; 0", "current"));
+  EXPECT_NO_THROW(check("0.026; 0", "initial"));
+  EXPECT_NO_THROW(check("-0.026; 0", "current"));
+  EXPECT_NO_THROW(check("0; 1", "current"));
+  EXPECT_NO_THROW(check("0.04*6*cos(6*t); 0", "current"));
+  for (const std::string velocity :
+       {"0.026; 0", "0.06*6*cos(6*t); 0", "0.06*y; 0"})
+    try
+      {
+        check(velocity, "current");
+        ADD_FAILURE() << velocity;
+      }
+    catch (const InputError &error)
+      {
+        EXPECT_NE(std::string(error.what()).find("'left' moves inward"),
+                  std::string::npos)
+          << error.what();
+      }
 }
 
 

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
+#include <limber/problem/body_at_sides.h>
+#include <limber/problem/read_parts.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace limber
+{
+  namespace
+  {
+    // A side that moves inward by more than that share of an edge lets go what
+    // it holds: its nodes lose the points (doc/theory/boundaries_and_loads.md).
+    constexpr double reach_of_side = 0.5;
+
+
+
+    /** How far a side moves inward until @p end (s) at most, m. */
+    template <int dim>
+    double
+    farthest_inward(const unsigned int          side,
+                    const Formula<dim>         &velocity,
+                    const GridDescription<dim> &grid,
+                    const double                end)
+    {
+      constexpr unsigned int instants = 4000, places = dim == 2 ? 9 : 5;
+      const unsigned int     normal = side / 2;
+      const double           inward = side % 2 == 0 ? 1 : -1;
+      const double           dt     = end / instants;
+      double                 result = 0;
+      for (unsigned int i = 0; i < dealii::Utilities::pow(places, dim - 1); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d)
+            if (d == normal)
+              place[d] = side % 2 == 0 ? grid.lower[d] : grid.upper[d];
+            else
+              {
+                place[d] = grid.lower[d] + (rest % places) / (places - 1.) *
+                                             (grid.upper[d] - grid.lower[d]);
+                rest /= places;
+              }
+          double way = 0;
+          for (unsigned int n = 0; n < instants; ++n)
+            {
+              const double time = (n + 0.5) * dt;
+              if (velocity.is_finite(place, time))
+                way += inward * velocity.value(place, time, normal) * dt;
+              result = std::max(result, way);
+            }
+        }
+      return result;
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  bool
+  has_face_in(const unsigned int          side,
+              const Body<dim>            &body,
+              const GridDescription<dim> &grid)
+  {
+    constexpr unsigned int samples   = 16;
+    const unsigned int     normal    = side / 2;
+    const Corners<dim>     box       = body.shape->bounding_box();
+    const double           tolerance = 1e-6 * grid.edge(normal);
+
+    dealii::Point<dim> place;
+    place[normal] = side % 2 == 0 ? grid.lower[normal] + tolerance :
+                                    grid.upper[normal] - tolerance;
+    if (place[normal] < box.first[normal] || place[normal] > box.second[normal])
+      return false;
+    const unsigned int count = dim == 2 ? samples : samples * samples;
+    for (unsigned int i = 0; i < count; ++i)
+      {
+        for (unsigned int d = 0, rest = i; d < dim; ++d)
+          if (d != normal)
+            {
+              place[d] = box.first[d] + (rest % samples + 0.5) / samples *
+                                          (box.second[d] - box.first[d]);
+              rest /= samples;
+            }
+        if (body.shape->contains(place))
+          return true;
+      }
+    return false;
+  }
+
+
+
+  template <int dim>
+  bool
+  stays_clear(const bool          face_loads,
+              const Body<dim>    &body,
+              const Problem<dim> &problem)
+  {
+    if (problem.loads.body_force || problem.loads.gravity.norm() > 0 ||
+        face_loads)
+      return false;
+    constexpr unsigned int          n   = dim == 2 ? 64 : 20;
+    const Corners<dim>              box = body.shape->bounding_box();
+    std::vector<dealii::Point<dim>> inside;
+    for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
+      {
+        dealii::Point<dim> place;
+        for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
+          place[d] = box.first[d] +
+                     (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+        if (body.shape->contains(place))
+          inside.push_back(place);
+      }
+    if (inside.empty())
+      return false;
+    dealii::Point<dim>     centre;
+    dealii::Tensor<1, dim> mean; // velocity, m/s
+    double                 fastest = 0, radius = 0;
+    for (const auto &place : inside)
+      {
+        centre += place / double(inside.size());
+        if (body.initial_velocity.empty())
+          continue;
+        const auto velocity = body.initial_velocity.vector(place, 0);
+        mean += velocity / double(inside.size());
+        fastest = std::max(fastest, velocity.norm());
+      }
+    if (mean.norm() > 1e-9 * fastest)
+      return false;
+    for (const auto &place : inside)
+      radius = std::max(radius, place.distance(centre));
+    radius += 0.5 / n * box.first.distance(box.second);
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      {
+        const unsigned int d = side / 2;
+        const double room = side % 2 == 0 ? centre[d] - problem.grid.lower[d] :
+                                            problem.grid.upper[d] - centre[d];
+        if (problem.sides[side].held != HeldComponents::none &&
+            room < 1.2 * radius + problem.grid.edge(d))
+          return false;
+      }
+    return true;
+  }
+
+
+
+  template <int dim>
+  bool
+  is_held(const Body<dim> &body, const Problem<dim> &problem)
+  {
+    std::array<bool, dim> holds{};
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      {
+        const Side<dim> &wall = problem.sides[side];
+        if (wall.held == HeldComponents::none || wall.one_sided ||
+            !has_face_in(side, body, problem.grid))
+          continue;
+        if (wall.held == HeldComponents::all)
+          return true;
+        holds[side / 2] = true;
+      }
+    return is_solved_by_newton(problem.method.integration) &&
+           std::all_of(holds.begin(), holds.end(), [](const bool of_direction) {
+             return of_direction;
+           });
+  }
+
+
+
+  template <int dim>
+  void
+  check_moving_sides(const Problem<dim> &problem)
+  {
+    const auto body = std::find_if(problem.bodies.begin(),
+                                   problem.bodies.end(),
+                                   [](const Body<dim> &candidate) {
+                                     return candidate.frame == Frame::current;
+                                   });
+    if (body == problem.bodies.end())
+      return;
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      {
+        const Formula<dim> &velocity = problem.sides[side].velocity;
+        if (velocity.empty() || velocity.is_zero())
+          continue;
+        const double way =
+          farthest_inward(side, velocity, problem.grid, problem.end_time);
+        const double edge = problem.grid.finest_edge(side / 2);
+        if (way > reach_of_side * edge)
+          throw InputError(
+            "The side '" + side_names(dim)[side] + "' moves inward by " +
+            brief(way) + " m, " + brief(way / edge) +
+            " cells: after half a cell it lets go of body " +
+            in_quotes(body->name) +
+            ". Use an obstacle 'half-space' that moves ('Displacement') with "
+            "'Law = stick', or 'Body " +
+            body->name + "/Frame = initial'.");
+      }
+  }
+
+
+
+  template bool
+  has_face_in(unsigned int, const Body<2> &, const GridDescription<2> &);
+  template bool
+  stays_clear(bool, const Body<2> &, const Problem<2> &);
+  template bool
+  is_held(const Body<2> &, const Problem<2> &);
+  template void
+  check_moving_sides(const Problem<2> &);
+  template bool
+  has_face_in(unsigned int, const Body<3> &, const GridDescription<3> &);
+  template bool
+  stays_clear(bool, const Body<3> &, const Problem<3> &);
+  template bool
+  is_held(const Body<3> &, const Problem<3> &);
+  template void
+  check_moving_sides(const Problem<3> &);
+} // namespace limber
