@@ -217,6 +217,12 @@ def check_ending(path, endings=ENDINGS):
     if path.suffix.lower() not in endings:
         fail(f"The picture '{path}' must end in {', '.join(endings[:-1])} or "
              f"{endings[-1]}; its ending says what is written.")
+    if not os.access(path.parent, os.W_OK | os.X_OK) or path.is_dir():
+        fail(f"The picture '{path}' cannot be written: "
+             + ("that is a folder." if path.is_dir() else
+                f"there is no folder '{path.parent}'. Usually it is misspelt."
+                if not path.parent.is_dir() else
+                f"the folder '{path.parent}' is not open to you."))
     return path
 
 
@@ -224,16 +230,19 @@ def save(figure, path, close=True, pixels=1600, **options):
     """Writes beside the place and moves there: a picture that is there is
     replaced by a whole one or stays. pixels: the width of a PNG."""
     path = Path(path)
-    handle, scratch = tempfile.mkstemp(suffix=path.suffix, dir=path.parent)
-    os.close(handle)
     try:
-        figure.savefig(scratch, dpi=pixels / figure.get_size_inches()[0],
-                       **options)
-        os.chmod(scratch, 0o666 & ~_mask())
-        os.replace(scratch, path)
-    except BaseException:
-        os.unlink(scratch)
-        raise
+        handle, scratch = tempfile.mkstemp(suffix=path.suffix, dir=path.parent)
+        os.close(handle)
+        try:
+            figure.savefig(scratch, dpi=pixels / figure.get_size_inches()[0],
+                           **options)
+            os.chmod(scratch, 0o666 & ~_mask())
+            os.replace(scratch, path)
+        except BaseException:
+            os.unlink(scratch)
+            raise
+    except OSError as error:
+        fail(f"The picture '{path}' cannot be written: {error.strerror}.")
     if close:
         plt.close(figure)
     print(path)

@@ -99,18 +99,39 @@ class Source:
         at = ((places[:, :2] - low) / fine).astype(int)
         return width[tuple(np.clip(at, 0, np.array(width.shape) - 1).T)]
 
-    def spacing(self, cloud, body=None):
-        """Mean distance of neighbouring points at the start, in m."""
+    def spacing(self, body=None):
+        """Distance of neighbouring points at the start in a cell of the largest
+        size that the body fills, in m."""
         p = self.parameters
         lower, upper, cells = (
-            run_folder.numbers(p[f"Grid/{name}"])
+            run_folder.numbers(p[f"Grid/{name}"])[:self.dimension]
             for name in ("Lower corner", "Upper corner", "Cells"))
-        edge = ((upper - lower) / cells)[:self.dimension]
-        name = body or (self.bodies[0] if self.bodies else "")
-        per_edge = p.get(f"Body {name}/Points per cell edge", "2")
-        numbers = run_folder.numbers(per_edge) if re.match(
-            r"[\d.,; ]+$", per_edge) else np.array([2.])
-        return float(np.prod(edge)**(1 / len(edge)) / numbers.mean())
+        edge = (upper - lower) / cells
+        per_edge = p.get(
+            f"Body {body or (self.bodies or [''])[0]}/Points per cell edge", "2")
+        if re.match(r"[\d.,; ]+$", per_edge):
+            number = run_folder.numbers(per_edge).mean()
+        elif self.is_reference:
+            number = 2.
+        else:
+            number = self._points_per_edge(body, lower, edge)
+        return float(np.prod(edge)**(1 / self.dimension) / number)
+
+    def flows(self, body=None):
+        """Whether a body, or else all of them, is a liquid."""
+        return all(self.parameters.get(f"Body {name}/Material") ==
+                   "newtonian fluid" for name in ([body] if body else self.bodies))
+
+    def _points_per_edge(self, body, lower, edge):
+        """What 'auto' has become: by the fuller half of the cells at the start."""
+        cloud = of_body(self.at(0), self, body)
+        place = np.array(cloud["position"], float)
+        cell = ((place[:, :self.dimension] - lower) / edge).astype(int)
+        share = self.shrinking(0, place)**self.dimension  # of a large cell
+        _, of = np.unique(cell, axis=0, return_inverse=True)
+        counts = np.bincount(of.ravel(), weights=share)
+        fuller = counts[counts >= np.median(counts)]
+        return max(1., np.round(np.median(fuller)**(1 / self.dimension)))
 
 
 def names_of(cloud):

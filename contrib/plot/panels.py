@@ -34,14 +34,20 @@ class State:
             self.start = self.place - move
             self.place = self.start + look.enlarge * move
         self.cells = source.cells(index) if look.grid else None
-        self.spacing = source.spacing(cloud, look.body)
+        self.spacing = self._size(look.body)
         self.sizes = np.full(len(self.place), self.spacing)  # one a point
         if "body" in cloud and look.body is None:
-            own = [source.spacing(cloud, name) for name in source.bodies]
+            own = [self._size(name) for name in source.bodies]
             self.sizes = np.array(own)[np.round(cloud["body"]).astype(int)]
         # Points of fine cells are small.
         self.sizes = self.sizes * source.shrinking(
             index, np.array(cloud["position"], float))
+
+    def _size(self, body):
+        """Of what is drawn for a point. A liquid parts its points, and would be
+        full of gaps."""
+        return self.source.spacing(body) * (
+            1.5 if self.source.flows(body) else 1)
 
 
 class Look:
@@ -136,8 +142,8 @@ def draw(axis, state, look):
     if state.source.is_reference:
         _draw_elements(axis, state, look)
     else:
-        # Squares: their rows have straight edges. No gaps up to a stretch of 1.45,
-        # nor where the lattice has turned by whatever angle.
+        # Squares: their rows have straight edges. No gaps up to that stretch, nor
+        # where the lattice has turned by whatever angle.
         half = 0.5 * 1.45 * state.sizes[:, None, None]
         corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         dots = PolyCollection(

@@ -87,19 +87,20 @@ namespace limber
 
 
 
-    /** Distance of the points of 'regular', m. */
+    /** Distance of the points of 'regular', m, in cells with that edge. */
     template <int dim>
     double
-    spacing_along(const unsigned int          direction,
-                  const Body<dim>            &body,
-                  const GridDescription<dim> &grid)
+    spacing_along(const unsigned int direction,
+                  const double       edge,
+                  const Body<dim>   &body)
     {
-      return grid.finest_edge(direction) / body.points_per_cell_edge[direction];
+      return edge / body.points_per_cell_edge[direction];
     }
 
 
 
-    /** Spacings of points that the longest edge of a direction has room for. */
+    /** Spacings of points in the smallest cells that the longest edge of a
+     * direction has room for. */
     template <int dim>
     unsigned int
     parts_of_edges(const BlockShape<dim>      &block,
@@ -115,7 +116,8 @@ namespace limber
           double square = 0;
           for (unsigned int d = 0; d < dim; ++d)
             {
-              const double spacing = spacing_along(d, body, grid);
+              const double spacing =
+                spacing_along(d, grid.finest_edge(d), body);
               square += edge[d] / spacing * edge[d] / spacing;
             }
           longest = std::max(longest, std::sqrt(square));
@@ -126,7 +128,8 @@ namespace limber
 
 
 
-    /** Whether faces across the axes lie where parts of 'regular' end. */
+    /** Whether faces across the axes lie where parts of 'regular' end, in cells
+     * of whichever size. */
     template <int dim>
     bool
     is_in_lattice(const BlockShape<dim>      &block,
@@ -138,7 +141,7 @@ namespace limber
         for (const double face : {box.first[d], box.second[d]})
           {
             const double parts =
-              (face - grid.lower[d]) / spacing_along(d, body, grid);
+              (face - grid.lower[d]) / spacing_along(d, grid.edge(d), body);
             if (std::abs(parts - std::round(parts)) > 1e-6)
               return false;
           }
@@ -147,7 +150,8 @@ namespace limber
 
 
 
-    /** Volume of the parts of 'regular' in an upright block over its own. */
+    /** Volume of the parts of 'regular' in an upright block, in the largest
+     * cells, over its own. */
     template <int dim>
     double
     filled_by_regular(const BlockShape<dim>      &block,
@@ -159,7 +163,7 @@ namespace limber
       double             result    = 1;
       for (unsigned int d = 0; d < dim; ++d)
         {
-          const double spacing = spacing_along(d, body, grid);
+          const double spacing = spacing_along(d, grid.edge(d), body);
           const double first   = std::ceil(
             (box.first[d] - grid.lower[d]) / spacing - 0.5 - tolerance);
           const double last = std::floor(
@@ -229,7 +233,7 @@ namespace limber
         return choose(Placement::fitted,
                       "fitted",
                       "'Points along edges' are given");
-      if (body.is_liquid && beside_obstacles && problem.grid.levels == 0 &&
+      if (body.is_liquid && beside_obstacles &&
           problem.grid.kernel == KernelKind::linear &&
           (block != nullptr ?
              !is_upright(*block) || !is_in_lattice(*block, body, problem.grid) :
@@ -238,7 +242,10 @@ namespace limber
                       "cut",
                       "a liquid beside obstacles rests with the mass of what "
                       "it fills");
-      if (body.is_liquid || problem.grid.levels > 0)
+      // 'fitted', which solids with domains or in contact may need, does not
+      // go with cells of several sizes.
+      if (body.is_liquid || (problem.grid.levels > 0 &&
+                             (touches || has_domains(problem.grid.kernel))))
         return;
       const bool stays    = body.frame == Frame::initial && !touches;
       const bool is_round = block == nullptr && has_curved_surface(*body.shape);

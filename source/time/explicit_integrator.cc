@@ -212,7 +212,11 @@ namespace limber
   double
   ExplicitIntegrator<dim>::largest_displacement() const
   {
-    return extremes.displacement;
+    // Points of large cells go the furthest in small ones.
+    return parts.grid.has_levels() ?
+             std::max(extremes.displacement,
+                      point_speed * step / parts.grid.smallest_edge) :
+             extremes.displacement;
   }
 
 

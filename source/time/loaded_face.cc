@@ -47,24 +47,55 @@ namespace limber
 
 
     // A splinter of a cut body cannot bear the load of a whole piece: carriers
-    // have at least this share of the mass of the heaviest point near by.
+    // have at least this share of the mass of the heaviest point near by, both
+    // as if they had been made for cells of the same size.
     constexpr double least_share_of_piece = 0.25;
 
 
 
     /**
-     * A point that may carry a piece: distance, place, id. Distances are
-     * rounded to a billionth of a cell, so that of points at equal distance
-     * the first by coordinates wins on any number of ranks.
+     * A point that may carry a piece: whether that is in another cell,
+     * distance, place, id. Distances are rounded to a billionth of a cell, so
+     * that of points at equal distance the first by coordinates wins on any
+     * number of ranks.
      */
     template <int dim>
-    using Candidate = std::array<double, 2 + dim>;
+    using Candidate = std::array<double, 3 + dim>;
+
+
+
+    /**
+     * Whether a piece lies in the cell of a point, or in its boundary. Beside
+     * larger cells the nearest point may be in a smaller one, whose nodes would
+     * get what those of the larger one hold.
+     */
+    template <int dim>
+    bool
+    is_in_cell_of(const dealii::Point<dim>  &place,
+                  const unsigned int         level,
+                  const FacePiece<dim>      &piece,
+                  const BackgroundGrid<dim> &grid)
+    {
+      const auto &box = grid.description;
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double edge = box.edge(d) / (1u << level);
+          const double lower =
+            box.lower[d] + std::floor((place[d] - box.lower[d]) / edge) * edge;
+          if (std::abs(piece.reference[d] - lower - 0.5 * edge) >
+              (0.5 + 1e-6) * edge)
+            return false;
+        }
+      return true;
+    }
 
 
 
     /**
      * By local number of a cell, the pieces in it and in its neighbours,
-     * whichever their size.
+     * whichever their size. A step into these is a bit shorter than they are:
+     * from a face between two cells a full one would end in the next cell or,
+     * by round-off, in the one behind.
      */
     template <int dim>
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
@@ -72,8 +103,9 @@ namespace limber
                       const BackgroundGrid<dim>         &grid)
     {
       std::unordered_map<std::uint32_t, std::vector<unsigned int>> result;
-      const unsigned int n_neighbours = dim == 2 ? 9 : 27;
-      const auto        &box          = grid.description;
+      constexpr unsigned int n_neighbours = dim == 2 ? 9 : 27;
+      constexpr double       step         = 1 - 1e-3; // edges
+      const auto            &box          = grid.description;
       for (unsigned int i = 0; i < pieces.size(); ++i)
         for (unsigned int level = 0; level <= box.levels; ++level)
           for (unsigned int k = 0; k < n_neighbours; ++k)
@@ -82,9 +114,8 @@ namespace limber
               unsigned int            rest = k;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  x[d] = pieces[i].reference[d] +
-                         (int(rest % 3) - 1) * (box.upper[d] - box.lower[d]) /
-                           (box.cells[d] << level);
+                  x[d] = pieces[i].reference[d] + (int(rest % 3) - 1) * step *
+                                                    box.edge(d) / (1u << level);
                   rest /= 3;
                 }
               const std::uint32_t cell = grid.bins.cell_at(x);
@@ -153,27 +184,31 @@ namespace limber
         }
     };
 
+    const auto in_large_cell = [&](const std::size_t p) {
+      return std::ldexp(points.mass[p], dim * body.points.size_class(p));
+    };
     std::vector<double> heaviest(all.size(), 0.);
     for_each_neighbour([&](const std::size_t p, const unsigned int i) {
-      heaviest[i] = std::max(heaviest[i], points.mass[p]);
+      heaviest[i] = std::max(heaviest[i], in_large_cell(p));
     });
     dealii::Utilities::MPI::max(heaviest, grid.communicator, heaviest);
 
     std::vector<Candidate<dim>> best(all.size(), nobody);
     for_each_neighbour([&](const std::size_t p, const unsigned int i) {
-      if (points.mass[p] < least_share_of_piece * heaviest[i])
+      if (in_large_cell(p) < least_share_of_piece * heaviest[i])
         return;
-      Candidate<dim> candidate{};
-      double         square = 0;
+      Candidate<dim>     candidate{};
+      dealii::Point<dim> place;
       for (unsigned int d = 0; d < dim; ++d)
-        {
-          const double x   = points.position[d][p];
-          candidate[1 + d] = x;
-          square += (x - all[i].reference[d]) * (x - all[i].reference[d]);
-        }
+        place[d] = points.position[d][p];
       candidate[0] =
-        std::round(std::sqrt(square) / (1e-9 * grid.smallest_edge));
-      candidate[1 + dim] = body.points.id(p);
+        grid.has_levels() &&
+        !is_in_cell_of(place, grid.level_of(points.cell[p]), all[i], grid);
+      candidate[1] = std::round(place.distance(all[i].reference) /
+                                (1e-9 * grid.smallest_edge));
+      for (unsigned int d = 0; d < dim; ++d)
+        candidate[2 + d] = place[d];
+      candidate[2 + dim] = body.points.id(p);
       best[i]            = std::min(best[i], candidate);
     });
 
@@ -193,9 +228,9 @@ namespace limber
                            "' within one cell of its surface. Usually the body "
                            "is thinner than a spacing; enlarge it, or set more "
                            "'Points per cell edge', for instance 4.");
-        all[i].carrier = static_cast<std::uint64_t>(best[i][1 + dim]);
+        all[i].carrier = static_cast<std::uint64_t>(best[i][2 + dim]);
         for (unsigned int d = 0; d < dim; ++d)
-          all[i].arm[d] -= best[i][1 + d];
+          all[i].arm[d] -= best[i][2 + d];
       }
   }
 

@@ -114,6 +114,19 @@ class Plots(unittest.TestCase):
         self.refused("There is no body 'jello'", "plot", self.home / "two",
                      "--body", "jello")
 
+    def test_points_are_as_far_apart_as_the_program_chose(self):
+        for kernel, number in (("linear", 2), ("quadratic", 3)):
+            folder = self.home / kernel
+            limber(TOP / "prm/benchmarks/block_2d.prm", *SHORT,
+                   "--output-directory", folder, "--set",
+                   f"Method/Kernel={kernel}", "--set", "Body block/Points per "
+                   "cell edge=auto", "--set", "Body block/Frame=current")
+            said = subprocess.run(
+                [SYSTEM, "-c", f"import sys; sys.path.append('{SCRIPTS}'); "
+                 f"import fields; print(fields.Source('{folder}').spacing())"],
+                text=True, capture_output=True, check=True).stdout
+            self.assertAlmostEqual(float(said), 1.24 / 16 / number)
+
     def refused(self, expected, *words, **options):
         said = limber(*words, expected=1, **options)
         self.assertIn(expected, said)
@@ -128,6 +141,8 @@ class Plots(unittest.TestCase):
         self.refused("There is no column 'mas'", "plot", run, "--columns",
                      "mas", "--output", path)
         self.refused("There is no folder", "plot", run / "none")
+        self.refused("there is no folder", "plot", run, "--output",
+                     self.home / "none/picture.png")
         self.refused("is not that of a run", "plot", self.home)
         self.refused("unrecognized arguments", "plot", run, "--filed", "mass")
         self.assertEqual(path.read_bytes(), b"as it was")

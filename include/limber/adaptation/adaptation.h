@@ -52,7 +52,8 @@ namespace limber
 
     /**
      * To be called once per step, with the largest way of a point in the last
-     * one, in edges of its cell: whether it is time to ask the criteria again.
+     * one, in edges of the smallest cells: whether it is time to ask the
+     * criteria again.
      */
     bool
     is_due(double displacement);

@@ -116,7 +116,8 @@ namespace limber
     virtual double
     imbalance() const = 0;
 
-    /** Largest way of a point in the last step, in edges of its cell. */
+    /** Bound of the largest way of a point in the last step, in edges of the
+     * smallest cells. */
     virtual double
     largest_displacement() const = 0;
 

@@ -60,7 +60,7 @@ namespace limber
     double
     largest_displacement() const override
     {
-      return extremes.displacement;
+      return extremes.displacement * (1u << parts.problem.grid.levels);
     }
     bool
     points_were_lost() const override

@@ -389,7 +389,8 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
         end
       end)";
   const auto        placement = [&](const std::string &upper_corner,
-                             const bool         bounded) {
+                             const bool         bounded,
+                             const unsigned int levels = 0) {
     return read_problem<2>(scene_of(R"(
       set Bodies = water
       subsection Body water
@@ -409,6 +410,14 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
       subsection Grid
         set Upper corner = 1, 1
         set Cells        = 8, 8
+        set Levels       = )" + std::to_string(levels) +
+                                    (levels > 0 ? R"(
+        set Refine       = all
+        subsection Refine all
+          set Upper corner = 1, 0.5
+        end)" :
+                                                         "") +
+                                    R"(
       end)" + (bounded ? wall : "")))
       .bodies[0]
       .placement;
@@ -416,6 +425,8 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
   EXPECT_EQ(placement("0.73, 0.5", true), Placement::cut);
   EXPECT_EQ(placement("0.6875, 0.5", true), Placement::regular);
   EXPECT_EQ(placement("0.73, 0.5", false), Placement::regular);
+  EXPECT_EQ(placement("0.6875, 0.5", true, 1), Placement::regular);
+  EXPECT_EQ(placement("0.71875, 0.5", true, 1), Placement::cut);
 }
 
 

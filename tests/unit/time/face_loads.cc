@@ -306,3 +306,69 @@ TYPED_TEST(FaceLoads, ABoxAsABlockIsTheSameBody)
                   1e-10 * wanted.all.mass_moment.norm());
       }
 }
+
+
+
+// A block that a pressure on its top holds the stress of, with cells of three
+// sizes under that face: whichever points carry the load, in fine cells or
+// beside coarse ones, nothing moves. The face lies between two rows of cells,
+// where round-off decides which of them it belongs to.
+TEST(FaceLoadsOnLevels, APressureHoldsTheStressThatItBrings)
+{
+  const auto largest_speed = [](const auto dimension, const double height) {
+    constexpr int     dim = decltype(dimension)::value;
+    const std::string z = dim == 3 ? ", 0.4" : "", y = digits(height);
+    SceneRun<dim>     run("set Dimension = " + std::to_string(dim) + R"(
+      set Bodies = block
+      subsection Body block
+        set Material       = linear elastic
+        set Initial stress = xx: -5; yy: -10; zz: -5
+        subsection Box
+          set Upper corner = 1, )" +
+                      y + z + R"(
+        end
+        subsection Linear elastic
+          set Density         = 1000
+          set Young's modulus = 1e6
+        end
+      end
+      subsection Grid
+        set Upper corner = 1, 1)" +
+                      z + R"(
+        set Cells  = 10, 10)" +
+                      (dim == 3 ? ", 4" : "") + R"(
+        set Levels = 2
+        set Refine = middle
+        subsection Refine middle
+          set Lower corner = 0.45, 0.4)" +
+                      (dim == 3 ? ", 0" : "") + R"(
+          set Upper corner = 0.55, 0.8)" +
+                      (dim == 3 ? ", 0.1" : "") + R"(
+        end
+      end
+      subsection Loads
+        set Face loads = weight
+        subsection Face load weight
+          set Body     = block
+          set Face     = top
+          set Pressure = 10
+        end
+      end)");
+    run.advance(run.integrator.longest_step(), 5);
+    double result = 0;
+    for (std::size_t p = 0; p < run.points().size; ++p)
+      result = std::max(result, run.velocity(p).norm());
+    return result;
+  };
+  // s / (rho c) of a free face
+  const double speed_of_wave = 2.7e-4;
+  for (const double height : {0.5, 0.6, 0.7, 0.8})
+    {
+      EXPECT_LT(largest_speed(std::integral_constant<int, 2>(), height),
+                1e-9 * speed_of_wave)
+        << height;
+      EXPECT_LT(largest_speed(std::integral_constant<int, 3>(), height),
+                1e-9 * speed_of_wave)
+        << height;
+    }
+}
