@@ -107,12 +107,13 @@ namespace limber
     for_each_open_simplex(distances, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    if (cell.open <
-        (is_layer(number, distances) ? least_of_layer : least_share))
+    const bool layer = is_layer(number, distances);
+    if (cell.open < (layer ? least_of_layer : least_share))
       {
-        kinds[number] = !(cell.open > 0)        ? covered :
-                        cell.open < least_share ? closed_to_a_rest :
-                                                  closed;
+        kinds[number] = !(cell.open > 0) ? covered :
+                        cell.open < (layer ? rest_of_layer : least_share) ?
+                                           closed_to_a_rest :
+                                           closed;
         return;
       }
     finish_volume(cell);
@@ -172,17 +173,16 @@ namespace limber
                                const Distances &distances,
                                const Places    &places) const
   {
-    const auto is_shut = [&](const unsigned int direction,
-                             const unsigned int end) {
-      const std::uint32_t next = neighbour(cell.number, direction, end);
-      return next != invalid_cell && is_closed(next);
-    };
-    std::array<std::array<bool, 2>, dim> shut;
+    // closed, closed to a rest, or neither
+    std::array<std::array<std::uint32_t, 2>, dim> next;
     for (unsigned int d = 0; d < dim; ++d)
       for (const unsigned int end : {0, 1})
-        shut[d][end] = is_shut(d, end);
-    const auto is_bound = [&](const Simplex     &simplex,
-                              const unsigned int opposite) {
+        {
+          const std::uint32_t number = neighbour(cell.number, d, end);
+          next[d][end] = number == invalid_cell ? open : kinds[number];
+        }
+    const auto kind_of = [&](const Simplex     &simplex,
+                             const unsigned int opposite) -> std::uint32_t {
       bool                                 in_obstacle = true;
       std::array<std::array<bool, 2>, dim> in_face;
       for (auto &ends : in_face)
@@ -196,16 +196,19 @@ namespace limber
                 in_face[d][end] =
                   in_face[d][end] && simplex.corners[k][d] == end;
           }
-      bool result = in_obstacle;
+      if (in_obstacle)
+        return covered;
       for (unsigned int d = 0; d < dim; ++d)
         for (const unsigned int end : {0, 1})
-          result = result || (in_face[d][end] && shut[d][end]);
-      return result;
+          if (in_face[d][end] &&
+              (next[d][end] == closed || next[d][end] == closed_to_a_rest))
+            return next[d][end];
+      return open;
     };
     for_each_open_simplex(distances, [&](const Simplex &simplex) {
       for (unsigned int k = 0; k <= dim; ++k)
-        if (is_bound(simplex, k))
-          add_surface(simplex, k, places, cell);
+        if (const std::uint32_t kind = kind_of(simplex, k); kind != open)
+          add_surface(simplex, k, kind == closed_to_a_rest, places, cell);
     });
     for (Surface &surface : cell.surfaces)
       {
@@ -386,11 +389,14 @@ namespace limber
 
 
 
-  // The facet opposite to a corner that is open.
+  // The facet opposite to a corner that is open. Before a rest, which has no
+  // pressure, it stands for the wall behind: what is along that passes, and of
+  // both faces of a tip the pressures along it cancel.
   template <int dim>
   void
   CutCells<dim>::add_surface(const Simplex     &simplex,
                              const unsigned int opposite,
+                             const bool         before_a_rest,
                              const Places      &places,
                              Cell              &cell) const
   {
@@ -414,6 +420,22 @@ namespace limber
         0.5 * dealii::cross_product_3d(along, in_metres(facet[2] - facet[0]));
     if (normal * in_metres(simplex.corners[opposite] - facet[0]) < 0)
       normal = -normal;
+    dealii::Point<dim> centre;
+    for (const auto &corner : facet)
+      for (unsigned int d = 0; d < dim; ++d)
+        centre[d] += corner[d] / dim;
+    centre                     = place_at(centre, geometry);
+    unsigned int obstacle      = 0;
+    auto         from_obstacle = places[0].distance(centre);
+    for (unsigned int o = 1; o < places.size(); ++o)
+      if (const auto from = places[o].distance(centre);
+          std::abs(from.value) < std::abs(from_obstacle.value))
+        {
+          obstacle      = o;
+          from_obstacle = from;
+        }
+    if (before_a_rest)
+      normal = (normal * from_obstacle.normal) * from_obstacle.normal;
     const double area = normal.norm();
     if (!(area > 0))
       return;
@@ -440,14 +462,6 @@ namespace limber
               (weight / area * at_place.value[a] * depth) * normal;
           }
         middle += weight * place_at(xi, geometry);
-      }
-    unsigned int obstacle = 0;
-    for (unsigned int o = 1; o < places.size(); ++o)
-      {
-        const dealii::Point<dim> x = middle / area;
-        if (std::abs(places[o].distance(x).value) <
-            std::abs(places[obstacle].distance(x).value))
-          obstacle = o;
       }
     const auto same = [&](const Surface &surface) {
       return surface.obstacle == obstacle &&

@@ -26,10 +26,10 @@ namespace limber
    * grows with the depth adds to that is known as well, see Cell::hydrostatic.
    *
    * A cell that is open by less than least_open() counts as closed, a layer
-   * across an axis by less than least_open_layer().
-   * Faces towards such cells are surfaces of others that are cut; else their
-   * nodes are held one by one, see ObstacleContact. Theory:
-   * doc/theory/obstacles.md.
+   * across an axis by less than least_open_layer(). Faces towards such cells
+   * are surfaces of others that are cut, with their own normals before a layer
+   * and with the part along that of the obstacle before a tip; else their nodes
+   * are held one by one, see ObstacleContact. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells
@@ -279,6 +279,7 @@ namespace limber
     void
     add_surface(const Simplex &simplex,
                 unsigned int   opposite,
+                bool           before_a_rest,
                 const Places  &places,
                 Cell          &cell) const;
     std::uint32_t
@@ -308,8 +309,8 @@ namespace limber
     // Of the cells that are being found anew, in their order
     std::vector<Distances>  distances_of_cells;
     const bool              is_implicit; // the pressure
-    static constexpr double least_share    = 0.01;
-    double                  least_of_layer = least_share;
+    static constexpr double least_share = 1e-3, rest_of_layer = 0.01;
+    double                  least_of_layer = rest_of_layer;
     // Below it a cell is too stiff for the step: C^2 / 4, with the Courant
     // number C; 0 where the pressure is implicit
     double       stiff_share = 0;
