@@ -107,13 +107,12 @@ namespace limber
     for_each_open_simplex(distances, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    const bool layer = is_layer(number, distances);
-    if (cell.open < (layer ? least_of_layer : least_share))
+    if (cell.open <
+        (is_layer(number, distances) ? least_of_layer : least_share))
       {
-        kinds[number] = !(cell.open > 0) ? covered :
-                        cell.open < (layer ? rest_of_layer : least_share) ?
-                                           closed_to_a_rest :
-                                           closed;
+        kinds[number] = !(cell.open > 0)        ? covered :
+                        cell.open < least_share ? closed_to_a_rest :
+                                                  closed;
         return;
       }
     finish_volume(cell);
@@ -173,16 +172,23 @@ namespace limber
                                const Distances &distances,
                                const Places    &places) const
   {
-    // closed, closed to a rest, or neither
-    std::array<std::array<std::uint32_t, 2>, dim> next;
+    std::array<std::array<bool, 2>, dim>   is_shut;
+    std::array<std::array<Shares, 2>, dim> at_tips;
     for (unsigned int d = 0; d < dim; ++d)
       for (const unsigned int end : {0, 1})
         {
-          const std::uint32_t number = neighbour(cell.number, d, end);
-          next[d][end] = number == invalid_cell ? open : kinds[number];
+          const std::uint32_t next = neighbour(cell.number, d, end);
+          is_shut[d][end]          = next != invalid_cell && is_closed(next);
+          if (is_shut[d][end] && kinds[next] == closed_to_a_rest)
+            {
+              at_tips[d][end]    = open_corners(d, end, distances);
+              cell.is_beside_tip = true;
+            }
+          else
+            at_tips[d][end].fill(0);
         }
-    const auto kind_of = [&](const Simplex     &simplex,
-                             const unsigned int opposite) -> std::uint32_t {
+    const auto look_at_facet = [&](const Simplex     &simplex,
+                                   const unsigned int opposite) {
       bool                                 in_obstacle = true;
       std::array<std::array<bool, 2>, dim> in_face;
       for (auto &ends : in_face)
@@ -197,18 +203,23 @@ namespace limber
                   in_face[d][end] && simplex.corners[k][d] == end;
           }
       if (in_obstacle)
-        return covered;
+        return add_surface(simplex, opposite, nullptr, places, cell);
       for (unsigned int d = 0; d < dim; ++d)
         for (const unsigned int end : {0, 1})
-          if (in_face[d][end] &&
-              (next[d][end] == closed || next[d][end] == closed_to_a_rest))
-            return next[d][end];
-      return open;
+          if (in_face[d][end] && is_shut[d][end])
+            {
+              const Shares &shares = at_tips[d][end];
+              const bool    is_tip =
+                std::any_of(shares.begin(),
+                            shares.end(),
+                            [](const double share) { return share > 0; });
+              return add_surface(
+                simplex, opposite, is_tip ? &shares : nullptr, places, cell);
+            }
     };
     for_each_open_simplex(distances, [&](const Simplex &simplex) {
       for (unsigned int k = 0; k <= dim; ++k)
-        if (const std::uint32_t kind = kind_of(simplex, k); kind != open)
-          add_surface(simplex, k, kind == closed_to_a_rest, places, cell);
+        look_at_facet(simplex, k);
     });
     for (Surface &surface : cell.surfaces)
       {
@@ -231,6 +242,34 @@ namespace limber
             (from_origin * parts.problem.loads.gravity - surface.beyond) *
             surface.normals[a];
       }
+  }
+
+
+
+  // Of the corners of a face, those that are open: by their distances from the
+  // obstacles, with the sum one. None where all are in these.
+  template <int dim>
+  typename CutCells<dim>::Shares
+  CutCells<dim>::open_corners(const unsigned int direction,
+                              const unsigned int end,
+                              const Distances   &distances) const
+  {
+    Shares result;
+    double sum = 0;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      {
+        unsigned int place = 0;
+        for (unsigned int d = 0, stride = n_parts; d < dim;
+             ++d, stride *= n_parts + 1)
+          place += (a >> d & 1) * stride;
+        result[a] =
+          (a >> direction & 1) == end ? std::max(0., distances[place]) : 0;
+        sum += result[a];
+      }
+    if (sum > 0)
+      for (double &share : result)
+        share /= sum;
+    return result;
   }
 
 
@@ -389,14 +428,13 @@ namespace limber
 
 
 
-  // The facet opposite to a corner that is open. Before a rest, which has no
-  // pressure, it stands for the wall behind: what is along that passes, and of
-  // both faces of a tip the pressures along it cancel.
+  // The facet opposite to a corner that is open. Before a tip that counts as
+  // closed it stands for the wall behind, along which all may slide.
   template <int dim>
   void
   CutCells<dim>::add_surface(const Simplex     &simplex,
                              const unsigned int opposite,
-                             const bool         before_a_rest,
+                             const Shares      *at_tip,
                              const Places      &places,
                              Cell              &cell) const
   {
@@ -434,8 +472,14 @@ namespace limber
           obstacle      = o;
           from_obstacle = from;
         }
-    if (before_a_rest)
-      normal = (normal * from_obstacle.normal) * from_obstacle.normal;
+    Vector along_wall; // of the normal, that part
+    if (at_tip != nullptr)
+      {
+        const Vector across =
+          (normal * from_obstacle.normal) * from_obstacle.normal;
+        along_wall = normal - across;
+        normal     = across;
+      }
     const double area = normal.norm();
     if (!(area > 0))
       return;
@@ -463,6 +507,10 @@ namespace limber
           }
         middle += weight * place_at(xi, geometry);
       }
+    if (at_tip != nullptr)
+      for (unsigned int a = 0; a < n_nodes; ++a)
+        cell.beside_tips[a] +=
+          (functions[a] / area - (*at_tip)[a]) * along_wall;
     const auto same = [&](const Surface &surface) {
       return surface.obstacle == obstacle &&
              surface.normal * normal >

@@ -123,12 +123,11 @@ namespace limber
 
 
 
-  // Mean pressure of the liquids in a cell over rho |g_d| h_d, summed over
-  // directions; none where they pull.
+  // Mean of the liquids in a cell over their density, m^2/s^2.
   template <int dim>
   double
-  HydrostaticLoad<dim>::pressure_over_weight(const unsigned int  field,
-                                             const std::uint32_t cell) const
+  HydrostaticLoad<dim>::pressure_over_density(const unsigned int  field,
+                                              const std::uint32_t cell) const
   {
     double mass = 0, pressure = 0; // the last times the volume
     for (MaterialBody<dim> *const body : liquids)
@@ -141,11 +140,23 @@ namespace limber
             pressure += of_body / body->stress->density() *
                         body->stress->volumetric_response(J).pressure;
           }
+    return pressure / mass;
+  }
+
+
+
+  // Mean pressure of the liquids in a cell over rho |g_d| h_d, summed over
+  // directions; none where they pull.
+  template <int dim>
+  double
+  HydrostaticLoad<dim>::pressure_over_weight(const unsigned int  field,
+                                             const std::uint32_t cell) const
+  {
     double drop = 0;
     for (unsigned int d = 0; d < dim; ++d)
       drop += std::abs(problem.loads.gravity[d]) /
               grid.geometry[cell].inverse_edge[d];
-    return std::max(pressure / (mass * drop), 0.);
+    return std::max(pressure_over_density(field, cell) / drop, 0.);
   }
 
 
@@ -296,6 +307,12 @@ namespace limber
                   of_node(node)[d] +=
                     density * (is_uneven[node] ? 1 : borne) *
                     (cut ? cut->hydrostatic[a][d] : of_whole_cell(cell, a, d));
+        if (cut && cut->is_beside_tip)
+          for (unsigned int a = 0; a < n_corners; ++a)
+            for (unsigned int d = 0; d < dim; ++d)
+              of_node(surroundings.node_of(cell, a))[d] +=
+                density * pressure_over_density(field, cell) *
+                cut->beside_tips[a][d];
       }
     table.give_to_masters(sums.data(), dim, 0, dim);
     exchange.start(nodes.node_plan(), sums.data(), 0, dim);

@@ -67,6 +67,12 @@ namespace limber
       //   int_open g . (x - x_c) grad N_i dV
       //     + sum_s int_s g . (x - x_s) N_i n dS, m^(dim+1)/s^2
       std::array<Vector, n_nodes> hydrostatic{};
+      // Before tips that count as closed: what puts the part of the pressure
+      // that acts along the surface there, over the pressure, into the corners
+      // that the tip leaves open, m^(dim-1). There that on all of its faces
+      // cancels; the sum over the nodes is zero.
+      std::array<Vector, n_nodes> beside_tips{};
+      bool                        is_beside_tip = false;
 
       bool
       is_cut() const
@@ -241,6 +247,7 @@ namespace limber
     static constexpr unsigned int n_corners =
       (n_parts + 1) * (n_parts + 1) * (dim == 2 ? 1 : n_parts + 1);
     using Distances = std::array<double, n_corners>;
+    using Shares    = std::array<double, n_nodes>;
 
     void
     find_cells(const Places &places);
@@ -262,6 +269,10 @@ namespace limber
                   const Places    &places) const;
     Distances
     distances_in(std::uint32_t cell, const Places &places) const;
+    Shares
+    open_corners(unsigned int     direction,
+                 unsigned int     end,
+                 const Distances &distances) const;
     template <class Work>
     void
     for_each_open_simplex(const Distances &distances, const Work &work) const;
@@ -279,7 +290,7 @@ namespace limber
     void
     add_surface(const Simplex &simplex,
                 unsigned int   opposite,
-                bool           before_a_rest,
+                const Shares  *at_tip,
                 const Places  &places,
                 Cell          &cell) const;
     std::uint32_t
@@ -309,8 +320,8 @@ namespace limber
     // Of the cells that are being found anew, in their order
     std::vector<Distances>  distances_of_cells;
     const bool              is_implicit; // the pressure
-    static constexpr double least_share = 1e-3, rest_of_layer = 0.01;
-    double                  least_of_layer = rest_of_layer;
+    static constexpr double least_share    = 0.01;
+    double                  least_of_layer = least_share;
     // Below it a cell is too stiff for the step: C^2 / 4, with the Courant
     // number C; 0 where the pressure is implicit
     double       stiff_share = 0;

@@ -86,6 +86,8 @@ namespace limber
     double
     density_within(unsigned int field, std::uint32_t cell, double open) const;
     double
+    pressure_over_density(unsigned int field, std::uint32_t cell) const;
+    double
     pressure_over_weight(unsigned int field, std::uint32_t cell) const;
     void
     find_pressures(const NodalFields<dim> &nodes, unsigned int field);
