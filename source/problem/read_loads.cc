@@ -118,12 +118,26 @@ namespace limber
                                                    corners(problem.grid));
     if (!formula.is_zero())
       problem.loads.body_force = formula;
-    if (section.text("Load factor") != "auto")
-      problem.loads.factor = read_formula<dim>(section,
-                                               "Load factor",
-                                               1,
-                                               read_constants(section),
-                                               corners(problem.grid));
+    if (section.text("Load factor") == "auto")
+      return;
+    problem.loads.factor = read_formula<dim>(section,
+                                             "Load factor",
+                                             1,
+                                             read_constants(section),
+                                             corners(problem.grid));
+    for (const double share : {0., 0.5, 1.})
+      {
+        const double time = share * problem.end_time;
+        if (problem.loads.factor.is_finite(problem.grid.lower, time) &&
+            problem.loads.factor.is_finite(problem.grid.upper, time) &&
+            problem.loads.factor.value(problem.grid.lower, time) !=
+              problem.loads.factor.value(problem.grid.upper, time))
+          throw InputError(
+            "The formula " + in_quotes(problem.loads.factor.expression()) +
+            " in " + section.where("Load factor") +
+            " differs from place to place, but one factor is for all loads. "
+            "Write a formula of t alone.");
+      }
   }
 
 

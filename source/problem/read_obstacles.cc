@@ -435,9 +435,17 @@ namespace limber
   {
     for (const std::string &name : root.list("Obstacles"))
       problem.obstacles.push_back(read_obstacle(root, name, problem));
+    complete_refinements(root, problem);
+  }
+
+
+
+  template <int dim>
+  void
+  check_obstacles(const Section &root, const Problem<dim> &problem)
+  {
     if (!problem.obstacles.empty())
       check_method_of_obstacles(root, problem);
-    complete_refinements(root, problem);
   }
 
 
@@ -446,4 +454,8 @@ namespace limber
   read_obstacles<2>(const Section &, Problem<2> &);
   template void
   read_obstacles<3>(const Section &, Problem<3> &);
+  template void
+  check_obstacles<2>(const Section &, const Problem<2> &);
+  template void
+  check_obstacles<3>(const Section &, const Problem<3> &);
 } // namespace limber

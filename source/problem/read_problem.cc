@@ -137,10 +137,11 @@ namespace limber
     read_volume_loads(loads, problem);
     read_bodies(root, problem);
     read_face_loads(loads, problem);
+    read_obstacles(root, problem);
     choose_time_integration(root, problem);
     choose_stress_update(problem);
     read_contact(root, problem);
-    read_obstacles(root, problem);
+    check_obstacles(root, problem);
     choose_spread_of_points(root, problem);
     choose_side_contact(problem);
     problem.output     = read_output(root.subsection("Output"));

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/obstacle_way.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -30,7 +31,7 @@ namespace limber
     struct Speeds
     {
       double sound   = 0; // in liquids, the fastest
-      double motion  = 0; // of liquids and sides, at first
+      double motion  = 0; // of liquids at first, sides and obstacles
       double surface = 0; // sqrt(g H), H the height of the liquid
       double waves   = 0; // in solids
     };
@@ -95,6 +96,15 @@ namespace limber
                                          d);
             result.motion = std::max(result.motion, velocity.norm());
           });
+      for (const Obstacle<dim> &obstacle : problem.obstacles)
+        for (unsigned int t = 0; t + 1 < n_times; ++t)
+          {
+            const double step = problem.end_time / (n_times - 1);
+            if (const double way =
+                  way_of_obstacle(obstacle, problem.grid, t * step, step);
+                std::isfinite(way))
+              result.motion = std::max(result.motion, way / step);
+          }
       return result;
     }
 
@@ -176,7 +186,7 @@ namespace limber
       const Speeds speeds = speeds_of(problem);
       const double other =
         std::max(speeds.motion + speeds.surface, speeds.waves);
-      // nothing that moves at first, nor weight: nothing to compare with
+      // neither motion nor weight: nothing to compare with
       if (!(other > 0))
         return say("'explicit', as nothing moves at first and nothing weighs");
       const std::string ratio = "sound in the liquid is " +

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
 #include <limber/simulation/set_up.h>
@@ -13,11 +14,18 @@ namespace limber
   void
   Simulation<dim>::resume()
   {
-    resumed    = checkpoints.load(present_state(),
+    resumed = checkpoints.load(present_state(),
                                bodies,
                                [&](const RunState<dim> &former) {
                                  adaptation.restore(former.adaptation);
                                });
+    if (problem.end_time < resumed->time)
+      throw InputError("'End time' is " + brief(problem.end_time) + " s, but " +
+                       checkpoints.good_file() + " is of time " +
+                       brief(resumed->time) +
+                       " s: that is past. Usually the scene was changed. Set a "
+                       "later 'End time', or repeat the run without "
+                       "'--resume'.");
     state.step = saved_step = resumed->step;
     state.time              = resumed->time;
     state.step_size         = resumed->step_size;

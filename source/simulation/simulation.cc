@@ -2,6 +2,7 @@
 #include <limber/base/records_of_ranks.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
+#include <limber/problem/obstacle_way.h>
 #include <limber/simulation/passed_sides.h>
 #include <limber/simulation/set_up.h>
 #include <limber/simulation/signals.h>
@@ -222,8 +223,12 @@ namespace limber
   double
   Simulation<dim>::next_step() const
   {
-    const double longest = integrator->longest_step();
-    double       target  = problem.end_time;
+    double longest = integrator->longest_step();
+    // Sound holds the steps of others down.
+    if (problem.method.integration == TimeIntegration::semi_implicit &&
+        problem.method.time_step == 0)
+      longest = step_that_obstacles_allow(problem, state.time, longest);
+    double target = problem.end_time;
     if (problem.method.time_step == 0)
       {
         for (const double time : targets)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/obstacle_way.h>
 #include <limber/time/obstacle_contact.h>
 
 #include <algorithm>
@@ -42,8 +43,6 @@ namespace limber
 
 
 
-  // The way of what is furthest out; where the obstacle has no end, of what is
-  // in the corners of the grid.
   template <int dim>
   void
   ObstacleContact<dim>::check_way(const unsigned int obstacle,
@@ -53,33 +52,14 @@ namespace limber
     const Obstacle<dim> &one = rigid[obstacle];
     if (!one.moves())
       return;
-    const ObstaclePlace<dim> before(one, time), after(one, time + step);
-    if (!before.is_finite() || !after.is_finite())
+    const double way = way_of_obstacle(one, parts.problem.grid, time, step);
+    if (!std::isfinite(way))
       throw ComputationError("Obstacle " + in_quotes(one.name) +
                                " has no finite place at time " +
                                brief(time + step) +
                                " s. Usually its formulas divide by zero. "
                                "Correct its 'Displacement' or 'Rotation'.",
                              FailureKind::not_finite);
-    Corners<dim> box = one.shape->bounding_box();
-    double       way = 0;
-    for (unsigned int corner = 0; corner < 1u << dim; ++corner)
-      {
-        dealii::Point<dim> start, in_grid;
-        bool               ends = true;
-        for (int d = 0; d < dim; ++d)
-          {
-            const bool upper = corner >> d & 1;
-            start[d]         = upper ? box.second[d] : box.first[d];
-            in_grid[d] =
-              upper ? parts.problem.grid.upper[d] : parts.problem.grid.lower[d];
-            ends = ends && std::isfinite(start[d]);
-          }
-        if (!ends)
-          start = before.start_of(in_grid);
-        way =
-          std::max(way, before.place_of(start).distance(after.place_of(start)));
-      }
     if (way > 0.5 * parts.grid.smallest_edge)
       throw ComputationError(
         "Obstacle " + in_quotes(one.name) + " moves by " +

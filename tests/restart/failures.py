@@ -80,6 +80,9 @@ def other_scene(runs):
                 resume=True)
     runs.expect(0, "", "End time=0.21", "Output/Statistics interval=9",
                 "Checkpoint/Steps=0", resume=True)
+    before = runs.checkpoint()
+    runs.expect(1, "'End time' is 0.2 s, but", "End time=0.2", resume=True)
+    check(runs.checkpoint() == before, "the checkpoint of 0.21 s is unharmed")
 
 
 def nothing_to_resume(runs):

@@ -243,10 +243,15 @@ namespace limber
                     const unsigned int dim,
                     const SceneNames  &names);
 
-  /** Needs the bodies and the method; refuses what does not go with them. */
+  /** Needs grid and end time. */
   template <int dim>
   void
   read_obstacles(const Section &root, Problem<dim> &problem);
+
+  /** Refuses what does not go with bodies and method, which are known. */
+  template <int dim>
+  void
+  check_obstacles(const Section &root, const Problem<dim> &problem);
 
   // Method and output (source/problem/read_method.cc)
 

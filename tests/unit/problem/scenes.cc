@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/problem/body_at_sides.h>
+#include <limber/problem/obstacle_way.h>
 #include <limber/problem/read_problem.h>
 
 #include <gtest/gtest.h>
@@ -231,6 +232,29 @@ TEST(Scenes, AutomaticTimeIntegration)
         << notes;
       EXPECT_NE(notes.find(example.reason), std::string::npos) << notes;
     }
+  // Also where nothing moves or weighs but an obstacle
+  const auto with_moving_obstacle = [](const std::string &displacement) {
+    return read_problem<2>(scene_of(R"(
+      set Bodies    = water
+      set Obstacles = piston
+      subsection Body water
+        set Material = newtonian fluid
+        subsection Box
+          set Lower corner = 0.2, 0
+        end
+      end
+      subsection Obstacle piston
+        set Displacement = )" + displacement +
+                                    R"(
+        subsection Box
+          set Lower corner = -1, -1
+          set Upper corner = 0.2, 2
+        end
+      end)"))
+      .method.integration;
+  };
+  EXPECT_EQ(with_moving_obstacle("t^2/2; 0"), TimeIntegration::semi_implicit);
+  EXPECT_EQ(with_moving_obstacle("0; 0"), TimeIntegration::explicit_steps);
   // Liquids that slide on obstacles have an implicit pressure, others not
   const std::string stiff = "Body water/Newtonian fluid/Bulk modulus=2.2e9";
   EXPECT_EQ(read_problem<2>(
@@ -249,6 +273,40 @@ TEST(Scenes, AutomaticTimeIntegration)
                                      "'explicit', as liquids do not slide on "
                                      "obstacle 'step'") != std::string::npos;
                           }));
+}
+
+
+
+// In a step an obstacle that gathers speed may move by the Courant number in
+// cells; a step that is short enough stays what it is.
+TEST(Scenes, ObstaclesAllowStepsOfTheCourantNumber)
+{
+  const Problem<2> problem = read_problem<2>(scene_of(R"(
+    set Bodies    = block
+    set Obstacles = piston
+    subsection Body block
+      subsection Box
+        set Lower corner = 0.2, 0
+      end
+    end
+    subsection Obstacle piston
+      set Displacement = t^2/2; 0
+      subsection Box
+        set Lower corner = -1, -1
+        set Upper corner = 0.2, 2
+      end
+    end
+    subsection Grid
+      set Cells = 20, 10
+    end
+    subsection Method
+      set Courant number = 0.4
+    end)"));
+  const double     step    = step_that_obstacles_allow(problem, 0., 10.);
+  EXPECT_LE(0.5 * step * step, 0.4 * 0.05);
+  EXPECT_GT(0.5 * step * step, 0.4 * 0.05 / 4);
+  EXPECT_EQ(step_that_obstacles_allow(problem, 0., 0.01), 0.01);
+  EXPECT_LE(step_that_obstacles_allow(problem, 2., 10.), 0.01);
 }
 
 
