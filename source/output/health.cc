@@ -270,7 +270,7 @@ namespace limber
       if (body.kernel == KernelKind::linear && !figures.against_splines.empty())
         return {of_body(body, "Points per cell edge"),
                 "More points per cell edge creep somewhat less. 'Kernel = "
-                "quadratic' would by far, but " +
+                "quadratic' would by far; 'auto' is 'linear', as " +
                   figures.against_splines + frame};
       if (body.kernel == KernelKind::linear)
         return {body.is_plastic ? "Method/Kernel" : of_body(body, "Frame"),

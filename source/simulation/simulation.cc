@@ -392,13 +392,7 @@ namespace limber
     typename Adaptation<dim>::KeptPoints kept(bodies.size());
     for (const auto &point : observables.state().tracked)
       kept[point.body].insert(point.id);
-    const IntegratorState<dim> now = integrator->state();
-    for (std::size_t i = 0; i < now.face_pieces.size(); ++i)
-      for (const auto &piece : now.face_pieces[i])
-        for (std::size_t b = 0; b < bodies.size(); ++b)
-          if (problem.bodies[b].name == problem.loads.faces[i].body)
-            kept[b].insert(piece.carrier);
-
+    const auto loaded  = integrator->detached_pieces();
     const bool changed = adaptation.adapt(state.time, kept);
     state.ledger.adaptation += adaptation.energy_removed();
     if (!changed)
@@ -410,6 +404,7 @@ namespace limber
         balance(grid, bodies);
         integrator->reinit();
       }
+    integrator->attach(loaded);
     totals.points =
       points_ever() -
       dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);

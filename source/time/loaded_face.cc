@@ -65,9 +65,9 @@ namespace limber
 
 
     /**
-     * Whether a piece lies in the cell of a point, or in its boundary. Beside
-     * larger cells the nearest point may be in a smaller one, whose nodes would
-     * get what those of the larger one hold.
+     * Whether a detached piece lies in the cell of a point, or in its boundary.
+     * Beside larger cells the nearest point may be in a smaller one, whose
+     * nodes would get what those of the larger one hold.
      */
     template <int dim>
     bool
@@ -82,8 +82,7 @@ namespace limber
           const double edge = box.edge(d) / (1u << level);
           const double lower =
             box.lower[d] + std::floor((place[d] - box.lower[d]) / edge) * edge;
-          if (std::abs(piece.reference[d] - lower - 0.5 * edge) >
-              (0.5 + 1e-6) * edge)
+          if (std::abs(piece.arm[d] - lower - 0.5 * edge) > (0.5 + 1e-6) * edge)
             return false;
         }
       return true;
@@ -92,10 +91,10 @@ namespace limber
 
 
     /**
-     * By local number of a cell, the pieces in it and in its neighbours,
-     * whichever their size. A step into these is a bit shorter than they are:
-     * from a face between two cells a full one would end in the next cell or,
-     * by round-off, in the one behind.
+     * By local number of a cell, the detached pieces in it and in its
+     * neighbours, whichever their size. A step into these is a bit shorter than
+     * they are: from a face between two cells a full one would end in the next
+     * cell or, by round-off, in the one behind.
      */
     template <int dim>
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
@@ -114,8 +113,8 @@ namespace limber
               unsigned int            rest = k;
               for (unsigned int d = 0; d < dim; ++d)
                 {
-                  x[d] = pieces[i].reference[d] + (int(rest % 3) - 1) * step *
-                                                    box.edge(d) / (1u << level);
+                  x[d] = pieces[i].arm[d] + (int(rest % 3) - 1) * step *
+                                              box.edge(d) / (1u << level);
                   rest /= 3;
                 }
               const std::uint32_t cell = grid.bins.cell_at(x);
@@ -159,14 +158,21 @@ namespace limber
     auto all = pieces_at_start(load, body.description, grid.description);
     if (all.empty())
       throw InputError(nothing_loaded(load));
-    find_carriers(all);
+    if (!find_carriers(all).empty())
+      throw InputError("'Face load " + load.name +
+                       "' finds no point of body '" + load.body +
+                       "' within one cell of its surface. Usually the body "
+                       "is thinner than a spacing; enlarge it, or set more "
+                       "'Points per cell edge', for instance 4.");
     adopt(all);
   }
 
 
 
+  // Of detached pieces: the nearest point of all ranks, by preference one of
+  // the cell that holds the piece. Returns the numbers of those that find none.
   template <int dim>
-  void
+  std::vector<unsigned int>
   LoadedFace<dim>::find_carriers(std::vector<FacePiece<dim>> &all) const
   {
     Candidate<dim> nobody;
@@ -220,18 +226,19 @@ namespace limber
       for (const auto &[i, candidate] : of_rank)
         best[i] = std::min(best[i], candidate);
 
+    std::vector<unsigned int> alone;
     for (unsigned int i = 0; i < all.size(); ++i)
       {
         if (best[i] == nobody)
-          throw InputError("'Face load " + load.name +
-                           "' finds no point of body '" + load.body +
-                           "' within one cell of its surface. Usually the body "
-                           "is thinner than a spacing; enlarge it, or set more "
-                           "'Points per cell edge', for instance 4.");
+          {
+            alone.push_back(i);
+            continue;
+          }
         all[i].carrier = static_cast<std::uint64_t>(best[i][2 + dim]);
         for (unsigned int d = 0; d < dim; ++d)
           all[i].arm[d] -= best[i][2 + d];
       }
+    return alone;
   }
 
 
@@ -297,6 +304,65 @@ namespace limber
     std::vector<FacePiece<dim>> result = pieces;
     unite(result, grid.communicator);
     return result;
+  }
+
+
+
+  template <int dim>
+  std::vector<FacePiece<dim>>
+  LoadedFace<dim>::detached_pieces() const
+  {
+    std::vector<FacePiece<dim>> result = pieces;
+    for_each_carrier(body.points,
+                     result,
+                     [&](const std::size_t p, const std::size_t i) {
+                       add_place(p, 1, result[i].arm);
+                     });
+    unite(result, grid.communicator);
+    return result;
+  }
+
+
+
+  // What is near no point stays with its carrier.
+  template <int dim>
+  void
+  LoadedFace<dim>::attach(std::vector<FacePiece<dim>> detached)
+  {
+    const auto                  alone = find_carriers(detached);
+    std::vector<FacePiece<dim>> with_former;
+    for (const unsigned int i : alone)
+      with_former.push_back(detached[i]);
+    for (auto i = alone.rbegin(); i != alone.rend(); ++i)
+      detached.erase(detached.begin() + *i);
+    for_each_carrier(body.points,
+                     with_former,
+                     [&](const std::size_t p, const std::size_t i) {
+                       add_place(p, -1, with_former[i].arm);
+                     });
+    pieces.clear();
+    adopt(detached);
+    adopt(with_former);
+    const auto n_attached =
+      dealii::Utilities::MPI::sum(pieces.size(), grid.communicator);
+    if (n_attached != detached.size() + with_former.size())
+      throw ComputationError(
+        "'Face load " + load.name + "' has lost the points of body '" +
+        load.body +
+        "' that carry it: none is left within one cell of its surface.");
+  }
+
+
+
+  template <int dim>
+  void
+  LoadedFace<dim>::add_place(const std::size_t       p,
+                             const double            factor,
+                             dealii::Tensor<1, dim> &to) const
+  {
+    const PointView<dim> points = body.points.view();
+    for (unsigned int d = 0; d < dim; ++d)
+      to[d] += factor * points.position[d][p];
   }
 
 

@@ -117,6 +117,29 @@ namespace limber
 
 
   template <int dim>
+  typename ExternalLoads<dim>::Pieces
+  ExternalLoads<dim>::detached_pieces() const
+  {
+    Pieces result;
+    for (const LoadedFace<dim> &face : faces)
+      result.push_back(face.detached_pieces());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ExternalLoads<dim>::attach(const Pieces &detached)
+  {
+    AssertDimension(detached.size(), faces.size());
+    for (std::size_t i = 0; i < faces.size(); ++i)
+      faces[i].attach(detached[i]);
+  }
+
+
+
+  template <int dim>
   void
   ExternalLoads<dim>::add_body_force(const MaterialBody<dim> &body,
                                      const double             time)

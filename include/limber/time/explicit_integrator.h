@@ -69,6 +69,16 @@ namespace limber
     state() const override;
     void
     restore(const IntegratorState<dim> &former) override;
+    typename ExternalLoads<dim>::Pieces
+    detached_pieces() const override
+    {
+      return loads.detached_pieces();
+    }
+    void
+    attach(const typename ExternalLoads<dim>::Pieces &detached) override
+    {
+      loads.attach(detached);
+    }
     double
     imbalance() const override;
     double

@@ -112,6 +112,13 @@ namespace limber
     virtual void
     restore(const IntegratorState<dim> &former) = 0;
 
+    /** The pieces of faces under load, and these again when the points that
+     * carry them may have become others; see LoadedFace. Collective. */
+    virtual typename ExternalLoads<dim>::Pieces
+    detached_pieces() const = 0;
+    virtual void
+    attach(const typename ExternalLoads<dim>::Pieces &detached) = 0;
+
     /** Share of all points on the fullest rank times the number of ranks. */
     virtual double
     imbalance() const = 0;

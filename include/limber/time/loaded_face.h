@@ -45,6 +45,15 @@ namespace limber
     std::vector<FacePiece<dim>>
     all_pieces() const;
 
+    /** The same with the places of their centres instead of the arms, which
+     * their carriers do not matter for. */
+    std::vector<FacePiece<dim>>
+    detached_pieces() const;
+
+    /** Choose carriers anew among the points that there are now; collective. */
+    void
+    attach(std::vector<FacePiece<dim>> detached);
+
     /** Take over those of a checkpoint, known to all ranks. */
     void
     restore(const std::vector<FacePiece<dim>> &all);
@@ -53,8 +62,10 @@ namespace limber
     const MaterialBody<dim> &body;
 
   private:
-    void
+    std::vector<unsigned int>
     find_carriers(std::vector<FacePiece<dim>> &all) const;
+    void
+    add_place(std::size_t p, double factor, dealii::Tensor<1, dim> &to) const;
     void
     adopt(const std::vector<FacePiece<dim>> &candidates);
 

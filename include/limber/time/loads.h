@@ -77,6 +77,12 @@ namespace limber
     void
     restore(const Pieces &pieces);
 
+    /** See LoadedFace: for when points become others. Collective. */
+    Pieces
+    detached_pieces() const;
+    void
+    attach(const Pieces &detached);
+
     /** The sum of the forces on a node of a field, of the last add(), N. */
     dealii::Tensor<1, dim>
     on_node(unsigned int field, std::uint32_t node) const;
