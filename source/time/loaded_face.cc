@@ -210,7 +210,7 @@ namespace limber
       candidate[0] =
         grid.has_levels() &&
         !is_in_cell_of(place, grid.level_of(points.cell[p]), all[i], grid);
-      candidate[1] = std::round(place.distance(all[i].reference) /
+      candidate[1] = std::round(place.distance(dealii::Point<dim>(all[i].arm)) /
                                 (1e-9 * grid.smallest_edge));
       for (unsigned int d = 0; d < dim; ++d)
         candidate[2 + d] = place[d];

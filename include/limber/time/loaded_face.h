@@ -45,8 +45,8 @@ namespace limber
     std::vector<FacePiece<dim>>
     all_pieces() const;
 
-    /** The same with the places of their centres instead of the arms, which
-     * their carriers do not matter for. */
+    /** The same, with the places of their centres instead of the arms from
+     * their carriers. */
     std::vector<FacePiece<dim>>
     detached_pieces() const;
 

@@ -435,3 +435,47 @@ TEST(FaceLoadsOnLevels, PiecesFollowPointsThatAreSplit)
     }
   EXPECT_GT(run.points().size, 2 * n_before);
 }
+
+
+
+// Also where the body has gone: the nearest point is that of now.
+TEST(FaceLoadsOnLevels, PiecesFollowPointsThatHaveMoved)
+{
+  SceneRun<2>                     run(R"(
+    set Bodies = block
+    subsection Body block
+      set Material         = linear elastic
+      set Initial velocity = 0.5; 0.25
+      subsection Box
+        set Lower corner = 0.1, 0.1
+        set Upper corner = 0.3, 0.3
+      end
+    end
+    subsection Grid
+      set Cells  = 10, 10
+      set Levels = 1
+      set Refine = right
+      subsection Refine right
+        set Where = if(t > 0.5, x - 0.4, -1)
+      end
+    end
+    subsection Loads
+      set Face loads = nothing
+      subsection Face load nothing
+        set Body     = block
+        set Face     = surface
+        set Pressure = 0
+      end
+    end)");
+  Adaptation<2>                   adaptation(run.problem, run.grid, run.bodies);
+  const Adaptation<2>::KeptPoints kept(1);
+  run.advance_to(1);
+  const auto loaded = run.integrator.detached_pieces();
+  ASSERT_TRUE(adaptation.adapt(run.time, kept));
+  run.integrator.reinit();
+  run.integrator.attach(loaded);
+  const auto faces = run.integrator.state().face_pieces;
+  ASSERT_EQ(faces[0].size(), loaded[0].size());
+  for (const auto &piece : faces[0]) // in fine cells of 0.05 m, 2 x 2 points
+    EXPECT_LT(piece.arm.norm(), 0.026);
+}
