@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace limber
 {
@@ -17,7 +18,37 @@ namespace limber
 
 
 
-    /** How far a side moves inward until @p end (s) at most, m. */
+    /** Of the face of the box in a side: places on a lattice. */
+    template <int dim>
+    std::vector<dealii::Point<dim>>
+    places_in(const unsigned int side, const GridDescription<dim> &grid)
+    {
+      constexpr unsigned int          n = dim == 2 ? 9 : 5; // along each edge
+      std::vector<dealii::Point<dim>> result;
+      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim - 1); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d)
+            if (d == side / 2)
+              place[d] = side % 2 == 0 ? grid.lower[d] : grid.upper[d];
+            else
+              {
+                place[d] = grid.lower[d] + (rest % n) / (n - 1.) *
+                                             (grid.upper[d] - grid.lower[d]);
+                rest /= n;
+              }
+          result.push_back(place);
+        }
+      return result;
+    }
+
+
+
+    /**
+     * How far a side moves inward until @p end (s) at most, m. By parts of time
+     * in which it moves by a small part of what it may, so that one that swings
+     * often does not seem to go away; of a very long run the beginning.
+     */
     template <int dim>
     double
     farthest_inward(const unsigned int          side,
@@ -25,29 +56,29 @@ namespace limber
                     const GridDescription<dim> &grid,
                     const double                end)
     {
-      constexpr unsigned int instants = 4000, places = dim == 2 ? 9 : 5;
-      const unsigned int     normal = side / 2;
-      const double           inward = side % 2 == 0 ? 1 : -1;
-      const double           dt     = end / instants;
-      double                 result = 0;
-      for (unsigned int i = 0; i < dealii::Utilities::pow(places, dim - 1); ++i)
+      constexpr double   coarse = 4000, most = 2e5; // parts
+      const unsigned int normal = side / 2;
+      const auto inward = [&](const dealii::Point<dim> &place, const double t) {
+        return velocity.is_finite(place, t) ?
+                 (side % 2 == 0 ? 1 : -1) * velocity.value(place, t, normal) :
+                 0.;
+      };
+      double result = 0;
+      for (const dealii::Point<dim> &place : places_in(side, grid))
         {
-          dealii::Point<dim> place;
-          for (unsigned int d = 0, rest = i; d < dim; ++d)
-            if (d == normal)
-              place[d] = side % 2 == 0 ? grid.lower[d] : grid.upper[d];
-            else
-              {
-                place[d] = grid.lower[d] + (rest % places) / (places - 1.) *
-                                             (grid.upper[d] - grid.lower[d]);
-                rest /= places;
-              }
+          double fastest = 0;
+          for (double n = 0; n < coarse; ++n)
+            fastest =
+              std::max(fastest,
+                       std::abs(inward(place, (n + 0.5) / coarse * end)));
+          const double dt =
+            std::min(end / coarse,
+                     0.1 * reach_of_side * grid.finest_edge(normal) /
+                       std::max(fastest, 1e-300));
           double way = 0;
-          for (unsigned int n = 0; n < instants; ++n)
+          for (double n = 0; n < most && (n + 0.5) * dt < end; ++n)
             {
-              const double time = (n + 0.5) * dt;
-              if (velocity.is_finite(place, time))
-                way += inward * velocity.value(place, time, normal) * dt;
+              way += dt * inward(place, (n + 0.5) * dt);
               result = std::max(result, way);
             }
         }

@@ -565,9 +565,11 @@ TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 TEST(Scenes, SidesThatMoveInwardLetGoBodiesOfTheCurrentFrame)
 {
   // An edge is 0.1 m, so that it may move by 0.05 m.
-  const auto check = [](const std::string &velocity, const std::string &frame) {
+  const auto check = [](const std::string &velocity,
+                        const std::string &frame,
+                        const std::string &end = "2") {
     check_moving_sides(read_problem<2>(scene_of(R"(
-      set End time = 2
+      set End time = )" + end + R"(
       set Bodies = block
       subsection Body block
         set Frame = )" + frame + R"(
@@ -588,6 +590,7 @@ TEST(Scenes, SidesThatMoveInwardLetGoBodiesOfTheCurrentFrame)
   EXPECT_NO_THROW(check("-0.026; 0", "current"));
   EXPECT_NO_THROW(check("0; 1", "current"));
   EXPECT_NO_THROW(check("0.04*6*cos(6*t); 0", "current"));
+  EXPECT_NO_THROW(check("0.04*20*cos(20*t); 0", "current", "1000"));
   for (const std::string velocity :
        {"0.026; 0", "0.06*6*cos(6*t); 0", "0.06*y; 0"})
     try
