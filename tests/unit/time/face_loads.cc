@@ -312,7 +312,7 @@ TYPED_TEST(FaceLoads, ABoxAsABlockIsTheSameBody)
 
 namespace
 {
-  // Corner and name of a side in either dimension
+  // A corner in either dimension, to end a line of a scene with
   template <int dim>
   std::string
   corner(const std::string &x_y, const std::string &z)
