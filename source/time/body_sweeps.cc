@@ -55,6 +55,9 @@ namespace limber
   {
     if (parts.problem.grid.kernel == KernelKind::ddmp)
       dual_domain.emplace(parts.grid.nodes());
+    if (is_affine(parts.problem.method.transfer) && parts.grid.has_levels())
+      affine_at_levels.emplace();
+    reinit();
   }
 
 
@@ -65,6 +68,8 @@ namespace limber
   {
     if (dual_domain)
       dual_domain->reinit();
+    if (affine_at_levels)
+      affine_at_levels->reinit(parts.grid);
   }
 
 
@@ -101,6 +106,10 @@ namespace limber
                                                  nodes_of(*body),
                                                  what,
                                                  sums ? &*sums : nullptr);
+        if (affine_at_levels && what.affine)
+          affine_at_levels->add(body->points.view(),
+                                nodes_of(*body),
+                                NodeLayout<dim>::momentum);
       }
     return n_batches;
   }
@@ -207,6 +216,10 @@ namespace limber
                                                    nodes_of(body),
                                                    own,
                                                    sums ? &*sums : nullptr);
+    if (affine_at_levels && what.remap)
+      affine_at_levels->add(body.points.view(),
+                            nodes_of(body),
+                            NodeLayout<dim>::remapped);
     extremes.speed_squared =
       std::max(extremes.speed_squared, found.speed_squared);
     extremes.displacement = std::max(extremes.displacement, found.displacement);

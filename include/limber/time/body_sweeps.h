@@ -2,6 +2,7 @@
 #ifndef limber_time_body_sweeps_h
 #define limber_time_body_sweeps_h
 
+#include <limber/time/affine_at_levels.h>
 #include <limber/time/dual_domain.h>
 #include <limber/time/relocation.h>
 #include <limber/transfer/grid_to_points.h>
@@ -105,6 +106,8 @@ namespace limber
 
     const RunParts<dim>            parts;
     std::optional<DualDomain<dim>> dual_domain; // with that kernel alone
+    // With affine velocities on cells of several sizes
+    std::optional<AffineAtLevels<dim>> affine_at_levels;
   };
 } // namespace limber
 

@@ -269,3 +269,57 @@ TEST(SpinningDisk, TheSizeDoesNotDependOnTheStep)
       EXPECT_LT(std::abs(coarse.grown - fine.grown), 0.1 * drift);
     }
 }
+
+
+
+// Across cells of two sizes as well: what hanging nodes have of the affine
+// velocities belongs to the places of their masters.
+namespace
+{
+  template <int dim>
+  void
+  expect_apic_turns_across_levels()
+  {
+    const std::string middle = dim == 2 ? "0.6, 0.6" : "0.6, 0.6, 0.3",
+                      box    = dim == 2 ? "1.2, 1.2" : "1.2, 1.2, 0.6",
+                      cells  = dim == 2 ? "24, 24" : "12, 12, 6",
+                      third  = dim == 2 ? "" : "; 0";
+    SceneRun<dim> run("set Dimension = " + std::to_string(dim) + R"(
+    set Bodies = disk
+    subsection Body disk
+      set Shape = ball
+      subsection Ball
+        set Centre = )" +
+                      middle +
+                      R"(
+        set Radius = 0.29
+      end
+      set Initial velocity = 0.6 - y; x - 0.6)" +
+                      third + "\n" + rubber("1e5", "0.3") + R"(
+      set Frame = current
+    end
+    subsection Grid
+      set Upper corner = )" +
+                      box + "\n set Cells = " + cells + R"(
+      set Levels = 1
+      set Refine = half
+      subsection Refine half
+        set Where = 0.6 - x
+      end
+    end
+)" + free_sides + R"(    subsection Method
+      set Transfer = apic
+    end)");
+    ASSERT_FALSE(run.grid.vertices.hanging.empty());
+    const double start = run.totals().all.kinetic_energy;
+    run.advance_to(0.3);
+    EXPECT_NEAR(run.totals().all.kinetic_energy, start, 2e-3 * start);
+    EXPECT_LT(run.totals().momentum_error, 1e-12);
+  }
+} // namespace
+
+TEST(SpinningDisk, ApicTurnsAcrossLevels)
+{
+  expect_apic_turns_across_levels<2>();
+  expect_apic_turns_across_levels<3>();
+}
