@@ -271,7 +271,7 @@ namespace limber
         if (problem.loads.body_force || !faces.empty())
           complete(nodes, forces[field]);
         if (hydrostatic.any())
-          hydrostatic.add(field, forces[field]);
+          hydrostatic.add(nodes, field, forces[field]);
         for (const std::uint32_t node : nodes.active_nodes())
           for (int d = 0; d < dim; ++d)
             nodes.record(field, node)[NodeLayout<dim>::force + d] +=

@@ -68,9 +68,12 @@ namespace limber
     void
     find(const NodalFields<dim> &nodes);
 
-    /** Add that on a field of nodes, N, to @p forces, dim per node. */
+    /** Add that on a field of nodes, whose masses are known by now, N, to
+     * @p forces, dim per node. */
     void
-    add(unsigned int field, LazyArray<double> &forces) const;
+    add(const NodalFields<dim> &nodes,
+        unsigned int            field,
+        LazyArray<double>      &forces) const;
 
   private:
     static constexpr unsigned int n_corners = 1 << dim;

@@ -106,3 +106,41 @@ TEST(HydrostaticLoad, LeavesWhatFallsAlone)
                   gravity[d] * run.time,
                   1e-9 * std::abs(gravity[d]) * run.time);
 }
+
+
+
+// Its points are swept into the edge, where some pass it by next to nothing.
+TEST(HydrostaticLoad, ThrowsNothingOutOfAnEdge)
+{
+  SceneRun<2> run(R"(
+    set Dimension = 2
+    set End time = 10
+    set Bodies = water
+    set Obstacles = edge
+    subsection Body water
+      set Shape = formula
+      subsection Formula
+        set Inside = min(0.6 - y, y - 0.1 - abs(x - 0.5))
+      end
+      set Material = newtonian fluid
+    end
+    subsection Obstacle edge
+      set Shape = formula
+      subsection Formula
+        set Inside = max(0.6 - x - y, x - 0.4 - y)
+      end
+    end
+    subsection Grid
+      set Upper corner = 1, 0.9
+      set Cells = 40, 36
+    end
+    subsection Loads
+      set Gravity = 0, -9.81
+    end)");
+  run.advance_to(2);
+  const PointView<2> points = run.points();
+  for (std::size_t p = 0; p < points.size; ++p)
+    EXPECT_LT(std::hypot(points.position[0][p] - 0.5,
+                         points.position[1][p] - 0.1),
+              0.8);
+}
