@@ -233,6 +233,8 @@ namespace limber
                     "--set",
                     "Output/Time interval=0",
                     "--set",
+                    "Output/Point arrays=false",
+                    "--set",
                     "Output/Replace=false"});
     const ChildEnd end = run_child(command, scratch.path + "/log", seconds);
 

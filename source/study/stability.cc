@@ -103,6 +103,7 @@ namespace limber
           "End step=" + std::to_string(request.steps),
           "End time=1e100",
           "Output/Time interval=0",
+          "Output/Point arrays=false",
           "Output/Statistics interval=" + std::to_string(interval)};
         const std::string subfolder = std::to_string(++count);
         const auto        end       = runs.run(variant, settings, subfolder);
