@@ -255,9 +255,8 @@ namespace limber
     check_method(root, problem);
     if (problem.grid.kernel == KernelKind::linear && any_solids_part(problem))
       problem.notes.push_back(
-        "Solids touch with linear functions: what slides across the grid may "
-        "lose a quarter of its momentum, what rolls a tenth, and what is "
-        "pressed creeps. " +
+        "Solids touch with linear functions: what rolls may lose a fifth of "
+        "its momentum, and what is pressed creeps. " +
         (problem.grid.against_splines.empty() ?
            std::string(
              "'Method/Kernel = quadratic' keeps it within 1 to 3 %.") :

@@ -118,12 +118,11 @@ namespace limber
     presses_at_points(const Problem<dim> &problem)
     {
       return problem.has_rigid_contact() ||
-             (is_spline(problem.grid.kernel) &&
-              std::any_of(problem.contacts.begin(),
-                          problem.contacts.end(),
-                          [](const ContactPair &pair) {
-                            return pair.law == ContactLaw::separate;
-                          }));
+             std::any_of(problem.contacts.begin(),
+                         problem.contacts.end(),
+                         [](const ContactPair &pair) {
+                           return pair.law == ContactLaw::separate;
+                         });
     }
 
 
@@ -175,7 +174,7 @@ namespace limber
 
 
     // Of the points of a lattice one in each row has its end of the row next to
-    // the surface: its material ends there. Others stand for a cube.
+    // the surface: its material ends there.
     template <int dim>
     void
     set_reach(const Shape<dim>                                        &shape,
@@ -192,7 +191,7 @@ namespace limber
             place[d] = view.position[d][p];
           const double half_edge =
             half_edge_of<dim>(view.mass[p] / density(place));
-          view.reach[p] = half_edge;
+          view.reach[p] = 0;
           if (const auto surface = shape.signed_distance(place))
             {
               double along_row = 0;

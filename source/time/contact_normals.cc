@@ -24,6 +24,7 @@ namespace limber
     if (find_nodes() || cells_are_others)
       find_batches();
     find_gradients();
+    fit_surfaces();
     find_normals();
     find_places(step);
   }
@@ -298,7 +299,16 @@ namespace limber
         slots[d] = &volume_gradients[t * 2 * dim + d];
       return slots;
     });
-    // As if the material went on behind a side that holds it.
+    end_at_sides();
+  }
+
+
+
+  // As if the material went on behind a side that holds it.
+  template <int dim>
+  void
+  Contact<dim>::end_at_sides()
+  {
     for (std::size_t t = 0; t < touches.size(); ++t)
       if (const auto sides_of_box = parts.nodes.table.sides[touches[t].node])
         for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -311,9 +321,9 @@ namespace limber
 
 
   // Of convex bodies the largest separation over all directions is their
-  // distance. At the end of the face of one of them, its own gradient points
-  // past the corner; that of the other is right, and the points are further
-  // apart along it.
+  // distance. At the end of the face of one of them, its own normal points past
+  // the corner; that of the other is right, and the points are further apart
+  // along it. Where both are right, it is the mean: round-off must not decide.
   template <int dim>
   void
   Contact<dim>::find_normals()
@@ -343,14 +353,16 @@ namespace limber
     points_touch.assign(touches.size(), 0);
     for (std::size_t t = 0; t < touches.size(); ++t)
       {
-        double largest = -1e300;
-        for (int k = 0; k < n_separations; ++k)
+        double       largest = -1e300;
+        const double nothing =
+          1e-6 * std::min(edge[touches[t].a], edge[touches[t].b]);
+        for (int k = n_separations; k-- > 0;)
           {
             const Vector direction =
               vector_in<dim>(&directions[(t * n_separations + k) * dim]);
             const double of_a = furthest(2 * t, k),
                          of_b = furthest(2 * t + 1, k);
-            if (-of_b - of_a > largest && direction != Vector())
+            if (-of_b - of_a > largest + nothing && direction != Vector())
               {
                 largest = -of_b - of_a;
                 store_vector<dim>(direction, faces[t].normal.data());

@@ -311,9 +311,8 @@ namespace limber
                 along.fill(0);
                 if constexpr (dim == 2)
                   along = {{-across[1], across[0]}};
-                candidate.reach =
-                  (of_body.reach != nullptr ? of_body.reach[p] : half_edge) *
-                  stress.stretch_along(of_body, p, across);
+                candidate.reach = reach_of(of_body, p, half_edge) *
+                                  stress.stretch_along(of_body, p, across);
                 candidate.width = half_edge;
                 if (dim == 2)
                   candidate.width *= stress.stretch_along(of_body, p, along);

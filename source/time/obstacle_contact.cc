@@ -277,7 +277,10 @@ namespace limber
                              o,
                              x,
                              distance,
-                             points.reach[p] *
+                             reach_of(points,
+                                      p,
+                                      half_edge_of<dim>(points.mass[p] *
+                                                        inverse_density)) *
                                stretch_along(body, p, distance.normal)},
                             ways[o],
                             step);

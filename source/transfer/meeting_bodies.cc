@@ -148,7 +148,7 @@ namespace limber
       using Number = Pack<Extents<dim>::lanes>;
 
       std::array<Number, dim> x;
-      Number                  half_edge;
+      Number                  half_edge, reach;
 
       PlacesOfPack(const PointView<dim> &points,
                    const std::size_t     first,
@@ -168,6 +168,7 @@ namespace limber
             if (half_edge[k] != volume) // most are as large as the others
               edge = half_edge_of<dim>(volume = half_edge[k]);
             half_edge[k] = edge;
+            reach[k]     = reach_of(points, std::min(first + k, end - 1), edge);
           }
       }
 
@@ -296,7 +297,7 @@ namespace limber
               for (int k = 0; k < n_separations; ++k)
                 store(larger<Number>(load<Number>(furthest + k * lanes),
                                      places.along(direction + k * dim, sign) +
-                                       places.half_edge),
+                                       places.reach),
                       furthest + k * lanes);
             }
         }
@@ -368,9 +369,7 @@ namespace limber
         for (int k = 0; k < lanes && p + k < some.batch.end; ++k)
           {
             const double half_edge = places.half_edge[k];
-            const double reach =
-              points.reach != nullptr ? points.reach[p + k] : half_edge;
-            if (depth[k] <= stretch * (2 * reach + largest_reach) +
+            if (depth[k] <= stretch * (2 * places.reach[k] + largest_reach) +
                               (turned - 0.5) * half_edge)
               near.push_back(static_cast<std::uint32_t>(p + k));
           }

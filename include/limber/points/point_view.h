@@ -91,8 +91,9 @@ namespace limber
     double        *volumetric = nullptr;
     std::uint32_t *cell       = nullptr; // of the place
     double        *crossings  = nullptr; // cells entered since the start
-    // From the point to where its material ends towards what it may touch, m,
-    // before it is stretched (time/obstacle_contact.h)
+    // Of a point at the surface of a body that may touch something: its
+    // distance from that before it was stretched, m; 0 of others (see
+    // reach_of())
     double *reach = nullptr;
     // Of what the point stands for, as it was at the start, along the axes, m
     std::array<double *, dim> edge{};

@@ -44,6 +44,13 @@ namespace limber
         return spline_cell(grid, cell).node;
     }
 
+    /** Which of the functions along d that of node k has as a factor. */
+    static constexpr int
+    digit(const int k, const int d)
+    {
+      return (d == 0 ? k : d == 1 ? k / along : k / (along * along)) % along;
+    }
+
     /** The number of node k. */
     std::uint32_t
     node(const int k) const
@@ -120,13 +127,6 @@ namespace limber
       std::conditional_t<degree == 1,
                          NoSpline,
                          SplineCell<dim, degree == 1 ? 2 : degree>>;
-
-    /** Which of the functions along d that of node k has as a factor. */
-    static constexpr int
-    digit(const int k, const int d)
-    {
-      return (d == 0 ? k : d == 1 ? k / along : k / (along * along)) % along;
-    }
 
     static const Spline &
     spline_cell(const GridView<dim> &grid, const std::uint32_t cell)

@@ -4,6 +4,7 @@
 
 #include <limber/time/contact_impulses.h>
 #include <limber/time/integrator.h>
+#include <limber/time/surface_fit.h>
 #include <limber/transfer/meeting_bodies.h>
 
 #include <map>
@@ -46,9 +47,11 @@ namespace limber
    * What presses in the new velocity does so in every other one of the step. So
    * momentum is kept, and energy does not grow.
    *
-   * Normals are those of nodes at which both bodies have mass: of -g_b, g_a and
-   * g_a - g_b, with the gradient of volume g = sum V grad N of each body, the
-   * direction along which the points are furthest apart.
+   * Normals are those of nodes at which both bodies have mass. That of a body
+   * there has the direction of its gradient of volume, g = sum V grad N, turned
+   * so that it is normal to the surface in which its points say that it ends
+   * (SurfaceFit). Of those of a, of b and the mean it is the one along which
+   * the material of the two is furthest apart.
    *
    * Bodies of different fields that are in no pair stick together: both have
    * the velocity and the increment that one field would give them.
@@ -251,6 +254,13 @@ namespace limber
     void
     find_gradients();
     void
+    end_at_sides();
+    void
+    fit_surfaces();
+    template <int degree>
+    void
+    add_to_fits(const Group &group);
+    void
     find_normals();
 
     void
@@ -333,27 +343,29 @@ namespace limber
     LazyArray<std::uint32_t> hanging_of;
     // By field and cell: 2 + number of the rim, 1 without corners, 0 where
     // nobody has looked since the touches were others
-    LazyArray<std::uint32_t>   rim_of;
-    std::vector<std::uint32_t> looked_at; // others than 0 of these
-    std::vector<Rim>           rims;
-    std::vector<MeetingCorner> corners; // of the rims
-    std::vector<MeetingBatch>  batches; // of points in cells with a rim
-    std::vector<Group>         groups;  // of these
-    std::vector<double>        volume_gradients; // in slots, m^(dim-1)
-    std::vector<double>        directions;       // of the touches, see Extents
-    Extents<dim>               extents;
-    std::vector<Faces<dim>>    faces;        // of the touches
-    std::vector<char>          points_touch; // likewise
-    SharedSlots                gradients_of_ranks{2 * dim, false};
-    SharedSlots                extents_of_ranks{2 * n_separations, true};
-    ContactImpulses<dim>       impulses;
-    std::vector<Stretch>       stretches; // of the bodies
-    std::vector<Sides>         sides;     // of the pairs
-    std::vector<std::uint32_t> near;      // points of a batch
-    Bins                       bins;
-    std::vector<Facing>        facing;
-    Part                       part;
-    const unsigned int         this_rank;
+    LazyArray<std::uint32_t>     rim_of;
+    std::vector<std::uint32_t>   looked_at; // others than 0 of these
+    std::vector<Rim>             rims;
+    std::vector<MeetingCorner>   corners; // of the rims
+    std::vector<MeetingBatch>    batches; // of points in cells with a rim
+    std::vector<Group>           groups;  // of these
+    std::vector<double>          volume_gradients; // in slots, m^(dim-1)
+    std::vector<double>          directions; // of the touches, see Extents
+    Extents<dim>                 extents;
+    std::vector<Faces<dim>>      faces;        // of the touches
+    std::vector<char>            points_touch; // likewise
+    std::vector<SurfaceFit<dim>> fits;         // in slots
+    SharedSlots                  gradients_of_ranks{2 * dim, false};
+    SharedSlots                  fits_of_ranks{2 * SurfaceFit<dim>::n, false};
+    SharedSlots                  extents_of_ranks{2 * n_separations, true};
+    ContactImpulses<dim>         impulses;
+    std::vector<Stretch>         stretches; // of the bodies
+    std::vector<Sides>           sides;     // of the pairs
+    std::vector<std::uint32_t>   near;      // points of a batch
+    Bins                         bins;
+    std::vector<Facing>          facing;
+    Part                         part;
+    const unsigned int           this_rank;
     // Of vertices that other ranks hold as well: who does
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
                                            ranks_of_vertex;

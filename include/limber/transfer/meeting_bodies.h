@@ -37,6 +37,31 @@ namespace limber
 
 
 
+  /** Whether a point is one of those next to the surface of its body. */
+  template <int dim>
+  inline bool
+  is_at_surface(const PointView<dim> &points, const std::size_t p)
+  {
+    return points.reach != nullptr && points.reach[p] > 0;
+  }
+
+
+
+  /**
+   * From a point to where its material ends, m, before it is stretched: at the
+   * surface of the body, otherwise at that of a cube of its volume.
+   */
+  template <int dim>
+  inline double
+  reach_of(const PointView<dim> &points,
+           const std::size_t     p,
+           const double          half_edge)
+  {
+    return is_at_surface(points, p) ? points.reach[p] : half_edge;
+  }
+
+
+
   /** Those of one body side by side. */
   struct MeetingBatches
   {
@@ -79,9 +104,8 @@ namespace limber
   find_directions(std::size_t n, const double *gradients, double *directions);
 
   /**
-   * How far points go along these, with half the edges of their cubes: the
-   * second bodies against them. In each slot, lane by lane; see
-   * largest_of_lanes().
+   * How far points and their material go along these: the second bodies
+   * against them. In each slot, lane by lane; see find_largest().
    */
   template <int dim>
   struct Extents

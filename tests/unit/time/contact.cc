@@ -724,6 +724,71 @@ TEST(Contact, ABlockSlidesOnAPlateAcrossTheGrid)
 
 
 
+// The points of a lattice end in stairs there, the material in planes: nothing
+// holds what slides without friction.
+TEST(Contact, NothingHoldsABlockWithoutFrictionAcrossTheGrid)
+{
+  for (const std::string kernel : {"linear", "quadratic"})
+    for (const double degrees : {3., 10., 30.})
+      {
+        SCOPED_TRACE(kernel + ", " + digits(degrees));
+        auto settings = tilted(degrees,
+                               dealii::Point<2>(),
+                               1,
+                               {"Contact/Pair faces/Law=slip",
+                                "Body block/Placement=regular",
+                                "Body plate/Placement=regular",
+                                "Grid/Upper corner=5, 5",
+                                "Grid/Cells=80, 80"});
+        for (std::string &setting : settings)
+          if (setting == "Method/Kernel=quadratic")
+            setting = "Method/Kernel=" + kernel;
+        SceneRun<2>  run(tilted_plate, settings);
+        const double mass = run.totals().bodies[0].mass;
+        run.advance_to(0.4);
+        const auto   p     = run.totals().bodies[0].momentum;
+        const double angle = degrees * std::acos(-1.) / 180;
+        const double along = p[0] * std::cos(angle) + p[1] * std::sin(angle),
+                     exact = 1 + 9.81 * std::sin(slope) * 0.4;
+        RecordProperty("velocity " + kernel + digits(degrees),
+                       digits(along / mass / exact));
+        EXPECT_NEAR(along / mass, exact, 0.02 * exact);
+        EXPECT_LT(run.totals().momentum_error, 1e-12);
+      }
+}
+
+
+
+// Nor does it throw round bodies of few cells that graze each other.
+TEST(Contact, DiscsThatGrazeEachOtherGainNoEnergy)
+{
+  for (const double aside : {0.003, 0.006, 0.009}) // m
+    {
+      SCOPED_TRACE(digits(aside));
+      SceneRun<2>  run(two_disks,
+                      {"Method/Kernel=quadratic",
+                        "Grid/Upper corner=0.1, 0.1",
+                        "Grid/Cells=40, 40",
+                        "Body lower/Placement=regular",
+                        "Body upper/Placement=regular",
+                        "Body lower/Ball/Radius=0.01",
+                        "Body upper/Ball/Radius=0.01",
+                        "Body lower/Ball/Centre=0.036, 0.048",
+                        "Body upper/Ball/Centre=0.06, " + digits(0.048 + aside),
+                        "Body lower/Initial velocity=8; 0",
+                        "Body upper/Initial velocity=0; 0"});
+      const double start = energy(run.totals());
+      run.advance_to(1.5e-3);
+      const auto totals = run.totals();
+      RecordProperty("energy " + digits(aside), digits(energy(totals) / start));
+      EXPECT_LT(energy(totals), start);
+      EXPECT_GT(energy(totals), 0.95 * start);
+      EXPECT_LT(totals.momentum_error, 1e-12);
+    }
+}
+
+
+
 // a = 2/3 g sin, as friction suffices.
 TEST(Contact, ADiscRollsDownAPlateAcrossTheGrid)
 {

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/grid/node_vector.h>
+#include <limber/time/cell_functions.h>
+#include <limber/time/contact.h>
+
+/**
+ * @file What the points at the surface of a body say of its normal at the nodes
+ * where it meets another one.
+ */
+namespace limber
+{
+  template <int dim>
+  void
+  Contact<dim>::fit_surfaces()
+  {
+    fits.clear();
+    for (std::size_t slot = 0; slot < 2 * touches.size(); ++slot)
+      fits.emplace_back(
+        vector_in<dim>(&volume_gradients[slot * dim]),
+        edge[slot % 2 == 0 ? touches[slot / 2].a : touches[slot / 2].b]);
+    with_degree(grid, [&](const auto degree) {
+      for (const Group &group : groups)
+        if (points[group.body].reach != nullptr)
+          add_to_fits<decltype(degree)::value>(group);
+    });
+    share(fits_of_ranks, [this](const std::size_t t) {
+      constexpr int               n = SurfaceFit<dim>::n;
+      std::array<double *, 2 * n> slots;
+      for (int k = 0; k < 2 * n; ++k)
+        slots[k] = &fits[2 * t + k / n].sums[k % n];
+      return slots;
+    });
+    for (std::size_t slot = 0; slot < fits.size(); ++slot)
+      store_vector<dim>(fits[slot].normal(), &volume_gradients[slot * dim]);
+    end_at_sides();
+  }
+
+
+
+  // How much a point is stretched changes little among the normals of a cell:
+  // it is asked once, along their mean.
+  template <int dim>
+  template <int degree>
+  void
+  Contact<dim>::add_to_fits(const Group &group)
+  {
+    const PointView<dim>    &of_body = points[group.body];
+    const StressUpdate<dim> &stress  = *parts.bodies[group.body]->stress;
+    for (std::size_t b = group.first; b < group.last; ++b)
+      {
+        const MeetingBatch        &some = batches[b];
+        const CellGeometry<dim>   &cell = grid.cells[some.batch.cell];
+        CellFunctions<dim, degree> functions(grid, some.batch.cell);
+        for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
+          {
+            if (!is_at_surface(of_body, p))
+              continue;
+            functions.go_to(of_body, p);
+            const auto xi = natural_place(of_body, cell, p);
+            Vector     upwards;
+            for (std::uint32_t c = some.first; c < some.last; ++c)
+              upwards +=
+                functions.value(corners[c].k) * fits[corners[c].slot].guess();
+            const double length = upwards.norm();
+            if (!(length > 0))
+              continue;
+            std::array<double, dim> direction;
+            store_vector<dim>(upwards / length, direction.data());
+            const double reach =
+              of_body.reach[p] * stress.stretch_along(of_body, p, direction);
+            for (std::uint32_t c = some.first; c < some.last; ++c)
+              {
+                // A node that others hang on counts in its own cells alone.
+                const MeetingCorner &corner = corners[c];
+                if (functions.node(corner.k) != touches[corner.slot / 2].node)
+                  continue;
+                Vector place; // from the node
+                for (int d = 0; d < dim; ++d)
+                  place[d] = (xi[d] - functions.digit(corner.k, d)) /
+                             cell.inverse_edge[d];
+                fits[corner.slot].add(place, reach, functions.value(corner.k));
+              }
+          }
+      }
+  }
+
+
+
+  template void
+  Contact<2>::fit_surfaces();
+  template void
+  Contact<3>::fit_surfaces();
+} // namespace limber
