@@ -37,8 +37,8 @@ namespace limber
     : sides(sides)
     , others(sides_at_nodes<dim>(sides))
     , by_surface(by_surface)
-    , constraints{SideConstraints<dim>(this->sides),
-                  SideConstraints<dim>(this->others)}
+    , constraints{{SideConstraints<dim>(this->sides),
+                   SideConstraints<dim>(this->others)}}
     , one_sided(limber::any_one_sided<dim>(others) ||
                 (limber::any_one_sided<dim>(sides) &&
                  (by_surface.empty() ||

@@ -3,7 +3,6 @@
 #include <limber/time/affine_at_levels.h>
 #include <limber/time/cell_functions.h>
 
-#include <algorithm>
 #include <map>
 
 namespace limber
@@ -19,6 +18,8 @@ namespace limber
     if (table.hanging.empty())
       return;
 
+    // This rank knows the coarse cells beside its own, so the masters of nodes
+    // that hang there are corners of cells that it knows.
     std::map<std::uint32_t, std::array<double, dim>> places;
     for (const HangingNode &hanging : table.hanging)
       {

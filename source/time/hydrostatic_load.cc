@@ -14,7 +14,8 @@ namespace limber
     // on all of it counts as borne; at rest it is two and more below a surface.
     constexpr double fully_borne = 0.5;
 
-    // The largest acceleration of a node by its load, over that of gravity.
+    // The largest acceleration of a node by its load in semi-implicit steps,
+    // over that of gravity.
     constexpr double most_of_gravity = 100;
   } // namespace
 
@@ -340,13 +341,16 @@ namespace limber
 
 
   // Points that have just entered a cell give the nodes behind it next to
-  // nothing: what the cell counts as its weight would throw these out.
+  // nothing. What the cell counts as its weight would throw these out, and by
+  // their gradient, in steps as long as semi-implicit ones, the points.
   template <int dim>
   void
   HydrostaticLoad<dim>::add(const NodalFields<dim> &nodes,
                             const unsigned int      field,
                             LazyArray<double>      &forces) const
   {
+    const bool is_limited =
+      problem.method.integration == TimeIntegration::semi_implicit;
     const double most = most_of_gravity * problem.loads.gravity.norm();
     const auto &[loaded, on_loaded] = of_fields[field];
     for (std::size_t k = 0; k < loaded.size(); ++k)
@@ -354,7 +358,8 @@ namespace limber
         const double bearable =
           most * nodes.record(field, loaded[k])[NodeLayout<dim>::mass];
         const double force = on_loaded[k].norm();
-        const double share = force > bearable ? bearable / force : 1;
+        const double share =
+          is_limited && force > bearable ? bearable / force : 1;
         for (unsigned int d = 0; d < dim; ++d)
           forces[std::size_t(loaded[k]) * dim + d] += share * on_loaded[k][d];
       }
