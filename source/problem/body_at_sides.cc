@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <vector>
 
 namespace limber
@@ -200,6 +201,69 @@ namespace limber
 
 
   template <int dim>
+  bool
+  are_one_piece(const Problem<dim> &problem)
+  {
+    constexpr unsigned int per_edge  = 4; // places in a cell
+    using Node                       = std::array<int, dim>;
+    const GridDescription<dim> &grid = problem.grid;
+    std::vector<std::set<Node>> pieces; // which share no node
+    for (const Body<dim> &body : problem.bodies)
+      {
+        const Corners<dim>                   box = body.shape->bounding_box();
+        std::array<int, dim>                 first;
+        std::array<std::vector<double>, dim> places;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            const double part = grid.edge(d) / per_edge;
+            first[d]       = std::floor((box.first[d] - grid.lower[d]) / part);
+            const int last = std::ceil((box.second[d] - grid.lower[d]) / part);
+            for (int k = first[d]; k < last; ++k)
+              places[d].push_back(grid.lower[d] + (k + 0.5) * part);
+          }
+        std::set<Node>     nodes;
+        std::size_t        count = 1;
+        dealii::Point<dim> place;
+        for (const auto &of_direction : places)
+          count *= of_direction.size();
+        for (std::size_t i = 0; i < count; ++i)
+          {
+            Node cell;
+            for (std::size_t d = 0, rest = i; d < dim; ++d)
+              {
+                const int k = rest % places[d].size();
+                rest /= places[d].size();
+                place[d] = places[d][k];
+                cell[d]  = std::floor((first[d] + k + 0.5) / per_edge);
+              }
+            if (!body.shape->contains(place))
+              continue;
+            for (unsigned int corner = 0; corner < 1u << dim; ++corner)
+              {
+                Node node = cell;
+                for (unsigned int d = 0; d < dim; ++d)
+                  node[d] += corner >> d & 1;
+                nodes.insert(node);
+              }
+          }
+        // joins what it shares nodes with
+        std::vector<std::set<Node>> others;
+        for (auto &piece : pieces)
+          if (std::any_of(piece.begin(), piece.end(), [&](const Node &node) {
+                return nodes.count(node) > 0;
+              }))
+            nodes.merge(piece);
+          else
+            others.push_back(std::move(piece));
+        others.push_back(std::move(nodes));
+        pieces = std::move(others);
+      }
+    return pieces.size() <= 1;
+  }
+
+
+
+  template <int dim>
   void
   check_moving_sides(const Problem<dim> &problem)
   {
@@ -238,6 +302,8 @@ namespace limber
   stays_clear(bool, const Body<2> &, const Problem<2> &);
   template bool
   is_held(const Body<2> &, const Problem<2> &);
+  template bool
+  are_one_piece(const Problem<2> &);
   template void
   check_moving_sides(const Problem<2> &);
   template bool
@@ -246,6 +312,8 @@ namespace limber
   stays_clear(bool, const Body<3> &, const Problem<3> &);
   template bool
   is_held(const Body<3> &, const Problem<3> &);
+  template bool
+  are_one_piece(const Problem<3> &);
   template void
   check_moving_sides(const Problem<3> &);
 } // namespace limber

@@ -40,13 +40,12 @@ namespace limber
     std::optional<Hindrance>
     obstacle_to_initial_frame(const Section &section, const Section &root)
     {
-      if (!read_word(section, "Material", law_words()).is_elastic)
-        return Hindrance{
-          "needs a stress that follows from the deformation "
-          "alone, which the material " +
-            in_quotes(section.text("Material")) + " does not have",
-          ", or an elastic material, for instance 'neo hookean'"};
-      if (!section.is_empty("Initial stress"))
+      const auto &law = read_word(section, "Material", law_words());
+      if (!law.is_elastic && !law.is_plastic)
+        return Hindrance{"is for solids, which the material " +
+                           in_quotes(section.text("Material")) + " is not",
+                         ""};
+      if (law.is_elastic && !section.is_empty("Initial stress"))
         return Hindrance{"has a stress that follows from the deformation "
                          "alone, so that no 'Initial stress' can be",
                          ", or leave 'Initial stress' empty"};
@@ -90,9 +89,40 @@ namespace limber
         return Hindrance{"has an assumed strain with linear functions only",
                          ", or 'Method/Kernel = linear', or 'Locking treatment "
                          "= cell' or 'none'"};
-      if (root.list("Bodies").size() > 1)
+      return {};
+    }
+
+
+
+    /**
+     * Why several bodies cannot have the frame of the initial configuration: a
+     * body would not notice that it meets another one. In steps of Newton's
+     * method those that are one piece can.
+     */
+    template <int dim>
+    std::optional<Hindrance>
+    obstacle_to_one_piece(const Section &root, const Problem<dim> &problem)
+    {
+      if (problem.bodies.size() == 1)
+        return {};
+      if (!is_solved_by_newton(problem.method.integration))
         return Hindrance{"is for a scene of one body: it would not notice that "
                          "it meets another one",
+                         ""};
+      if (!root.subsection("Contact").list("Pairs").empty())
+        return Hindrance{"is not for bodies that meet ('Contact/Pairs')", ""};
+      for (const auto &body : problem.bodies)
+        {
+          const Section section = root.subsection("Body " + body.name);
+          if (body.frame == Frame::current ||
+              obstacle_to_initial_frame(section, root))
+            return Hindrance{"is for all bodies or for none, and body " +
+                               in_quotes(body.name) + " has the current one",
+                             ""};
+        }
+      if (!are_one_piece(problem))
+        return Hindrance{"is for bodies that are one piece: it would not "
+                         "notice that they meet later",
                          ""};
       return {};
     }
@@ -212,7 +242,11 @@ namespace limber
             return "it may slide and lift from the side " +
                    in_quotes(side_names(dim)[side]);
         }
-      return is_held(body, problem) || !walls ||
+      const bool held =
+        std::any_of(problem.bodies.begin(),
+                    problem.bodies.end(),
+                    [&](const auto &any) { return is_held(any, problem); });
+      return held || !walls ||
                  stays_clear(
                    !root.subsection("Loads").list("Face loads").empty(),
                    body,
@@ -224,12 +258,32 @@ namespace limber
 
 
 
+    /**
+     * Whether cells that stay with a body may not be able to follow it: what
+     * goes from one equilibrium to the next does not flow that far.
+     */
+    template <int dim>
+    bool
+    may_flow_far(const Body<dim> &body, const TimeIntegration integration)
+    {
+      return body.is_plastic && integration != TimeIntegration::quasi_static &&
+             !(is_solved_by_newton(integration) &&
+               flows_like_metal(body.law, body.material));
+    }
+
+
+
     template <int dim>
     void
-    choose_frame(const Section &root, Body<dim> &body, Problem<dim> &problem)
+    choose_frame(const Section                  &root,
+                 const std::optional<Hindrance> &obstacle_of_all,
+                 Body<dim>                      &body,
+                 Problem<dim>                   &problem)
     {
       const Section section  = root.subsection("Body " + body.name);
       auto          obstacle = obstacle_to_initial_frame(section, root);
+      if (!obstacle)
+        obstacle = obstacle_of_all;
       if (!obstacle && problem.grid.levels > 0)
         obstacle = Hindrance{"does not go with cells of several sizes yet",
                              ", or 'Grid/Levels = 0'"};
@@ -240,17 +294,40 @@ namespace limber
       if (body.frame != Frame::automatic)
         return;
 
-      const std::string meeting = what_it_may_meet(root, body, problem);
+      std::string meeting; // of any of what is one piece
+      for (const auto &part : problem.bodies)
+        if (meeting.empty())
+          meeting = may_flow_far(part, problem.method.integration) ?
+                      "it may flow far" :
+                      what_it_may_meet(root, part, problem);
       body.frame =
         !obstacle && meeting.empty() ? Frame::initial : Frame::current;
       if (!body.is_liquid)
         problem.notes.push_back(
           "Body " + in_quotes(body.name) + ": frame 'auto' is " +
           (body.frame == Frame::initial ?
-             "'initial', in which nothing crosses cells: it is one elastic "
-             "body, held or without walls to meet." :
+             "'initial', in which nothing crosses cells: it is one solid, held "
+             "or without walls to meet." :
            obstacle ? "'current', as 'initial' " + obstacle->cause + "." :
                       "'current', as " + meeting + "."));
+    }
+
+
+
+    // Bodies share the functions of their nodes.
+    template <int dim>
+    void
+    check_frames(const Problem<dim> &problem)
+    {
+      for (const auto &body : problem.bodies)
+        for (const auto &other : problem.bodies)
+          if (body.frame == Frame::initial && other.frame == Frame::current)
+            throw InputError(
+              "The frame 'initial' in 'Body " + body.name +
+              "/Frame' is for all bodies or for none, and body " +
+              in_quotes(other.name) + " has the current one. Set 'Body " +
+              other.name + "/Frame = initial' as well, or 'Body " + body.name +
+              "/Frame = current'.");
     }
 
 
@@ -448,8 +525,10 @@ namespace limber
   void
   choose_frames_and_kernel(const Section &root, Problem<dim> &problem)
   {
+    const auto obstacle_of_all = obstacle_to_one_piece(root, problem);
     for (auto &body : problem.bodies)
-      choose_frame(root, body, problem);
+      choose_frame(root, obstacle_of_all, body, problem);
+    check_frames(problem);
 
     const Section method         = root.subsection("Method");
     problem.grid.kernel          = read_word(method, "Kernel", kernel_words());

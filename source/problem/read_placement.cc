@@ -4,8 +4,12 @@
 #include <limber/problem/ball.h>
 #include <limber/problem/cylinder.h>
 #include <limber/problem/formula_shape.h>
+#include <limber/problem/mesh_shape.h>
 #include <limber/problem/point_list.h>
+#include <limber/problem/polygon.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/stl.h>
+#include <limber/problem/union_of_shapes.h>
 #include <limber/problem/words.h>
 
 #include <algorithm>
@@ -193,6 +197,23 @@ namespace limber
 
 
 
+    /**
+     * Whether the faces of a shape run as they like, so that parts that count
+     * as a whole miss its volume. Pictures and lists bring theirs along.
+     */
+    template <int dim>
+    bool
+    has_faces_of_its_own(const Shape<dim> &shape)
+    {
+      return has_curved_surface(shape) ||
+             dynamic_cast<const PolygonShape<dim> *>(&shape) ||
+             dynamic_cast<const StlShape<dim> *>(&shape) ||
+             dynamic_cast<const MeshShape<dim> *>(&shape) ||
+             dynamic_cast<const UnionShape<dim> *>(&shape);
+    }
+
+
+
     // Parts of 'regular' are in or out as a whole: a block may be too thick
     // by one of them, or too thin. A lattice of its own, which domains need,
     // fills the cells unevenly: what is under stress is not at rest, and
@@ -237,7 +258,7 @@ namespace limber
           problem.grid.kernel == KernelKind::linear &&
           (block != nullptr ?
              !is_upright(*block) || !is_in_lattice(*block, body, problem.grid) :
-             has_curved_surface(*body.shape)))
+             has_faces_of_its_own(*body.shape)))
         return choose(Placement::cut,
                       "cut",
                       "a liquid beside obstacles rests with the mass of what "

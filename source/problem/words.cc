@@ -245,15 +245,18 @@ namespace limber
     static const Words<Frame> words = {
       {"auto",
        Frame::automatic,
-       "'initial' for one elastic body that a side holds or that has no walls "
-       "to meet, else 'current'"},
+       "'initial' for one elastic body, with implicit and quasi-static steps "
+       "also one of metal or several that are one piece, with quasi-static ones "
+       "of any solid, that a side holds or that has no walls to meet, else "
+       "'current'"},
       {"current",
        Frame::current,
        "where the points are: bodies may flow, meet and cross cells"},
       {"initial",
        Frame::initial,
-       "where they were at the start: nothing crosses a cell, for one elastic "
-       "body that meets nobody"}};
+       "where they were at the start: nothing crosses a cell, for one solid "
+       "that meets nobody, with implicit and quasi-static steps also for several "
+       "that are one piece"}};
     return words;
   }
 

@@ -129,14 +129,9 @@ namespace limber
           {
             const Motion &from  = before.motions[k];
             Motion       &to    = trial.motions[k];
-            const Matrix  cof   = cofactor<dim>(from.f);
-            Matrix        way   = {}; // f f_before^-1
+            const Matrix  way   = times_inverse<dim>(to.f, from.f);
             double        trace = -dim;
-            for (int d = 0; d < dim; ++d)
-              for (int e = 0; e < dim; ++e)
-                for (int c = 0; c < dim; ++c)
-                  way[d][e] += to.f[d][c] * cof[e][c] / from.growth;
-            Matrix grown;
+            Matrix        grown;
             for (int d = 0; d < dim; ++d)
               {
                 trace += way[d][d];
@@ -211,7 +206,7 @@ namespace limber
         if constexpr (has_bending_modes<Basis>)
           if (strain.assumes)
             return trial.assumed.points[k].F;
-        return trial.motions[k].f;
+        return trial.motions[k].F;
       }
 
       void
@@ -297,18 +292,17 @@ namespace limber
           std::copy(values.begin(), values.end(), own.begin());
           if (!Law::accepts(own))
             return;
-          if (Law::is_plastic && frame == Frame::initial)
-            throw std::logic_error("no flow in the initial frame");
           const Law             law(own);
           const StrainTreatment treatment =
             strain_treatment(law, kind, response);
-          if constexpr (!Law::is_plastic)
-            if (on_splines)
-              {
-                result = std::make_unique<LawTrialStress<Quadratic<dim>, Law>>(
-                  law, treatment, frame);
-                return;
-              }
+          if (on_splines)
+            {
+              result =
+                std::make_unique<LawTrialStress<Quadratic<dim>, Law>>(law,
+                                                                      treatment,
+                                                                      frame);
+              return;
+            }
           result = std::make_unique<LawTrialStress<Linear<dim>, Law>>(law,
                                                                       treatment,
                                                                       frame);

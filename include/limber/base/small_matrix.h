@@ -97,6 +97,31 @@ namespace limber
 
 
 
+  /** a b^-1 */
+  template <int dim, class Number>
+  inline SmallMatrix<dim, Number>
+  times_inverse(const SmallMatrix<dim, Number> &a,
+                const SmallMatrix<dim, Number> &b)
+  {
+    const auto               cof   = cofactor<dim>(b);
+    const Number             scale = 1. / determinant<dim>(b);
+    SmallMatrix<dim, Number> result;
+#pragma GCC unroll 8
+    for (int i = 0; i < dim; ++i)
+#pragma GCC unroll 8
+      for (int j = 0; j < dim; ++j)
+        {
+          result[i][j] = a[i][0] * cof[j][0];
+#pragma GCC unroll 8
+          for (int k = 1; k < dim; ++k)
+            result[i][j] += a[i][k] * cof[j][k];
+          result[i][j] *= scale;
+        }
+    return result;
+  }
+
+
+
   /**
    * The rotation R of the polar decomposition a = R U; det(a) > 0. In three
    * dimensions by Higham's iteration R <- (R + R^-T) / 2, which converges

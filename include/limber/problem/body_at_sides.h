@@ -4,7 +4,8 @@
 
 #include <limber/problem/problem.h>
 
-/** @file What bodies and the sides of the box are to each other at the start.
+/** @file What bodies are to each other and to the sides of the box at the
+ * start.
  */
 namespace limber
 {
@@ -39,6 +40,15 @@ namespace limber
   template <int dim>
   bool
   is_held(const Body<dim> &body, const Problem<dim> &problem);
+
+  /**
+   * Whether the bodies of a scene are one piece: they share nodes of the grid,
+   * each directly or by others, and stick to each other there. From places on
+   * a lattice.
+   */
+  template <int dim>
+  bool
+  are_one_piece(const Problem<dim> &problem);
 
   /**
    * Throws InputError where a side with a 'velocity' moves inward, so far that

@@ -327,17 +327,7 @@ namespace limber
         {
           gradient[k] = operation->turned(varied[k * points.size() + p]);
           if constexpr (finite_strain)
-            {
-              const Matrix F   = deformation(p);
-              const Matrix cof = cofactor<dim>(F);
-              const double J   = determinant<dim>(F);
-              Matrix       pushed{};
-              for (int d = 0; d < dim; ++d)
-                for (int e = 0; e < dim; ++e)
-                  for (int c = 0; c < dim; ++c)
-                    pushed[d][e] += gradient[k][d][c] * cof[e][c] / J;
-              gradient[k] = pushed;
-            }
+            gradient[k] = times_inverse<dim>(gradient[k], deformation(p));
         }
       for (int k = 0; k < n_dofs; ++k)
         {

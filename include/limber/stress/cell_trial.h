@@ -22,10 +22,15 @@ namespace limber
 
     // of the functions where forces act, 1/m
     std::array<std::array<double, dim>, Basis::n_nodes> gradient;
-    // of the step, or F in the initial frame; as it is assumed where it is
+    // From where the functions are: of the step, or F in the initial frame; as
+    // it is assumed where it is
+    SquareMatrix<dim> F;
+    // What the state is deformed by: F, or in the initial frame, where the law
+    // flows, that of the step
     SquareMatrix<dim> f;
-    double            growth;       // of the volume by it, the point's own
+    double            growth;       // of the volume by f, the point's own
     double            volume;       // at the start, m^dim
+    double            share;        // of its growth in the mean of the cell
     double            former_ratio; // volume ratio that the growth belongs to
     State             state;
     State             start;            // where the law flows, before the step
@@ -54,10 +59,11 @@ namespace limber
         result[d][d] += mean;
       if constexpr (finite)
         {
-          result = times<dim>(result, cofactor<dim>(f)); // det(f) f^-T
+          const double ratio = determinant<dim>(F);
+          result = times<dim>(result, cofactor<dim>(F)); // det(F) F^-T
           for (auto &row : result)
             for (double &entry : row)
-              entry /= growth;
+              entry /= ratio;
         }
       return result;
     }
@@ -79,12 +85,13 @@ namespace limber
 
     std::array<std::array<double, dim>, Basis::n_nodes> u; // of nodes, m
     std::vector<TrialMotion<Basis, Law>>                motions;
-    std::conditional_t<has_bending_modes<Basis>,
-                       AssumedTrial<dim, Law::finite_strain>,
-                       NoAssumedTrial>
-           assumed;
-    double volume = 0;               // of all at the start, m^dim
-    double slope = 0, curvature = 0; // of the energy, by mean growth, J
+    using Assumed = std::conditional_t<has_bending_modes<Basis>,
+                                       AssumedTrial<dim, Law::finite_strain>,
+                                       NoAssumedTrial>;
+    Assumed assumed;
+    Assumed assumed_before; // in the initial frame, where the law flows
+    double  volume = 0;     // of all at the start, m^dim
+    double  slope = 0, curvature = 0; // of the energy, by mean growth, J
 
     /** First Piola and Kirchhoff's, Pa, of all points. */
     std::vector<SquareMatrix<dim>>

@@ -12,10 +12,11 @@
 namespace limber
 {
   /**
-   * StressUpdate for an elastic law in the frame of the initial configuration
-   * (total Lagrangian): the functions are those of the initial places, F
-   * grows by dt grad_X v, and the stress follows from F alone, so that no
-   * error of a step stays in it. The velocity is the one that strains points
+   * StressUpdate in the frame of the initial configuration (total Lagrangian):
+   * the functions are those of the initial places, F grows by dt grad_X v, and
+   * the stress of an elastic law follows from F alone, so that no error of a
+   * step stays in it. A law that flows follows f = F_now F_before^-1 from the
+   * state before. The velocity is the one that strains points
    * (NodeLayout::strain_velocity), and moves them as well: they stay where
    * their F says.
    *
@@ -24,13 +25,14 @@ namespace limber
    * 'assumed_strain', which is that of linear functions, all of it from the F_a
    * of assumed_deformation.h. The points never leave their cell, so they always
    * are one batch, on one rank, and their forces can be given in the same
-   * sweep. Stress that is given so is not stored.
+   * sweep. Elastic stress that is given so is not stored.
    */
   template <class Basis, class Law, Treatment kind>
   class InitialFrameSweep final : public LawOnPoints<Basis::dim, Law>
   {
     static constexpr int  dim    = Basis::dim;
     static constexpr bool finite = Law::finite_strain;
+    static constexpr bool flows  = Law::is_plastic;
     using Base                   = LawOnPoints<dim, Law>;
     using Base::inverse_density;
     using Base::law;
@@ -38,6 +40,12 @@ namespace limber
     using Number = PointPack<dim>;
     using Matrix = SmallMatrix<dim, Number>;
     using Places = std::array<Number, dim>;
+
+    // F of a point now and before the step
+    struct Deformed
+    {
+      Matrix F, before;
+    };
 
   public:
     InitialFrameSweep(const Law &law, const StrainTreatment &treatment)
@@ -51,10 +59,12 @@ namespace limber
            const CellSums<dim> *,
            const StressSweep &what) const override
     {
-      Number        waves = what.give_force ? sweep<true>(points, grid, what) :
-                                              sweep<false>(points, grid, what);
-      StressSummary result;
-      result.wave_speed_squared = maximum(waves);
+      const PackFindings<dim> found = what.give_force ?
+                                        sweep<true>(points, grid, what) :
+                                        sweep<false>(points, grid, what);
+      StressSummary           result;
+      result.wave_speed_squared = maximum(found.waves);
+      result.plastic            = sum(found.plastic);
       return result;
     }
 
@@ -102,7 +112,7 @@ namespace limber
       const CellGeometry<dim> &cell;
       const Velocity           velocity;
       const StressSweep       &what;
-      Number                  &waves;
+      PackFindings<dim>       &found;
 
       /** Call work(lanes) for each pack. */
       template <class Work>
@@ -118,9 +128,12 @@ namespace limber
       {
         PulledBackForce<Basis> force(grid, batch.cell);
         for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
-          const Places xi = lanes.natural(points, cell);
-          const Matrix F  = deform(lanes, xi);
-          act(F, volume_ratio_of(F), xi, lanes, force);
+          const Places   xi  = lanes.natural(points, cell);
+          const Deformed now = deform(lanes, xi);
+          const Number   J   = volume_ratio_of(now.F);
+          const State    state =
+            stress_at(now, J, growth_of(J, now.before), lanes);
+          give(state, state.pressure, now.F, J, xi, lanes, force);
         });
         if constexpr (give_force)
           force.add_to_nodes();
@@ -130,33 +143,79 @@ namespace limber
       __attribute__((always_inline)) void
       with_mean_volume() const
       {
-        Number mass{}, volume{};
+        Number mass{}, volume{}, volume_before{};
         for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
-          const Matrix F = deform(lanes, lanes.natural(points, cell));
-          const Number m = lanes.only_active(lanes.load(points.mass));
+          const Deformed now = deform(lanes, lanes.natural(points, cell));
+          const Number   m   = lanes.only_active(lanes.load(points.mass));
           mass += m;
-          volume += m * volume_ratio_of(F);
+          volume += m * volume_ratio_of(now.F);
+          if constexpr (flows)
+            volume_before += m * volume_ratio_of(now.before);
         });
         const Number J = broadcast<Number>(sum(volume) / sum(mass));
 
         PulledBackForce<Basis> force(grid, batch.cell);
-        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
-          act(deformation_gradient<dim>(points, lanes),
-              J,
-              lanes.natural(points, cell),
-              lanes,
-              force);
-        });
+        if constexpr (flows)
+          flow_with_mean_volume(
+            J,
+            broadcast<Number>(sum(volume) / sum(volume_before)),
+            owner.inverse_density * broadcast<Number>(sum(mass)),
+            force);
+        else
+          for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+            const Matrix F     = deformation_gradient<dim>(points, lanes);
+            const State  state = stress_at({F, F}, J, J, lanes);
+            give(state,
+                 state.pressure,
+                 F,
+                 J,
+                 lanes.natural(points, cell),
+                 lanes,
+                 force);
+          });
         if constexpr (give_force)
           force.add_to_nodes();
       }
 
+      // Each point flows on its own at the mean growth of the volume. By that
+      // their energy grows by the mean of J p, which so is the pressure of all
+      // in the force.
+      __attribute__((always_inline)) void
+      flow_with_mean_volume(const Number           &J,
+                            const Number           &growth,
+                            const Number           &volume,
+                            PulledBackForce<Basis> &force) const
+      {
+        Number pressure{};
+        for_each_pack([&](const auto &lanes) __attribute__((always_inline)) {
+          const Matrix F  = deformation_gradient<dim>(points, lanes);
+          const Places xi = lanes.natural(points, cell);
+          const State  state =
+            stress_at({F, deformation_before(F, xi)}, J, growth, lanes);
+          pressure += volume_of(lanes) * state.pressure;
+        });
+        if constexpr (give_force)
+          {
+            pressure = broadcast<Number>(sum(pressure)) / volume;
+            for_each_pack([&](const auto &lanes)
+                            __attribute__((always_inline)) {
+                              give(owner.stored_state(points, lanes),
+                                   pressure,
+                                   deformation_gradient<dim>(points, lanes),
+                                   J,
+                                   lanes.natural(points, cell),
+                                   lanes,
+                                   force);
+                            });
+          }
+      }
+
       /** F + dt grad_X v, which is stored, and the points move with v. */
       template <class Lanes>
-      __attribute__((always_inline)) Matrix
+      __attribute__((always_inline)) Deformed
       deform(const Lanes &lanes, const Places &xi) const
       {
-        Matrix F;
+        Deformed result;
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
@@ -166,32 +225,50 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               {
                 double *const array = points.deformation[d * dim + e];
-                F[d][e]             = lanes.load(array) +
-                          (what.step * cell.inverse_edge[e]) * slope[e];
-                lanes.store(F[d][e], array);
+                result.before[d][e] = lanes.load(array);
+                result.F[d][e]      = result.before[d][e] +
+                                 (what.step * cell.inverse_edge[e]) * slope[e];
+                lanes.store(result.F[d][e], array);
               }
             lanes.store(lanes.load(points.position[d]) +
                           what.step *
                             Basis::template value<Number>(component, xi),
                         points.position[d]);
           }
+        return result;
+      }
+
+      /** What deform() began with, once it has left @p F. */
+      __attribute__((always_inline)) Matrix
+      deformation_before(Matrix F, const Places &xi) const
+      {
+#pragma GCC unroll 8
+        for (int d = 0; d < dim; ++d)
+          {
+            const auto slope =
+              Basis::template gradient<Number>(velocity.component(d), xi);
+#pragma GCC unroll 8
+            for (int e = 0; e < dim; ++e)
+              F[d][e] -= (what.step * cell.inverse_edge[e]) * slope[e];
+          }
         return F;
       }
 
-      /** Stress, and the force of it. */
+      /** The force of a stress. */
       template <class Lanes>
       __attribute__((always_inline)) void
-      act(const Matrix           &F,
-          const Number           &J,
-          const Places           &xi,
-          const Lanes            &lanes,
-          PulledBackForce<Basis> &force) const
+      give(const State            &state,
+           const Number           &pressure,
+           const Matrix           &F,
+           const Number           &J,
+           const Places           &xi,
+           const Lanes            &lanes,
+           PulledBackForce<Basis> &force) const
       {
-        const State state = stress_at(F, J, lanes);
         if constexpr (give_force)
           {
             auto VP        = piola_kirchhoff_stress<dim, finite>(state.deviator,
-                                                          state.pressure,
+                                                          pressure,
                                                           F,
                                                           J);
             const Number V = volume_of(lanes);
@@ -202,12 +279,20 @@ namespace limber
           }
       }
 
+      /** At the volume ratio J, and where it flows, growth of that. */
       template <class Lanes>
       __attribute__((always_inline)) State
-      stress_at(const Matrix &F, const Number &J, const Lanes &lanes) const
+      stress_at(const Deformed                &now,
+                [[maybe_unused]] const Number &J,
+                [[maybe_unused]] const Number &growth,
+                const Lanes                   &lanes) const
       {
-        const State state = owner.law.template at_deformation<dim>(F, J);
-        if constexpr (!give_force)
+        State state;
+        if constexpr (flows)
+          state = flow(now, growth, lanes);
+        else
+          state = owner.law.template at_deformation<dim>(now.F, J);
+        if constexpr (flows || !give_force)
           store_state(points,
                       state,
                       [&](const Number &value, double *const array) {
@@ -215,9 +300,34 @@ namespace limber
                       });
         Number speed = owner.law.template wave_speed_squared<dim>(state);
         if constexpr (finite)
-          speed *= largest_shortening(F);
-        waves = larger(waves, lanes.only_active(speed));
+          speed *= largest_shortening(now.F);
+        found.waves = larger(found.waves, lanes.only_active(speed));
         return state;
+      }
+
+      /** From the state before, whose volume grows by the factor. */
+      template <class Lanes>
+      __attribute__((always_inline)) State
+      flow(const Deformed &now, const Number &growth, const Lanes &lanes) const
+      {
+        if (!(what.step > 0))
+          return owner.stored_state(points, lanes);
+        return owner.flow(points,
+                          lanes,
+                          times_inverse<dim>(now.F, now.before),
+                          growth,
+                          what.step,
+                          found);
+      }
+
+      /** Of the volume ratio J, if it has been that of @p before. */
+      __attribute__((always_inline)) static Number
+      growth_of(const Number &J, [[maybe_unused]] const Matrix &before)
+      {
+        if constexpr (flows)
+          return J / volume_ratio_of(before);
+        else
+          return J;
       }
 
       /** The initial one, m^dim; zero in idle lanes. */
@@ -247,6 +357,7 @@ namespace limber
         const Batch<give_force> &batch)
         : points(batch)
         , assumed(batch.owner.assumption)
+        , assumed_before(batch.owner.assumption)
         , stress(batch.cell, assumed)
       {}
 
@@ -257,11 +368,16 @@ namespace limber
       {
         points.for_each_pack([&](
           const auto &lanes) __attribute__((always_inline)) {
-          const Places xi = lanes.natural(points.points, points.cell);
-          const Matrix F  = points.deform(lanes, xi);
-          assumed.add(F, xi, lanes.only_active(lanes.load(points.points.mass)));
+          const Places   xi  = lanes.natural(points.points, points.cell);
+          const Deformed now = points.deform(lanes, xi);
+          const Number mass = lanes.only_active(lanes.load(points.points.mass));
+          assumed.add(now.F, xi, mass);
+          if constexpr (flows)
+            assumed_before.add(now.before, xi, mass);
         });
         assumed.finish();
+        if constexpr (flows)
+          assumed_before.finish();
       }
 
       __attribute__((always_inline)) void
@@ -272,7 +388,7 @@ namespace limber
                                __attribute__((always_inline)) {
                                  KeptPack &pack = n < n_kept ? kept[n] : other;
                                  ++n;
-                                 stress_of(lanes, pack);
+                                 stress_of(lanes, pack, false);
                                  if constexpr (give_force)
                                    stress.add_to_means(pack.P, pack.xi, pack.V);
                                });
@@ -290,7 +406,7 @@ namespace limber
                                  KeptPack  &pack    = is_kept ? kept[n] : other;
                                  ++n;
                                  if (rarely(!is_kept))
-                                   stress_of(lanes, pack);
+                                   stress_of(lanes, pack, true);
                                  stress.add(pack.P, pack.F, pack.xi, pack.V);
                                });
         add_to_nodes<dim, NodeLayout<dim>::force>(points.cell,
@@ -299,6 +415,12 @@ namespace limber
       }
 
     private:
+      struct Nothing
+      {
+        explicit Nothing(const StrainTreatment &)
+        {}
+      };
+
       // What is met again: the first packs, mostly all there are, are kept.
       struct KeptPack
       {
@@ -309,13 +431,25 @@ namespace limber
 
       template <class Lanes>
       __attribute__((always_inline)) void
-      stress_of(const Lanes &lanes, KeptPack &pack) const
+      stress_of(const Lanes                &lanes,
+                KeptPack                   &pack,
+                [[maybe_unused]] const bool again) const
       {
-        pack.xi            = lanes.natural(points.points, points.cell);
-        pack.F             = deformation_gradient<dim>(points.points, lanes);
-        const Matrix F     = assumed.evaluate(pack.F, pack.xi);
-        const Number J     = volume_ratio_of(F);
-        const auto   state = points.stress_at(F, J, lanes);
+        pack.xi             = lanes.natural(points.points, points.cell);
+        pack.F              = deformation_gradient<dim>(points.points, lanes);
+        const Matrix F      = assumed.evaluate(pack.F, pack.xi);
+        const Number J      = volume_ratio_of(F);
+        Matrix       before = F;
+        if constexpr (flows)
+          before =
+            assumed_before.evaluate(points.deformation_before(pack.F, pack.xi),
+                                    pack.xi);
+        const auto state = flows && again ?
+                             points.owner.stored_state(points.points, lanes) :
+                             points.stress_at({F, before},
+                                              J,
+                                              points.growth_of(J, before),
+                                              lanes);
         if constexpr (give_force)
           {
             pack.P = assumed.turned_back(piola_kirchhoff_stress<dim, finite>(
@@ -324,8 +458,10 @@ namespace limber
           }
       }
 
-      const Batch<give_force>               points;
-      AssumedDeformation<dim, finite>       assumed;
+      const Batch<give_force>         points;
+      AssumedDeformation<dim, finite> assumed;
+      std::conditional_t<flows, AssumedDeformation<dim, finite>, Nothing>
+                                            assumed_before;
       AssumedDeformationStress<dim, finite> stress;
       static constexpr std::size_t          n_kept = 4;
       std::array<KeptPack, n_kept>          kept;
@@ -369,12 +505,12 @@ namespace limber
 
 
     template <bool give_force>
-    Number
+    PackFindings<dim>
     sweep(const PointView<dim> &points,
           const GridView<dim>  &grid,
           const StressSweep    &what) const
     {
-      Number                                    waves{};
+      PackFindings<dim>                         found;
       [[maybe_unused]] AssumedCells<give_force> assumed;
       for_each_batch(
         points,
@@ -386,7 +522,7 @@ namespace limber
                                         grid.cells[cell_batch.cell],
                                         {grid, cell_batch.cell},
                                         what,
-                                        waves};
+                                        found};
           if constexpr (kind == Treatment::none)
             batch.at_points();
           else if constexpr (kind == Treatment::cell)
@@ -396,7 +532,7 @@ namespace limber
         });
       if constexpr (kind == Treatment::assumed_strain)
         assumed.work();
-      return waves;
+      return found;
     }
 
     static Number

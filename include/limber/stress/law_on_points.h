@@ -2,6 +2,7 @@
 #ifndef limber_stress_law_on_points_h
 #define limber_stress_law_on_points_h
 
+#include <limber/materials/isochoric_strain.h>
 #include <limber/stress/pack_strain.h>
 
 #include <algorithm>
@@ -234,9 +235,7 @@ namespace limber
            Findings                                   &found) const
     {
       using Number = PointPack<dim>;
-      auto state   = load_state<Number>(points, [&](const double *a) {
-        return lanes.load(a);
-      });
+      auto state   = stored_state(points, lanes);
       // zero in lanes beyond the batch
       [[maybe_unused]] const Number mass =
         lanes.only_active(lanes.load(points.mass));
@@ -265,6 +264,42 @@ namespace limber
                              lanes.only_active(
                                law.template wave_speed_squared<dim>(state)));
       return volumetric_variable(state);
+    }
+
+    template <class Lanes>
+    static State<PointPack<dim>>
+    stored_state(const PointView<dim> &points, const Lanes &lanes)
+    {
+      return load_state<PointPack<dim>>(points, [&](const double *a) {
+        return lanes.load(a);
+      });
+    }
+
+    /**
+     * The states of a pack after a step in which they were deformed by @p f and
+     * their volume ratio grew by the factor @p growth, of a law that flows. One
+     * function for all functions of the grid, as it takes long to compile.
+     */
+    template <class Lanes>
+    __attribute__((noinline)) State<PointPack<dim>>
+    flow(const PointView<dim>                   &points,
+         const Lanes                            &lanes,
+         const SmallMatrix<dim, PointPack<dim>> &f,
+         const PointPack<dim>                   &growth,
+         const double                            step,
+         Findings                               &found) const
+    {
+      // the stress is still that of before, as update() has it after the
+      // motion, of which nothing is left
+      auto state = stored_state(points, lanes);
+      isochoric::deform<dim>(state.history, f, determinant<dim>(f));
+      state.history[0] *= growth;
+      MotionIncrement<dim, PointPack<dim>> none{};
+      none.step = step;
+      found.plastic += lanes.only_active(lanes.load(points.mass)) *
+                       inverse_density *
+                       law.template update<dim>(none, state).plastic;
+      return state;
     }
 
     /** The part of a summary that follows from them. */

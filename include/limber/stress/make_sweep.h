@@ -49,7 +49,7 @@ namespace limber
 
 
 
-  /** Those in the frame of the initial configuration, of elastic laws. */
+  /** Those in the frame of the initial configuration, of solids. */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
   make_initial_frame_sweep(const Law                              &law,
@@ -61,7 +61,7 @@ namespace limber
         std::make_unique<Sweep>(law, treatment));
     };
     using P = Treatment;
-    if constexpr (Law::is_elastic)
+    if constexpr (Law::is_elastic || Law::is_plastic)
       switch (treatment.kind)
         {
           case P::none:

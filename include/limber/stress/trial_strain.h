@@ -55,16 +55,20 @@ namespace limber
 
       trial.motions.resize(batch.end - batch.begin);
       trial.volume       = 0;
-      double mean_growth = 0;
+      double mean_growth = 0, volume_before = 0;
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           Motion &motion = trial.motions[p - batch.begin];
           if (!deform(points, grid, batch.cell, p, trial.u, motion))
             return false;
           trial.volume += motion.volume;
-          mean_growth += motion.volume * motion.growth;
+          volume_before += motion.share;
         }
-      mean_growth /= trial.volume;
+      for (Motion &motion : trial.motions)
+        {
+          motion.share /= volume_before;
+          mean_growth += motion.share * motion.growth;
+        }
       if constexpr (has_bending_modes<Basis>)
         if (assumes && !assume(points, grid, batch, trial))
           return false;
@@ -85,7 +89,7 @@ namespace limber
         }
       if (mean_volume)
         for (Motion &motion : trial.motions)
-          motion.slope = trial.slope / trial.volume;
+          motion.slope = trial.slope * motion.share / motion.volume;
       return true;
     }
 
@@ -140,21 +144,66 @@ namespace limber
         {
           const BasisFunctions<Basis> functions =
             functions_at(points, grid, batch.cell, batch.begin + k);
-          assumed.points[k] = {trial.motions[k].f,
+          assumed.points[k] = {trial.motions[k].F,
                                functions.xi,
                                trial.motions[k].volume,
                                functions.gradient};
         }
       if (!assumed.finish(treatment))
         return false;
+      auto &before = trial.assumed_before;
+      if (follows_steps())
+        {
+          before.points = assumed.points;
+          for (std::size_t k = 0; k < before.points.size(); ++k)
+            before.points[k].F = deformation_before(points, batch.begin + k);
+          if (!before.finish(treatment))
+            return false;
+        }
       for (std::size_t k = 0; k < trial.motions.size(); ++k)
         {
           Motion &motion = trial.motions[k];
-          motion.f       = assumed.deformation(k);
-          motion.growth  = volume_ratio(motion.f);
-          if (finite && !(motion.growth > 0))
+          motion.F       = assumed.deformation(k);
+          if (!set_further(follows_steps() ? before.deformation(k) : Matrix(),
+                           motion))
             return false;
         }
+      return true;
+    }
+
+    /** Whether F is that since the initial frame, but states follow steps. */
+    bool
+    follows_steps() const
+    {
+      return flows && initial;
+    }
+
+    /** F at the start of the step. */
+    static Matrix
+    deformation_before(const PointView<dim> &points, const std::size_t p)
+    {
+      Matrix F;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          F[d][e] = points.deformation[d * dim + e][p];
+      return F;
+    }
+
+    // f, of F and where states follow steps the one before, and its growth;
+    // false as above.
+    bool
+    set_further(const Matrix &before, Motion &motion) const
+    {
+      motion.f      = motion.F;
+      motion.growth = volume_ratio(motion.F);
+      if (finite && !(motion.growth > 0))
+        return false;
+      if constexpr (flows)
+        if (initial)
+          {
+            motion.f = times_inverse<dim>(motion.F, before);
+            motion.growth /= determinant<dim>(before);
+          }
       return true;
     }
 
@@ -182,19 +231,27 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           {
-            double &entry = motion.f[d][e];
+            double &entry = motion.F[d][e];
             entry = initial ? points.deformation[d * dim + e][p] : d == e;
             for (int i = 0; i < n_nodes; ++i)
               entry += u[i][d] * functions.gradient[i][e];
           }
       motion.volume   = points.mass[p] / law.density;
+      motion.share    = motion.volume;
       motion.gradient = functions.gradient;
-      motion.growth   = volume_ratio(motion.f);
+      Matrix before{};
+      if constexpr (flows)
+        if (initial)
+          {
+            before = deformation_before(points, p);
+            motion.share *= determinant<dim>(before);
+          }
+      if (!set_further(before, motion))
+        return false;
       if constexpr (!finite)
         return true;
-      if (!(motion.growth > 0))
-        return false;
-      const Matrix cof = cofactor<dim>(motion.f); // det(f) f^-T
+      const Matrix cof   = cofactor<dim>(motion.F); // det(F) F^-T
+      const double ratio = determinant<dim>(motion.F);
       for (int i = 0; i < n_nodes; ++i)
         for (int d = 0; d < dim; ++d)
           {
@@ -202,7 +259,7 @@ namespace limber
             entry         = 0;
             for (int e = 0; e < dim; ++e)
               entry += cof[d][e] * functions.gradient[i][e];
-            entry /= motion.growth;
+            entry /= ratio;
           }
       return true;
     }

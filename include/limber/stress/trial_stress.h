@@ -76,18 +76,19 @@ namespace limber
    * nodes in it, for solids; in the frame of the initial configuration with
    * linear functions or quadratic splines, in the current one with linear
    * functions. Trials leave the points as they are; one of them is then
-   * accepted. Laws that flow (current frame alone) return to their yield
-   * surface in each trial, and count plastic work as energy.
+   * accepted. Laws that flow return to their yield surface in each trial, from
+   * the state at the start of the step, and count plastic work as energy.
    *
    * In the frame of the initial configuration the functions are those of the
    * initial places and F grows by the gradient of the displacement; in the
    * current one they are those of the places at the beginning of the step, and
    * what follows is deformed further by f = 1 + grad u. With
    * Treatment::cell the volume of all points in a cell grows by the mean of
-   * det f (current frame) or is the mean of det F (initial frame), weighted by
-   * initial volume, in energy, force and tangent alike, so that the tangent is
-   * symmetric (doc/theory/implicit_steps.md). With Treatment::assumed_strain
-   * f or F is the assumed one of assumed_deformation.h.
+   * det f (current frame) or as the mean of det F does (initial frame),
+   * weighted by initial volume, in energy, force and tangent alike, so that the
+   * tangent is symmetric (doc/theory/implicit_steps.md). With
+   * Treatment::assumed_strain f or F is the assumed one of
+   * assumed_deformation.h.
    */
   template <int dim>
   class TrialStress

@@ -74,8 +74,7 @@ namespace limber
         {
           const Rates rates = rates_of(motion);
           add_point(motion, rates, response);
-          const double weight =
-            motion.volume / trial.volume * (finite ? motion.growth : 1.);
+          const double weight = motion.share * (finite ? motion.growth : 1.);
           for (int i = 0; i < n_nodes; ++i)
             for (int d = 0; d < dim; ++d)
               {

@@ -4,6 +4,7 @@
 #include <limber/materials/j2.h>
 #include <limber/materials/linear_elastic.h>
 #include <limber/materials/neo_hookean.h>
+#include <limber/stress/stress_update.h>
 #include <limber/stress/trial_stress.h>
 
 #include <gtest/gtest.h>
@@ -433,7 +434,7 @@ namespace
                               AcceptedStateIsThatOfTheTrial,
                               PointsTurnedInsideOutAreRefused);
 
-  /** Of laws that flow, in the current frame. */
+  /** Of laws that flow. */
   template <class Case>
   class PlasticTrialStresses : public TrialStresses<Case>
   {};
@@ -490,17 +491,87 @@ namespace
     EXPECT_GT(accepted.longest_way, 0.);
   }
 
+  // In the initial frame the functions are the same, so that an explicit step
+  // by the same displacement leaves the same state, and the same forces.
+  TYPED_TEST_P(PlasticTrialStresses, ExplicitStepsFlowInTheSameWay)
+  {
+    constexpr int dim = TestFixture::dim;
+    using Layout      = NodeLayout<dim>;
+    using Law         = typename TestFixture::Law;
+    if (TypeParam::frame != Frame::initial)
+      return; // points have other places there
+    const auto stress = make_stress_update<dim>(Law::name,
+                                                values_of<Law>(),
+                                                TypeParam::kind,
+                                                HourglassResponse::bending,
+                                                TypeParam::frame,
+                                                TypeParam::kernel);
+    const auto trial  = this->respond();
+    auto       other  = this->own; // the one by explicit steps
+    auto       stored = this->deformation;
+    auto       view   = other.view();
+    for (int k = 0; k < dim * dim; ++k)
+      view.deformation[k] = stored[k].data();
+    for (int d = 0; d < dim; ++d)
+      view.place[d] = this->places[d].data();
+    StressSweep what;
+    what.step       = 0.1;
+    what.give_force = true;
+    for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+      for (int d = 0; d < dim; ++d)
+        this->grid.nodes[n * Layout::stride + Layout::strain_velocity + d] =
+          this->displacement[n * dim + d] / what.step;
+    const auto explicit_step =
+      stress->update(view, this->grid.view(), nullptr, what);
+    const auto accepted = this->trial->accept(this->view(),
+                                              this->grid.view(),
+                                              this->displacement.data());
+
+    EXPECT_NEAR(explicit_step.plastic,
+                accepted.plastic_work,
+                1e-10 * accepted.plastic_work);
+    const auto points  = this->view();
+    double     largest = 0;
+    for (std::size_t p = 0; p < this->n_points; ++p)
+      {
+        largest = std::max(largest, std::abs(points.pressure[p]));
+        EXPECT_NEAR(view.pressure[p], points.pressure[p], 1e-5);
+        for (unsigned int k = 0; k < n_deviator<dim>; ++k)
+          EXPECT_NEAR(view.deviator[k][p], points.deviator[k][p], 1e-5);
+        for (unsigned int k = 0; k < stress->n_history(); ++k)
+          EXPECT_NEAR(view.history[k][p],
+                      points.history[k][p],
+                      1e-12 * (1 + std::abs(points.history[k][p])));
+        for (int k = 0; k < dim * dim; ++k)
+          EXPECT_NEAR(view.deformation[k][p], points.deformation[k][p], 1e-14);
+      }
+    EXPECT_GT(largest, 1e3); // Pa
+    for (std::size_t n = 0; n < this->grid.n_nodes; ++n)
+      for (int d = 0; d < dim; ++d)
+        EXPECT_NEAR(this->grid.nodes[n * Layout::stride + Layout::force + d],
+                    -trial.force[n * dim + d],
+                    1e-7);
+  }
+
   REGISTER_TYPED_TEST_SUITE_P(PlasticTrialStresses,
                               TangentIsTheDerivativeOfTheForce,
-                              FlowTakesWork);
+                              FlowTakesWork,
+                              ExplicitStepsFlowInTheSameWay);
 
-  template <class Law, int dim>
+  template <class Law, int dim, class... More>
   using PlasticCasesOf = testing::Types<
     TrialCase<Law, dim, Treatment::none, Frame::current>,
     TrialCase<Law, dim, Treatment::cell, Frame::current>,
-    TrialCase<Law, dim, Treatment::assumed_strain, Frame::current>>;
-  using J2Plane    = PlasticCasesOf<J2, 2>;
-  using J2Space    = PlasticCasesOf<J2, 3>;
+    TrialCase<Law, dim, Treatment::assumed_strain, Frame::current>,
+    TrialCase<Law, dim, Treatment::none, Frame::initial>,
+    TrialCase<Law, dim, Treatment::cell, Frame::initial>,
+    TrialCase<Law, dim, Treatment::assumed_strain, Frame::initial>,
+    More...>;
+  template <int dim>
+  using OnSplines =
+    TrialCase<J2, dim, Treatment::cell, Frame::initial, KernelKind::quadratic>;
+  using J2Plane    = PlasticCasesOf<J2, 2, OnSplines<2>>;
+  using J2Space    = PlasticCasesOf<J2, 3, OnSplines<3>>;
   using SandPlane  = PlasticCasesOf<DruckerPrager<false>, 2>;
   using SandSpace  = PlasticCasesOf<DruckerPrager<false>, 3>;
   using DensePlane = PlasticCasesOf<DruckerPrager<true>, 2>;
