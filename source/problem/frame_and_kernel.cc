@@ -44,7 +44,8 @@ namespace limber
       if (!law.is_elastic && !law.is_plastic)
         return Hindrance{"is for solids, which the material " +
                            in_quotes(section.text("Material")) + " is not",
-                         ""};
+                         ", or the material of a solid, for instance 'neo "
+                         "hookean'"};
       if (law.is_elastic && !section.is_empty("Initial stress"))
         return Hindrance{"has a stress that follows from the deformation "
                          "alone, so that no 'Initial stress' can be",

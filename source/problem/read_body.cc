@@ -21,7 +21,8 @@ namespace limber
         admissible::positive_integers(dim, true, "2").or_word("auto"),
         "Number of points along the edge of a cell, for all "
         "directions or for each; auto: 2, but 3 of liquids, "
-        "and of solids with splines in the current frame.");
+        "and of solids in the current frame with splines or with implicit and "
+        "quasi-static steps.");
       declare_word(parameters,
                    "Placement",
                    "auto",
@@ -253,7 +254,7 @@ namespace limber
           Choice{Treatment::none,
                  "'none', as smooth functions do not lock at this "
                  "Poisson's ratio."} :
-        !linear && body.frame == Frame::initial ?
+        !soft && body.frame == Frame::initial ?
           Choice{Treatment::cell,
                  "'cell', which does not lock in volume, and nothing "
                  "crosses cells."} :

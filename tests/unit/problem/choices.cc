@@ -318,6 +318,109 @@ TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
 
 
 
+// The initial frame for what stays together, and does not flow far.
+TEST(Choices, FrameFollowsTheStepsAndWhatIsOnePiece)
+{
+  const std::string metal = "Body lower/Material=j2",
+                    soil  = "Body lower/Material=drucker prager";
+  const auto frames       = [&](std::vector<std::string> changes) {
+    const auto has = [&](const std::string &change) {
+      return std::count(changes.begin(), changes.end(), change) > 0;
+    };
+    if (has(metal))
+      changes.push_back("Body lower/J2/Yield stress=1e5");
+    if (has(soil))
+      changes.push_back("Body lower/Drucker prager/Friction angle=30");
+    const auto problem = read_problem<2>(scene_with(R"(
+      set Bodies = lower, upper
+      subsection Body lower
+        subsection Box
+          set Upper corner = 1, 0.5
+        end
+      end
+      subsection Body upper
+        subsection Box
+          set Lower corner = 0, 0.5
+        end
+      end
+      subsection Grid
+        set Upper corner = 2, 2
+        set Cells = 20, 20
+      end
+      subsection Boundaries
+        set left = free
+        set right = free
+        set top = free
+        set bottom = no slip
+      end
+      subsection Method
+        set Time integration = quasi-static
+        set Time step = 0.1
+      end)",
+                                                    changes));
+    EXPECT_EQ(problem.bodies[0].frame, problem.bodies.back().frame);
+    EXPECT_EQ(problem.bodies[0].points_per_cell_edge[0],
+              problem.bodies[0].frame == Frame::current &&
+                  problem.method.integration !=
+                    TimeIntegration::explicit_steps ?
+                      3 :
+                      2);
+    return problem.bodies[0].frame;
+  };
+  const std::string implicit   = "Method/Time integration=implicit",
+                    explicitly = "Method/Time integration=explicit",
+                    no_step    = "Method/Time step=0",
+                    linear     = "Method/Kernel=linear";
+  EXPECT_EQ(frames({}), Frame::initial);
+  EXPECT_EQ(frames({implicit}), Frame::initial);
+  EXPECT_EQ(frames({explicitly, no_step, linear}), Frame::current);
+  // apart by more than a cell
+  EXPECT_EQ(frames({"Body upper/Box/Lower corner=0, 0.7"}), Frame::current);
+  EXPECT_EQ(frames({"Body upper/Frame=current"}), Frame::current);
+  EXPECT_EQ(frames({"Body upper/Initial stress=xx: 1", "Loads/Load factor=1"}),
+            Frame::current);
+  EXPECT_EQ(frames({metal}), Frame::initial);
+  EXPECT_EQ(frames({soil}), Frame::initial);
+  EXPECT_EQ(frames({metal, implicit}), Frame::initial);
+  EXPECT_EQ(frames({soil, implicit}), Frame::current);
+}
+
+
+
+// Water beside obstacles has the mass of what it fills, whatever tells the
+// shape.
+TEST(Choices, LiquidsBesideObstaclesAreCutWhateverTheirShape)
+{
+  const auto placement = [](const std::vector<std::string> &changes) {
+    return read_problem<2>(scene_with(R"(
+      set Bodies = water
+      subsection Body water
+        set Material = newtonian fluid
+      end
+      set Obstacles = floor
+      subsection Obstacle floor
+        set Shape = half-space
+        subsection Half-space
+          set Point = 0, 0.1
+        end
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end)",
+                                      changes))
+      .bodies[0]
+      .placement;
+  };
+  EXPECT_EQ(placement({}), Placement::regular); // a box of whole parts
+  EXPECT_EQ(placement({"Body water/Shape=union",
+                       "Body water/Union/Shapes=part",
+                       "Body water/Union/Shape part/Shape=ball"}),
+            Placement::cut);
+  EXPECT_EQ(placement({"Body water/Shape=ball"}), Placement::cut);
+}
+
+
+
 TEST(Choices, KernelOfScenesWithALiquidIsLinear)
 {
   const auto grid = [](const std::vector<std::string> &changes) {
