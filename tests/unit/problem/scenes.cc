@@ -720,10 +720,9 @@ TEST(Scenes, AutomaticFrameAndKernelKeepSolidsFromCreeping)
   EXPECT_EQ(held.bodies[0].points_per_cell_edge[0], 2u);
   // 'assumed strain' locks where what is nearly incompressible bends by much
   EXPECT_EQ(held.bodies[0].treatment, Treatment::cell);
-  EXPECT_EQ(beam({"Body beam/Neo hookean/Poisson's ratio=0.3"})
-              .bodies[0]
-              .treatment,
-            Treatment::assumed_strain);
+  EXPECT_EQ(
+    beam({"Body beam/Neo hookean/Poisson's ratio=0.3"}).bodies[0].treatment,
+    Treatment::assumed_strain);
 
   // Splines as well, which need no third point where nothing crosses cells.
   const auto splines = beam({"Method/Kernel=quadratic"});

@@ -292,6 +292,23 @@ TEST(NewtonSteps, WorkOfLoadsIsOfSecondOrder)
 
 
 
+// Nor does metal lose anything there, which is where 'auto' puts it.
+TEST(NewtonSteps, MetalLosesNothingInItsInitialFrame)
+{
+  const EnergyOfColumn energy({"Body column/Frame=auto",
+                               "Body column/Material=j2",
+                               "Body column/J2/Density=100",
+                               "Body column/J2/Young's modulus=1.6e4",
+                               "Body column/J2/Poisson's ratio=0",
+                               "Body column/J2/Yield stress=1e3",
+                               "Body column/J2/Hardening modulus=1.6e3"},
+                              0.025);
+  EXPECT_LT(std::abs(energy.lost), 1e-8);
+  EXPECT_LT(std::abs(energy.drift), 2e-3);
+}
+
+
+
 // Points that cross cells give their forces to other nodes, and what is loaded
 // springs to its new place, which costs energy whatever the step: a quarter of
 // the work here, an eighth where the column yields. That is on record, but for
