@@ -183,27 +183,34 @@ namespace limber
         // Points made in one pass may have to be split again in the next.
         for (unsigned int pass = 0; pass < box.levels; ++pass)
           {
-            std::vector<std::size_t> large;
-            const PointView<dim>     view = points.view();
+            std::array<std::vector<std::size_t>, 2> large; // in 2, in 3
+            const PointView<dim>                    view = points.view();
             for (std::size_t p = 0; p < view.size; ++p)
               {
                 const unsigned int      size = points.size_class(p);
                 std::array<double, dim> x;
                 for (int d = 0; d < dim; ++d)
                   x[d] = view.position[d][p];
-                if (mesh.is_divided(size, grid.place_at(x, size)) &&
-                    kept[b].count(points.id(p)) == 0)
-                  large.push_back(p);
+                if (mesh.is_divided(size, grid.place_at(x, size)))
+                  large[kept[b].count(points.id(p))].push_back(p);
               }
-            const unsigned int  n_new = (1u << dim) - 1; // of each
-            std::uint64_t       first;
-            const std::uint64_t all =
-              take_numbers(b, large.size() * n_new, first);
-            if (all == 0)
+            bool any_here = false;
+            for (unsigned int k = 0; k < large.size(); ++k)
+              {
+                const unsigned int parts = 2 + k;
+                const unsigned int n_new =
+                  dealii::Utilities::fixed_power<dim>(parts) - 1; // of each
+                std::uint64_t       first;
+                const std::uint64_t all =
+                  take_numbers(b, large[k].size() * n_new, first);
+                if (all == 0)
+                  continue;
+                points.split(large[k], parts, spacing, first);
+                memory.points_split += all / n_new;
+                any_here = any = true;
+              }
+            if (!any_here)
               break;
-            points.split(large, spacing, first);
-            memory.points_split += all / n_new;
-            any = true;
           }
       }
     return any;

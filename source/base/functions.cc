@@ -81,19 +81,33 @@ namespace limber
 
 
 
+    /** Where @p name next stands in the formula, not as a part of another. */
+    std::size_t
+    find_name(const std::string &expression,
+              const std::string &name,
+              const std::size_t  from = 0)
+    {
+      std::size_t at = expression.find(name, from);
+      while (at != std::string::npos &&
+             ((at > 0 && is_letter_of_name(expression[at - 1])) ||
+              (at + name.size() < expression.size() &&
+               is_letter_of_name(expression[at + name.size()]))))
+        at = expression.find(name, at + 1);
+      return at;
+    }
+
+
+
     /** The function @p name is called somewhere in the formula. */
     bool
     calls(const std::string &expression, const std::string &name)
     {
-      for (auto at = expression.find(name); at != std::string::npos;
-           at      = expression.find(name, at + 1))
+      for (auto at = find_name(expression, name); at != std::string::npos;
+           at      = find_name(expression, name, at + 1))
         {
-               const std::size_t end = at + name.size();
                const std::size_t next =
-                 std::min(expression.find_first_not_of(" \t", end),
-                     expression.size());
-               if ((at == 0 || !is_letter_of_name(expression[at - 1])) &&
-              next < expression.size() && expression[next] == '(')
+                 expression.find_first_not_of(" \t", at + name.size());
+               if (next != std::string::npos && expression[next] == '(')
             return true;
         }
       return false;
@@ -295,6 +309,18 @@ namespace limber
   Formula<dim>::is_zero() const
   {
     return zero;
+  }
+
+
+
+  template <int dim>
+  bool
+  Formula<dim>::is_uniform() const
+  {
+    for (const char *const name : {"x", "y", "z"})
+      if (find_name(text, name) != std::string::npos)
+        return false;
+    return true;
   }
 
 

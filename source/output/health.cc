@@ -130,30 +130,31 @@ namespace limber
 
     // What bodies that are solid and elastic lose where they touch is an error;
     // water that lands on a floor, and what flows plastically, comes to rest
-    // there. Where nothing can be hit, it is a clamp that takes it, of a body
-    // whose points cross cells, which has a line of its own.
+    // there. What any solid gains is one, too. Where nothing can be hit, it is
+    // a clamp that takes it, of a body whose points cross cells, which has a
+    // line of its own.
     HealthLine
     judge_impacts(const HealthFigures &figures, const HealthCheck &check)
     {
-      const bool is_elastic =
-        std::none_of(figures.bodies.begin(),
-                     figures.bodies.end(),
-                     [](const BodyFigures &body) {
-                       return body.is_liquid || body.is_plastic;
-                     });
+      bool is_solid = true, is_elastic = true;
+      for (const BodyFigures &body : figures.bodies)
+        {
+          is_solid &= !body.is_liquid;
+          is_elastic &= !body.is_liquid && !body.is_plastic;
+        }
       HealthLine line;
-      line.entry        = "Grid/Cells";
-      const bool counts = is_elastic && figures.may_hit;
+      line.entry         = "Grid/Cells";
+      const bool created = figures.contact < 0;
+      const bool counts  = figures.may_hit && (created ? is_solid : is_elastic);
       if (counts && figures.energy_scale > 0)
         line.value = figures.contact / figures.energy_scale;
-      line.verdict       = check.verdict(line.value);
-      const bool created = line.value < 0;
+      line.verdict = check.verdict(line.value);
       line.text =
-        counts ? percent(std::abs(line.value)) + " of the energy scale was " +
-                   (created ? "created" : "lost") +
-                   " where elastic bodies hit each other, obstacles or "
-                   "sides" :
-                 "no elastic bodies that may hit something";
+        counts ?
+          percent(std::abs(line.value)) + " of the energy scale was " +
+            (created ? "created where bodies" : "lost where elastic bodies") +
+            " hit each other, obstacles or sides" :
+          "no elastic bodies that may hit something";
       if (line.verdict == Verdict::good)
         return line;
       const bool is_uneven =
@@ -298,11 +299,13 @@ namespace limber
 
 
 
-    // There creep flows on: no energy is missing, as it is plastic work.
+    // There creep flows on, in metal: no energy is missing, as it is plastic
+    // work. What flows without end keeps no strain that would grow.
     bool
     flows_in_tension(const BodyFigures &body)
     {
-      return body.is_plastic && body.share_in_tension > 0.5;
+      return body.is_plastic && body.keeps_surface &&
+             body.share_in_tension > 0.5;
     }
 
 

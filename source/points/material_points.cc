@@ -22,7 +22,9 @@ namespace limber
       return 2 * dim + 2 + (layout.deviator ? n_deviator<dim> : 0) +
              layout.n_history + (layout.affine ? dim * dim : 0) +
              (layout.acceleration ? dim : 0) + (layout.crossings ? 1 : 0) +
-             (layout.reach ? 1 : 0) + (layout.edges ? dim : 0) +
+             (layout.reach ? 1 : 0) +
+             (layout.stretch ? dim * (dim + 1) / 2 : 0) +
+             (layout.edges ? dim : 0) +
              n_domain_components(layout.domains, dim) +
              (layout.initial_frame ? dim * dim : 0) +
              (layout.has_reference() ? dim : 0);
@@ -139,6 +141,9 @@ namespace limber
       result.crossings = fields[f++].data();
     if (layout.reach)
       result.reach = fields[f++].data();
+    if (layout.stretch)
+      for (auto &array : result.stretch)
+        array = fields[f++].data();
     if (layout.edges)
       for (auto &array : result.edge)
         array = fields[f++].data();
@@ -223,6 +228,7 @@ namespace limber
       names.push_back("crossings");
     if (layout.reach)
       names.push_back("reach");
+    numbered("stretch", layout.stretch ? dim * (dim + 1) / 2 : 0);
     if (layout.edges)
       for (int d = 0; d < dim; ++d)
         names.push_back("edge " + std::string(1, "xyz"[d]));

@@ -7,14 +7,13 @@
 /** @file Points of a MaterialPoints that become several, or one. */
 namespace limber
 {
-  // A quarter of the edges of what the point stands for: its domain, along the
-  // axes or its own edges, or its share of the cell that it was made for.
+  // Of what the point stands for, as columns: its domain, along the axes or its
+  // own edges, or its share of the cell that it was made for.
   template <int dim>
   dealii::Tensor<2, dim>
-  MaterialPoints<dim>::shifts_of_children(
-    const PointView<dim>          &points,
-    const std::size_t              p,
-    const std::array<double, dim> &spacing) const
+  MaterialPoints<dim>::half_edges(const PointView<dim>          &points,
+                                  const std::size_t              p,
+                                  const std::array<double, dim> &spacing) const
   {
     dealii::Tensor<2, dim> result;
     for (int d = 0; d < dim; ++d)
@@ -22,7 +21,7 @@ namespace limber
         {
           for (int k = 0; k < dim; ++k)
             if (const double *const component = points.domain[d * dim + k])
-              result[d][k] = 0.5 * component[p];
+              result[d][k] = component[p];
           if (points.has_boxes()) // with the length of the row, see half_box()
             {
               const double half = result[d].norm();
@@ -31,7 +30,7 @@ namespace limber
             }
         }
       else
-        result[d][d] = 0.25 * spacing[d] / (1u << size_classes[p]);
+        result[d][d] = 0.5 * spacing[d] / (1u << size_classes[p]);
     return result;
   }
 
@@ -217,51 +216,56 @@ namespace limber
   template <int dim>
   void
   MaterialPoints<dim>::split(const std::vector<std::size_t> &which,
+                             const unsigned int              parts,
                              const std::array<double, dim>  &spacing,
                              std::uint64_t                   next_id)
   {
-    constexpr unsigned int n_children = 1 << dim;
-    const auto             initial    = initial_gradients(which);
-    std::size_t            last       = size();
+    const unsigned int n_children = dealii::Utilities::fixed_power<dim>(parts);
+    const unsigned int own        = parts == 2 ? 0 : n_children / 2;
+    const double       end        = 0.5 * (parts - 1); // in steps
+    const auto         initial    = initial_gradients(which);
+    std::size_t        last       = size();
     resize(last + which.size() * (n_children - 1));
     const PointView<dim> points = view();
     for (std::size_t i = 0; i < which.size(); ++i)
       {
         const std::size_t p = which[i];
-        // column k: from the point to its children along its edge k
-        dealii::Tensor<2, dim> shifts = shifts_of_children(points, p, spacing);
+        // column k: from one child to the next along edge k
+        dealii::Tensor<2, dim> steps =
+          2. / parts * half_edges(points, p, spacing);
         for (int d = 0; d < dim; ++d)
           {
             double all = 0;
             for (int k = 0; k < dim; ++k)
-              all += std::abs(shifts[d][k]);
+              all += std::abs(end * steps[d][k]);
             if (const double room = room_in_cell(points, p, d); all > room)
-              shifts[d] *= room / all;
+              steps[d] *= room / all;
           }
         points.mass[p] /= n_children;
         for (double *const component : points.domain)
           if (component != nullptr)
-            component[p] /= 2;
+            component[p] /= parts;
         if (points.reach != nullptr)
-          points.reach[p] /= 2;
+          points.reach[p] /= parts;
         for (double *const component : points.edge)
           if (component != nullptr)
-            component[p] /= 2;
+            component[p] /= parts;
         ++size_classes[p];
         const auto way_to = [&](const unsigned int child) {
           dealii::Tensor<1, dim> way;
-          for (int d = 0; d < dim; ++d)
-            for (int k = 0; k < dim; ++k)
-              way[d] += child >> k & 1 ? shifts[d][k] : -shifts[d][k];
+          for (int k = 0, digits = child; k < dim; ++k, digits /= parts)
+            for (int d = 0; d < dim; ++d)
+              way[d] += (digits % parts - end) * steps[d][k];
           return way;
         };
-        for (unsigned int child = 1; child < n_children; ++child, ++last)
-          {
-            move(p, last);
-            ids[last] = next_id++;
-            shift_point(last, way_to(child), initial[i]);
-          }
-        shift_point(p, way_to(0), initial[i]);
+        for (unsigned int child = 0; child < n_children; ++child)
+          if (child != own)
+            {
+              move(p, last);
+              ids[last] = next_id++;
+              shift_point(last++, way_to(child), initial[i]);
+            }
+        shift_point(p, way_to(own), initial[i]);
       }
     ++n_reorderings;
   }
@@ -380,10 +384,12 @@ namespace limber
 
   template void
   MaterialPoints<2>::split(const std::vector<std::size_t> &,
+                           const unsigned int,
                            const std::array<double, 2> &,
                            std::uint64_t);
   template void
   MaterialPoints<3>::split(const std::vector<std::size_t> &,
+                           const unsigned int,
                            const std::array<double, 3> &,
                            std::uint64_t);
   template double

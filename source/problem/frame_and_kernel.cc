@@ -268,8 +268,7 @@ namespace limber
     may_flow_far(const Body<dim> &body, const TimeIntegration integration)
     {
       return body.is_plastic && integration != TimeIntegration::quasi_static &&
-             !(is_solved_by_newton(integration) &&
-               flows_like_metal(body.law, body.material));
+             !(is_solved_by_newton(integration) && body.keeps_surface);
     }
 
 
@@ -366,7 +365,7 @@ namespace limber
             return found->reason + " (" + section.where(found->entry) + ")";
         }
       for (const auto &body : problem.bodies)
-        if (body.is_plastic && !flows_like_metal(body.law, body.material))
+        if (body.is_plastic && !body.keeps_surface)
           return "material that flows without end, like body " +
                  in_quotes(body.name) + ", keeps no strain that could creep";
       // With splines and FLIP liquids lose volume, and what floats in them

@@ -420,6 +420,9 @@ namespace limber
       const LawDescription law = read_word(section, "Material", law_words());
       body.is_liquid           = law.takes_pressure;
       body.is_plastic          = law.is_plastic;
+      body.keeps_surface =
+        !body.is_liquid &&
+        (!body.is_plastic || flows_like_metal(body.law, body.material));
       read_initial_state(section, constants, problem, body);
       body.frame = read_word(section, "Frame", frame_words());
       return body;

@@ -3,6 +3,7 @@
 #include <limber/base/law_parameter.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/acceleration.h>
 #include <limber/problem/point_list.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
@@ -111,14 +112,14 @@ namespace limber
 
     template <int dim>
     double
-    largest_expected_speed(const Body<dim>              &body,
-                           const dealii::Tensor<1, dim> &gravity)
+    largest_expected_speed(const Body<dim> &body, const Problem<dim> &problem)
     {
       // |g| H, also for gravity that is not along an axis.
-      const Corners<dim> box  = body.shape->bounding_box();
-      double             fall = 0;
+      const auto         acceleration = largest_acceleration(problem, body);
+      const Corners<dim> box          = body.shape->bounding_box();
+      double             fall         = 0;
       for (unsigned int d = 0; d < dim; ++d)
-        fall += std::abs(gravity[d]) * (box.second[d] - box.first[d]);
+        fall += acceleration[d] * (box.second[d] - box.first[d]);
       return std::sqrt(2 * fall) + largest_initial_speed(body);
     }
 
@@ -131,13 +132,13 @@ namespace limber
                            const Body<dim> &body,
                            Problem<dim>    &problem)
     {
-      const double speed = largest_expected_speed(body, problem.loads.gravity);
+      const double speed = largest_expected_speed(body, problem);
       if (speed <= 0)
-        throw InputError("The bulk modulus 'auto' in " +
-                         section.where("Bulk modulus") +
-                         " needs a velocity to go by, but there is neither "
-                         "gravity nor initial velocity. Give a number, for "
-                         "instance 2e9.");
+        throw InputError(
+          "The bulk modulus 'auto' in " + section.where("Bulk modulus") +
+          " needs a velocity to go by, but there is neither "
+          "gravity, body force nor initial velocity. Give a number, for "
+          "instance 2e9.");
 
       const double sound   = 10 * speed;
       const double modulus = body.density() * sound * sound;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
-#include <limber/materials/law_list.h>
 #include <limber/problem/half_space.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/side_contact.h>
@@ -9,17 +8,6 @@ namespace limber
 {
   namespace
   {
-    /** Whether points go on to be what they were to the surface of a body. */
-    template <int dim>
-    bool
-    keeps_surface(const Body<dim> &body)
-    {
-      return !body.is_liquid &&
-             (!body.is_plastic || flows_like_metal(body.law, body.material));
-    }
-
-
-
     /** Why nodes feel one-sided sides, and not surfaces; empty if these do. */
     template <int dim>
     std::string
@@ -29,10 +17,10 @@ namespace limber
         return "steps are not explicit";
       if (filters_velocity(problem.method.transfer))
         return "the transfer is 'fmpm' or 'xpic'";
-      if (!keeps_surface(body))
+      if (!body.keeps_surface)
         return "its material flows without end";
       for (const Body<dim> &other : problem.bodies)
-        if (other.nodal_field == body.nodal_field && !keeps_surface(other))
+        if (other.nodal_field == body.nodal_field && !other.keeps_surface)
           return "it shares nodes with body " + in_quotes(other.name) +
                  ", which flows without end";
       return "";

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace limber
 {
@@ -128,6 +129,76 @@ namespace limber
 
 
 
+    /**
+     * Along the surface where it crosses an edge of a part, from there into the
+     * part; nothing where it is not the same surface a bit further.
+     */
+    std::optional<dealii::Tensor<1, 2>>
+    tangent(const Region<2> &region,
+            const Part<2>   &part,
+            const Edge      &edge,
+            const Point<2>  &place)
+    {
+      constexpr double   share  = 1e-3; // of the part
+      const unsigned int across = 3 - (edge.first ^ edge.second);
+      const auto         shift =
+        share * (part.corner[edge.first ^ across] - part.corner[edge.first]);
+      const Point<2> inside  = part.corner[edge.first] + shift,
+                     outside = part.corner[edge.second] + shift;
+      if (!region(inside) || region(outside))
+        return std::nullopt;
+      return crossing<2>(region, inside, outside) - place;
+    }
+
+
+
+    /**
+     * Where the surface bends sharply between two edges of a part, of which
+     * the first corner is inside: where its tangents meet, if it goes there.
+     */
+    std::optional<Point<2>>
+    sharp_corner(const Region<2> &region,
+                 const Part<2>   &part,
+                 const Edge      &from,
+                 const Edge      &to,
+                 const Point<2>  &start,
+                 const Point<2>  &end)
+    {
+      constexpr double least_sine = 0.3, tolerance = 0.02;
+      const auto       a = tangent(region, part, from, start),
+                 b       = tangent(region, part, to, end);
+      if (!a || !b)
+        return std::nullopt;
+      const auto cross = [](const auto &u, const auto &v) {
+        return u[0] * v[1] - u[1] * v[0];
+      };
+      const double sine = cross(*a, *b);
+      if (std::abs(sine) < least_sine * a->norm() * b->norm())
+        return std::nullopt;
+      Point<2> corner = start + cross(end - start, *b) / sine * *a;
+      // Tangents of what is curved may meet a bit beyond the part.
+      const double size = (part.corner[3] - part.corner[0]).norm();
+      for (int d = 0; d < 2; ++d)
+        {
+          const double within =
+            std::clamp(corner[d], part.corner[0][d], part.corner[3][d]);
+          if (std::abs(corner[d] - within) > 0.05 * size)
+            return std::nullopt;
+          corner[d] = within;
+        }
+
+      // A rounded one stays within its tangents.
+      dealii::Tensor<1, 2> beyond    = corner - (start + 0.5 * (end - start));
+      const bool           is_convex = cross(end - start, beyond) < 0;
+      const double way = std::min(0.1, tolerance * size / beyond.norm());
+      if (region(corner - way * beyond) != is_convex ||
+          region(corner + way * beyond) == is_convex)
+        return std::nullopt;
+      return corner;
+    }
+
+
+
     /** The facets in one part of the lattice. */
     template <int dim>
     void
@@ -156,8 +227,16 @@ namespace limber
           auto [start, end] = lines.back();
           lines.pop_back();
           std::vector<Point<dim>> polygon = {place(start)};
-          if (dim == 2)
-            polygon.push_back(place(end));
+          if constexpr (dim == 2)
+            {
+              polygon.push_back(place(end));
+              if (const auto corner = sharp_corner(
+                    region, part, start, end, polygon[0], polygon[1]))
+                {
+                  facets.push_back({{polygon[0], *corner}});
+                  polygon[0] = *corner;
+                }
+            }
           else
             while (end != start)
               {

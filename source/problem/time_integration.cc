@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/acceleration.h>
 #include <limber/problem/obstacle_way.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
@@ -30,10 +31,11 @@ namespace limber
     /** What the choice of 'auto' depends on; SI units. */
     struct Speeds
     {
-      double sound   = 0; // in liquids, the fastest
-      double motion  = 0; // of liquids at first, sides and obstacles
-      double surface = 0; // sqrt(g H), H the height of the liquid
-      double waves   = 0; // in solids
+      double sound        = 0; // in liquids, the fastest
+      double motion       = 0; // of liquids at first, sides and obstacles
+      double surface      = 0; // sqrt(g H), H the height of the liquid
+      double acceleration = 0; // g, of liquids, m/s^2
+      double waves        = 0; // in solids
     };
 
 
@@ -42,20 +44,8 @@ namespace limber
     Speeds
     speeds_of(const Problem<dim> &problem)
     {
-      constexpr unsigned int n              = 9; // places along each edge
-      const auto             for_each_place = [](const Corners<dim> &box,
-                                     const auto         &work) {
-        for (unsigned int k = 0; k < std::pow(n, dim); ++k)
-          {
-            dealii::Point<dim> place;
-            for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= n)
-              place[d] = box.first[d] +
-                         (box.second[d] - box.first[d]) * (rest % n) / (n - 1.);
-            work(place);
-          }
-      };
-      Speeds       result;
-      const double g = problem.loads.gravity.norm();
+      constexpr unsigned int n = 9; // places along each edge
+      Speeds                 result;
       for (const Body<dim> &body : problem.bodies)
         {
           const Moduli moduli = moduli_of(body.law, body.material);
@@ -66,19 +56,20 @@ namespace limber
           const auto box = body.shape->bounding_box();
           if (!body.initial_velocity.empty() &&
               !body.initial_velocity.is_zero())
-            for_each_place(box, [&](const dealii::Point<dim> &place) {
+            for_each_place(box, n, [&](const dealii::Point<dim> &place) {
               if (body.shape->contains(place))
                 result.motion =
                   std::max(result.motion,
                            body.initial_velocity.vector(place, 0).norm());
             });
-          if (body.is_liquid && g > 0)
+          if (const auto a = largest_acceleration(problem, body);
+              body.is_liquid && a.norm() > 0)
             {
-              double height = 0; // along gravity
+              double fall = 0; // |a| times the height along it
               for (unsigned int d = 0; d < dim; ++d)
-                height += std::abs(problem.loads.gravity[d]) / g *
-                          (box.second[d] - box.first[d]);
-              result.surface = std::max(result.surface, std::sqrt(g * height));
+                fall += a[d] * (box.second[d] - box.first[d]);
+              result.surface      = std::max(result.surface, std::sqrt(fall));
+              result.acceleration = std::max(result.acceleration, a.norm());
             }
         }
       constexpr unsigned int n_times = 33;
@@ -87,7 +78,7 @@ namespace limber
       grid.second = problem.grid.upper;
       for (const auto &side : problem.sides)
         for (unsigned int t = 0; t < n_times; ++t)
-          for_each_place(grid, [&](const dealii::Point<dim> &place) {
+          for_each_place(grid, n, [&](const dealii::Point<dim> &place) {
             dealii::Tensor<1, dim> velocity;
             for (unsigned int d = 0; d < dim; ++d)
               velocity[d] =
@@ -205,8 +196,7 @@ namespace limber
       const double C            = problem.method.courant_number;
       const double former_steps = (speeds.sound + speeds.motion) / (C * edge);
       const double steps =
-        std::max(other / (C * edge),
-                 5 * std::sqrt(problem.loads.gravity.norm() / edge));
+        std::max(other / (C * edge), 5 * std::sqrt(speeds.acceleration / edge));
       const std::string gain = "about " + brief(former_steps / steps) +
                                " times fewer steps, which take some " +
                                brief(cost_of_step) + " times as long";
@@ -220,7 +210,8 @@ namespace limber
         return say("'explicit', as " + need + "; 'semi-implicit' would take " +
                    gain);
       problem.method.integration = TimeIntegration::semi_implicit;
-      say("'semi-implicit', as " + ratio + ": " + gain);
+      say("'semi-implicit', as " + ratio + ": " + gain +
+          "; sound dies away at once");
     }
 
 

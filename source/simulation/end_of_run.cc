@@ -41,7 +41,7 @@ namespace limber
                    "number' to 0.4 or below.";
           case FailureKind::lost_points:
             return a_side_is_open ?
-                     "Usually a side is free there. Close it in 'Boundaries' "
+                     "Usually a side is free there or moves away. Close it in 'Boundaries' "
                      "with slip, or raise 'Method/Lost points limit' above the "
                      "share that is lost." :
                      "No side is free, so the motion is unstable there. Set "

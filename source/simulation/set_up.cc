@@ -148,13 +148,15 @@ namespace limber
                                             body.frame,
                                             kernel);
       PointLayout layout;
-      layout.deviator      = stress->has_deviator();
-      layout.n_history     = stress->n_history();
-      layout.volumetric    = stress->volumetric();
-      layout.affine        = is_affine(problem.method.transfer);
-      layout.acceleration  = problem.method.spectral_radius < 1;
-      layout.crossings     = !body.is_liquid && body.frame == Frame::current;
-      layout.reach         = presses_at_points(problem) && !body.is_liquid;
+      layout.deviator     = stress->has_deviator();
+      layout.n_history    = stress->n_history();
+      layout.volumetric   = stress->volumetric();
+      layout.affine       = is_affine(problem.method.transfer);
+      layout.acceleration = problem.method.spectral_radius < 1;
+      layout.crossings    = !body.is_liquid && body.frame == Frame::current;
+      layout.reach        = presses_at_points(problem) && !body.is_liquid;
+      layout.stretch =
+        layout.reach && body.is_plastic && body.frame == Frame::current;
       layout.domains       = domain_form(kernel);
       layout.initial_frame = body.frame == Frame::initial;
       layout.size_class    = grid.has_levels();
@@ -192,6 +194,9 @@ namespace limber
           const double half_edge =
             half_edge_of<dim>(view.mass[p] / density(place));
           view.reach[p] = 0;
+          for (unsigned int k = 0; k < view.stretch.size(); ++k)
+            if (view.keeps_stretch())
+              view.stretch[k][p] = k < dim ? 1 : 0;
           if (const auto surface = shape.signed_distance(place))
             {
               double along_row = 0;

@@ -7,6 +7,7 @@
 #include <limber/simulation/set_up.h>
 #include <limber/simulation/signals.h>
 #include <limber/simulation/simulation.h>
+#include <limber/time/face_pieces.h>
 
 #include <malloc.h>
 
@@ -93,6 +94,18 @@ namespace limber
          << integrator->longest_step() << " s, to end time " << problem.end_time
          << " s";
     console.say(text.str());
+    for (const FaceLoad<dim> &load : problem.loads.faces)
+      for (const auto &body : problem.bodies)
+        if (body.name == load.body)
+          {
+            double area = 0;
+            for (const auto &piece :
+                 pieces_at_start<dim>(load, body, problem.grid))
+              area += piece.area;
+            console.say("Face load " + in_quotes(load.name) + " acts on " +
+                        brief(area) + (dim == 2 ? " m" : " m^2") + " of body " +
+                        in_quotes(body.name) + ".");
+          }
 
     // Empty cells take no time, but they may take most of the memory.
     if (grid.has_levels())
@@ -339,12 +352,12 @@ namespace limber
       }
     for (const auto &texts : gather_texts(own, communicator))
       for (const std::string &text : texts)
-        console.warn_once("lost point " +
-                            std::to_string(
-                              std::min<std::size_t>(texts.size(), 5)),
-                          "At time " + brief(state.time) + " s " + text +
-                            ". Usually a side is free there, or the motion is "
-                            "unstable.");
+        console.warn_once(
+          "lost point " +
+            std::to_string(std::min<std::size_t>(texts.size(), 5)),
+          "At time " + brief(state.time) + " s " + text +
+            ". Usually a side is free there or moves away, or the motion is "
+            "unstable.");
 
     const auto lost =
       dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);

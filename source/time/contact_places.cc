@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/records_of_ranks.h>
+#include <limber/grid/node_vector.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
 #include <limber/time/contact_geometry.h>
+#include <limber/time/point_deformation.h>
 
 #include <algorithm>
 #include <cmath>
@@ -232,10 +234,12 @@ namespace limber
         for (std::size_t k = group.first; k < group.last; ++k)
           stretch.largest =
             std::max(stretch.largest,
-                     parts.bodies[group.body]->stress->stretch_along(
-                       points[group.body],
-                       batches[k].batch.begin,
-                       faces[corners[batches[k].first].slot / 2].normal));
+                     stretch_along(*parts.bodies[group.body],
+                                   points[group.body],
+                                   batches[k].batch.begin,
+                                   vector_in<dim>(
+                                     faces[corners[batches[k].first].slot / 2]
+                                       .normal.data())));
       }
     return stretch.largest;
   }
@@ -247,11 +251,11 @@ namespace limber
   void
   Contact<dim>::gather(const Group &group)
   {
-    const PointView<dim>    &of_body = points[group.body];
-    const StressUpdate<dim> &stress  = *parts.bodies[group.body]->stress;
-    const unsigned int       field   = field_of(group.body);
-    const double             stretch = stretch_of(group);
-    const double             inverse_density = 1 / stress.density();
+    const PointView<dim>    &of_body         = points[group.body];
+    const MaterialBody<dim> &body            = *parts.bodies[group.body];
+    const unsigned int       field           = field_of(group.body);
+    const double             stretch         = stretch_of(group);
+    const double             inverse_density = 1 / body.stress->density();
     double                   largest_reach   = 0; // of those that may be met
     for (const auto &pair : parting)
       for (unsigned int s = 0; s < 2; ++s)
@@ -305,17 +309,16 @@ namespace limber
                 candidate.mass = of_body.mass[p];
                 const double half_edge =
                   half_edge_of<dim>(candidate.mass * inverse_density);
-                std::array<double, dim> across, along;
-                for (int d = 0; d < dim; ++d)
-                  across[d] = candidate.normal[d];
-                along.fill(0);
-                if constexpr (dim == 2)
-                  along = {{-across[1], across[0]}};
-                candidate.reach = reach_of(of_body, p, half_edge) *
-                                  stress.stretch_along(of_body, p, across);
+                candidate.reach =
+                  reach_of(of_body, p, half_edge) *
+                  stretch_along(body, of_body, p, candidate.normal);
                 candidate.width = half_edge;
-                if (dim == 2)
-                  candidate.width *= stress.stretch_along(of_body, p, along);
+                if constexpr (dim == 2)
+                  candidate.width *=
+                    stretch_along(body,
+                                  of_body,
+                                  p,
+                                  dealii::cross_product_2d(candidate.normal));
                 candidate.body  = group.body;
                 candidate.point = p;
                 candidate.rank  = this_rank;

@@ -2,6 +2,7 @@
 #include <limber/grid/node_vector.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
+#include <limber/time/point_deformation.h>
 
 /**
  * @file What the points at the surface of a body say of its normal at the nodes
@@ -45,7 +46,7 @@ namespace limber
   Contact<dim>::add_to_fits(const Group &group)
   {
     const PointView<dim>    &of_body = points[group.body];
-    const StressUpdate<dim> &stress  = *parts.bodies[group.body]->stress;
+    const MaterialBody<dim> &body    = *parts.bodies[group.body];
     for (std::size_t b = group.first; b < group.last; ++b)
       {
         const MeetingBatch        &some = batches[b];
@@ -64,10 +65,9 @@ namespace limber
             const double length = upwards.norm();
             if (!(length > 0))
               continue;
-            std::array<double, dim> direction;
-            store_vector<dim>(upwards / length, direction.data());
             const double reach =
-              of_body.reach[p] * stress.stretch_along(of_body, p, direction);
+              of_body.reach[p] *
+              stretch_along(body, of_body, p, upwards / length);
             for (std::uint32_t c = some.first; c < some.last; ++c)
               {
                 // A node that others hang on counts in its own cells alone.

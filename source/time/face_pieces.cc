@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 namespace limber
 {
@@ -17,17 +16,6 @@ namespace limber
     // point stands for: with n of them along it the moment of one that grows
     // evenly is too small by 1 / n^2.
     constexpr unsigned int pieces_where_it_varies = 3;
-
-
-
-    /** Whether a formula has a coordinate in it. */
-    template <int dim>
-    bool
-    varies_with_place(const Formula<dim> &formula)
-    {
-      static const std::regex coordinate("\\b[xyz]\\b");
-      return std::regex_search(formula.expression(), coordinate);
-    }
 
 
 
@@ -141,7 +129,7 @@ namespace limber
                   const GridDescription<dim> &grid)
   {
     const unsigned int parts =
-      varies_with_place(load.formula) ? pieces_where_it_varies : 1;
+      load.formula.is_uniform() ? 1 : pieces_where_it_varies;
     std::array<double, dim> spacing;
     auto                    lattice = body.lattice;
     for (unsigned int d = 0; d < dim; ++d)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/interpolation/dual_domain.h>
 #include <limber/interpolation/point_support.h>
 #include <limber/time/contact.h>
 #include <limber/time/loads.h>
+#include <limber/time/point_deformation.h>
 
 namespace limber
 {
@@ -21,21 +21,6 @@ namespace limber
 
 
   } // namespace
-
-
-
-  template <int dim>
-  dealii::Tensor<2, dim>
-  pull_back(const PointView<dim> &points, const std::size_t p)
-  {
-    dealii::Tensor<2, dim> F = dealii::unit_symmetric_tensor<dim>();
-    if (!points.in_initial_frame())
-      return F;
-    for (int d = 0; d < dim; ++d)
-      for (int e = 0; e < dim; ++e)
-        F[d][e] = points.deformation[d * dim + e][p];
-    return invert(F);
-  }
 
 
 
@@ -160,6 +145,25 @@ namespace limber
 
 
 
+  // What points would give the nodes, sum_p m_p N_i b, which have their masses.
+  template <int dim>
+  void
+  ExternalLoads<dim>::add_uniform_force(const NodalFields<dim> &nodes,
+                                        const unsigned int      field,
+                                        const double            time)
+  {
+    const dealii::Tensor<1, dim> force =
+      problem.loads.body_force->vector({}, time);
+    for (const std::uint32_t node : nodes.active_nodes())
+      {
+        const double mass = nodes.record(field, node)[NodeLayout<dim>::mass];
+        for (int d = 0; d < dim; ++d)
+          forces[field][node * dim + d] += mass * force[d];
+      }
+  }
+
+
+
   template <int dim>
   void
   ExternalLoads<dim>::add_face_load(LoadedFace<dim> &face, const double time)
@@ -195,46 +199,15 @@ namespace limber
                              const StressSweep  &what,
                              const double *const mean_gradients)
   {
-    using Mean = DualDomainLayout<dim>;
-    const unsigned int slot =
-      what.remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
     for (LoadedFace<dim> &face : faces)
-      {
-        const PointView<dim> points = face.body.points.view();
-        const unsigned int   field  = face.body.description.nodal_field;
-        for (const auto &[p, piece] : face.here())
-          {
-            const Support<dim> at =
-              support_of_point<dim>(grid.view(), points, p);
-            dealii::Tensor<2, dim> velocity_gradient;
-            for (int i = 0; i < at.n; ++i)
-              for (int d = 0; d < dim; ++d)
-                for (int e = 0; e < dim; ++e)
-                  velocity_gradient[d][e] +=
-                    nodes.record(field, at.node[i])[slot + d] *
-                    at.gradient[i][e];
-            if (mean_gradients != nullptr)
-              {
-                const double own = own_share<dim>(
-                  natural_place(points, grid.geometry[points.cell[p]], p));
-                velocity_gradient *= own;
-                for (int i = 0; i < at.n; ++i)
-                  for (int d = 0; d < dim; ++d)
-                    for (int e = 0; e < dim; ++e)
-                      velocity_gradient[d][e] +=
-                        (1 - own) * at.value[i] *
-                        mean_gradients[at.node[i] * Mean::stride +
-                                       Mean::tensor(d, e)];
-              }
-            dealii::Tensor<2, dim> change =
-              what.step * velocity_gradient * pull_back(points, p);
-            if (!points.in_initial_frame())
-              change += what.square * change * change;
-            piece->arm += change * piece->arm;
-            for (auto &edge : piece->edges)
-              edge += change * edge;
-          }
-      }
+      for (const auto &[p, piece] : face.here())
+        {
+          const dealii::Tensor<2, dim> change =
+            change_of_deformation(nodes, face.body, p, what, mean_gradients);
+          piece->arm += change * piece->arm;
+          for (auto &edge : piece->edges)
+            edge += change * edge;
+        }
   }
 
 
@@ -253,23 +226,27 @@ namespace limber
   void
   ExternalLoads<dim>::add(NodalFields<dim> &nodes,
                           const double      time,
-                          const bool        pressures)
+                          const bool        followers)
   {
     for (LazyArray<double> &of_nodes : forces)
       for (const std::uint32_t node : nodes.active_nodes())
         for (int d = 0; d < dim; ++d)
           of_nodes[node * dim + d] = 0;
-    if (problem.loads.body_force)
+    const auto &body_force = problem.loads.body_force;
+    const bool  varies     = body_force && !body_force->is_uniform();
+    if (varies && followers)
       for (const auto &body : bodies)
         add_body_force(*body, time);
     for (LoadedFace<dim> &face : faces)
-      if (pressures || !face.load.is_pressure)
+      if (followers || !face.load.is_pressure)
         add_face_load(face, time);
 
     for (unsigned int field = 0; field < forces.size(); ++field)
       {
-        if (problem.loads.body_force || !faces.empty())
+        if (varies || !faces.empty())
           complete(nodes, forces[field]);
+        if (body_force && !varies)
+          add_uniform_force(nodes, field, time);
         if (hydrostatic.any())
           hydrostatic.add(nodes, field, forces[field]);
         for (const std::uint32_t node : nodes.active_nodes())
@@ -314,10 +291,6 @@ namespace limber
 
 
 
-  template dealii::Tensor<2, 2>
-  pull_back(const PointView<2> &, std::size_t);
-  template dealii::Tensor<2, 3>
-  pull_back(const PointView<3> &, std::size_t);
   template class ExternalLoads<2>;
   template class ExternalLoads<3>;
 } // namespace limber

@@ -19,7 +19,7 @@ namespace limber
 
   // Forces on the nodes at a time, N; @p given are those of them that are not
   // the weight, with what holds part of it while the load grows. Pressures are
-  // not among them (FollowerPressure).
+  // not among them (FollowerLoads).
   template <int dim>
   typename NewtonIntegrator<dim>::Values
   NewtonIntegrator<dim>::loads_at(const double time, Values *const given)

@@ -78,9 +78,9 @@ namespace limber
     solver.reset();
     tangent->reinit(ghost);
     total_forces.assign(size(), 0.);
-    forces_of_pressures.assign(size(), 0.);
-    if (pressures != nullptr)
-      pressures->find();
+    forces_of_followers.assign(size(), 0.);
+    if (followers != nullptr)
+      followers->find();
     noise = 1e-14 * largest_modulus() *
             std::pow(parts.grid.smallest_edge, dim - 1) *
             std::sqrt(double(size()));
@@ -260,13 +260,13 @@ namespace limber
       return false;
     nodes.sum(total_forces);
     nodes.sum(&total_energy, 1);
-    if (pressures != nullptr && pressures->any())
+    if (followers != nullptr && followers->any())
       {
-        std::fill(forces_of_pressures.begin(), forces_of_pressures.end(), 0.);
-        pressures->add_forces(displacement, forces_of_pressures);
-        nodes.sum(forces_of_pressures);
+        std::fill(forces_of_followers.begin(), forces_of_followers.end(), 0.);
+        followers->add_forces(displacement, forces_of_followers);
+        nodes.sum(forces_of_followers);
         if (inertia != nullptr)
-          pressures->add_tangent(displacement,
+          followers->add_tangent(displacement,
                                  is_iterated(),
                                  [&](const std::uint32_t *const numbers,
                                      const unsigned int         n_nodes,

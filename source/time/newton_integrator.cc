@@ -39,7 +39,7 @@ namespace limber
     , loads(parts.problem, parts.grid, parts.bodies)
     , relocation(parts, loads)
     , equations(parts)
-    , pressures(parts, equations.numbered_nodes(), loads)
+    , followers(parts, equations.numbered_nodes(), loads)
     , newton(equations, parts.problem.method.newton_tolerance, clock)
     , scheme(parts.problem.method.spectral_radius)
     , longest(parts.problem.method.time_step > 0 ?
@@ -47,7 +47,7 @@ namespace limber
                 parts.problem.end_time / default_load_steps)
     , next_step(longest)
   {
-    equations.set_pressures(&pressures);
+    equations.set_followers(&followers);
     relocation.reinit();
     measure_waves();
   }
@@ -328,22 +328,22 @@ namespace limber
 
     // The forces of the beginning, at the present places
     Values displacement(equations.size());
-    pressures.set(time, load_factor(time));
+    followers.set(time, load_factor(time));
     equations.evaluate(displacement, nullptr);
-    const Values former_pressure = equations.pressure_forces();
+    const Values former_followers = equations.follower_forces();
     Values       net(equations.size()); // as they would accelerate
     for (std::size_t k = 0; k < equations.size(); ++k)
-      net[k] = former_loads[k] + former_pressure[k] - equations.forces()[k];
+      net[k] = former_loads[k] + former_followers[k] - equations.forces()[k];
     if (!in_motion)
       largest_force = std::max({largest_force,
                                 size_of(former_loads),
-                                size_of(former_pressure),
+                                size_of(former_followers),
                                 size_of(equations.forces())});
     question.largest_former_force = largest_force;
-    pressures.set(time + step, load_factor(time + step));
-    question.pressure_at_rest.assign(equations.size(), 0.);
-    pressures.add_forces(displacement, question.pressure_at_rest);
-    equations.numbered_nodes().sum(question.pressure_at_rest);
+    followers.set(time + step, load_factor(time + step));
+    question.followers_at_rest.assign(equations.size(), 0.);
+    followers.add_forces(displacement, question.followers_at_rest);
+    equations.numbered_nodes().sum(question.followers_at_rest);
 
     // What starts has the acceleration that its forces give it.
     Values former_acceleration = accelerations;
@@ -377,9 +377,10 @@ namespace limber
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         question.external[k] +=
-          equations.pressure_forces()[k] +
+          equations.follower_forces()[k] +
           (in_motion ? (1 - scheme.share_of_beginning()) * net[k] : 0);
-        given[k] += 0.5 * (former_pressure[k] + equations.pressure_forces()[k]);
+        given[k] +=
+          0.5 * (former_followers[k] + equations.follower_forces()[k]);
       }
 
     // Sides say how fast they are at the end, and how much faster than before.

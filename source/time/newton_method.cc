@@ -102,7 +102,7 @@ namespace limber
           (displacement[k] - question.inertial_displacement[k]);
         left[k] = equations.is_held(k) ?
                     0 :
-                    question.external[k] + equations.pressure_forces()[k] -
+                    question.external[k] + equations.follower_forces()[k] -
                       equations.forces()[k] - inertia;
         of_inertia += inertia * inertia;
         const double momentum =
@@ -110,7 +110,7 @@ namespace limber
         of_momentum += momentum * momentum;
       }
     const double scale = std::max({norm(question.external),
-                                   norm(equations.pressure_forces()),
+                                   norm(equations.follower_forces()),
                                    norm(equations.forces()),
                                    std::sqrt(of_inertia),
                                    known_share * std::sqrt(of_momentum),
@@ -121,7 +121,7 @@ namespace limber
 
 
 
-  // Whose derivative is the unbalance, but for the work of follower pressures,
+  // Whose derivative is the unbalance, but for the work of follower loads,
   // which is that of the mean of their forces before and after.
   template <int dim>
   double
@@ -130,8 +130,8 @@ namespace limber
   {
     double result = equations.energy() -
                     product(question.external, displacement) -
-                    0.5 * (product(question.pressure_at_rest, displacement) +
-                           product(equations.pressure_forces(), displacement));
+                    0.5 * (product(question.followers_at_rest, displacement) +
+                           product(equations.follower_forces(), displacement));
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const double way = displacement[k] - question.inertial_displacement[k];

@@ -4,6 +4,7 @@
 #include <limber/problem/side_contact.h>
 #include <limber/time/contact_geometry.h>
 #include <limber/time/obstacle_contact.h>
+#include <limber/time/point_deformation.h>
 #include <limber/transfer/meeting_bodies.h>
 
 #include <algorithm>
@@ -281,39 +282,15 @@ namespace limber
                                       p,
                                       half_edge_of<dim>(points.mass[p] *
                                                         inverse_density)) *
-                               stretch_along(body, p, distance.normal)},
+                               stretch_along(*parts.bodies[body],
+                                             points,
+                                             p,
+                                             distance.normal)},
                             ways[o],
                             step);
             }
         }
     });
-  }
-
-
-
-  template <int dim>
-  double
-  ObstacleContact<dim>::stretch_along(const unsigned int body,
-                                      const std::size_t  p,
-                                      const Vector      &normal) const
-  {
-    const PointView<dim> points = parts.bodies[body]->points.view();
-    if (points.in_initial_frame()) // sqrt(n . F F^T . n)
-      {
-        double square = 0;
-        for (int k = 0; k < dim; ++k)
-          {
-            double along = 0;
-            for (int d = 0; d < dim; ++d)
-              along += normal[d] * points.deformation[d * dim + k][p];
-            square += along * along;
-          }
-        return std::sqrt(square);
-      }
-    std::array<double, dim> direction;
-    for (int d = 0; d < dim; ++d)
-      direction[d] = normal[d];
-    return parts.bodies[body]->stress->stretch_along(points, p, direction);
   }
 
 

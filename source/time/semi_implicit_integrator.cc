@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/problem/acceleration.h>
 #include <limber/time/semi_implicit_integrator.h>
 
 #include <algorithm>
@@ -42,6 +43,18 @@ namespace limber
         }
       return result;
     }
+
+
+
+    template <int dim>
+    double
+    largest_acceleration_of(const Problem<dim> &problem)
+    {
+      double result = 0;
+      for (const Body<dim> &body : problem.bodies)
+        result = std::max(result, largest_acceleration(problem, body).norm());
+      return result;
+    }
   } // namespace
 
 
@@ -55,6 +68,7 @@ namespace limber
                Base::cut_cells ? &*Base::cut_cells : nullptr,
                Base::obstacles ? &*Base::obstacles : nullptr)
     , hourglass(std::size_t(parts.nodes.table.n()) * dim)
+    , acceleration(largest_acceleration_of(parts.problem))
     , viscosity_acts(!this->full_mass && is_viscous())
     , remaps(
         viscosity_acts ||
@@ -169,10 +183,9 @@ namespace limber
   bool
   SemiImplicitIntegrator<dim>::is_viscous() const
   {
-    const double h       = this->parts.grid.smallest_edge;
-    const double gravity = this->parts.problem.loads.gravity.norm();
+    const double h = this->parts.grid.smallest_edge;
     return this->viscosity * share_of_swing >
-           smallest_filling * h * std::sqrt(h * gravity);
+           smallest_filling * h * std::sqrt(h * acceleration);
   }
 
 
@@ -362,10 +375,10 @@ namespace limber
   {
     const Problem<dim> &problem = this->parts.problem;
     const double        h       = this->parts.grid.smallest_edge;
-    const double        gravity = problem.loads.gravity.norm();
     return std::min(problem.method.courant_number * h /
                       std::max(this->point_speed, 1e-300),
-                    share_of_swing * std::sqrt(h / std::max(gravity, 1e-300)));
+                    share_of_swing *
+                      std::sqrt(h / std::max(acceleration, 1e-300)));
   }
 
 
@@ -378,7 +391,7 @@ namespace limber
     const double        longest = Base::longest_step();
     if (problem.method.time_step > 0)
       return longest;
-    if (problem.loads.gravity.norm() > 0)
+    if (acceleration > 0)
       return std::min(longest, step_of_motion());
     // Nothing says how fast it will become what other loads set in motion.
     return std::min(longest,

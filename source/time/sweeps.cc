@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/explicit_integrator.h>
+#include <limber/time/point_deformation.h>
 
 #include <algorithm>
 #include <utility>
@@ -264,7 +265,8 @@ namespace limber
 
 
 
-  // Points of loaded faces are strained by the same velocity. The means over
+  // Loaded faces and surfaces that touch something are strained by the same
+  // velocity. The means over
   // cells are those of the beginning of the step: volumetric histories tend to
   // them once, before anything is strained.
   template <int dim>
@@ -277,6 +279,8 @@ namespace limber
       parts.problem.method.integration == TimeIntegration::semi_implicit;
     sweeps.average_gradients(what.remapped);
     loads.deform(parts.nodes, what, sweeps.mean_gradients());
+    for (auto &body : parts.bodies)
+      deform_surface(parts.nodes, *body, what, sweeps.mean_gradients());
     sweeps.update_stress(what,
                          {std::exchange(history_time, 0.),
                           what.step,

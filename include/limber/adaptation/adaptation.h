@@ -32,17 +32,18 @@ namespace limber
   /**
    * Lets the mesh follow what the scene's refinements want, and points follow
    * the mesh: one in a cell of a finer level than it was made for becomes 2^dim
-   * of half its size. Where the scene allows it, points in a cell of a coarser
-   * level than they were made for are joined, and stretched ones divided.
-   * Every member function is
-   * collective but those that only tell something.
+   * of half its size, or 3^dim if it is observed, of which the middle one
+   * stays. Where the scene allows it, points in a cell of a coarser level than
+   * they were made for are joined, and stretched ones divided. Every member
+   * function is collective but those that only tell something.
    */
   template <int dim>
   class Adaptation
   {
   public:
     using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
-    // Numbers of points of each body that have to stay what they are
+    // Numbers of points of each body that are observed: they stay where they
+    // are
     using KeptPoints = std::vector<std::unordered_set<std::uint64_t>>;
 
     /** Of a scene set up; does nothing where it does not adapt. */

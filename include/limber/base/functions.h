@@ -75,6 +75,10 @@ namespace limber
     bool
     is_zero() const;
 
+    /** No component mentions the place: one value serves all points. */
+    bool
+    is_uniform() const;
+
     /** Made without an expression. */
     bool
     empty() const;

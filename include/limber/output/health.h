@@ -43,6 +43,7 @@ namespace limber
     std::string  name;
     bool         is_liquid       = false;
     bool         is_plastic      = false; // may flow plastically
+    bool         keeps_surface   = true;  // see Body
     bool         is_split        = false; // where it is stretched
     unsigned int points_per_edge = 2;     // the smallest of all directions
     KernelKind   kernel          = KernelKind::linear;

@@ -23,6 +23,7 @@ namespace limber
     bool         acceleration = false; // of the time integration
     bool         crossings    = false; // how many cells it has entered
     bool         reach        = false; // how far its material goes
+    bool         stretch      = false; // how it is deformed, at surfaces
     DomainForm   domains      = DomainForm::none; // GIMP, CPDI
     bool         reference    = false; // reference position, for displacements
     bool         size_class   = false; // the level of cells they are made for
@@ -204,17 +205,19 @@ namespace limber
     }
 
     /**
-     * Let each of these points become 2^dim of half its size, side by side in
-     * its cell, that share its mass and are otherwise what it was. So sums over
-     * points and, as linear functions see them, over nodes do not change. Their
-     * initial places, if known, are shifted by the linear function of the
-     * present place that those in the cell follow. A domain becomes its 2^dim
-     * halves. With @p spacing of points of size class
-     * 0, m, that have none. One keeps the number, the others get numbers from
+     * Let each of these points become @p parts (2 or 3) along each edge, side
+     * by side in its cell, that share its mass and are otherwise what it was.
+     * So sums over points and, as linear functions see them, over nodes do not
+     * change. Their initial places, if known, are shifted by the linear
+     * function of the present place that those in the cell follow. A domain is
+     * divided likewise. With @p spacing of points of size class 0, m, that have
+     * none. The first of two or the middle of three along each edge, which
+     * stays where it is, keeps the number, the others get numbers from
      * @p next_id on.
      */
     void
     split(const std::vector<std::size_t> &which,
+          const unsigned int              parts,
           const std::array<double, dim>  &spacing,
           std::uint64_t                   next_id);
 
@@ -280,9 +283,9 @@ namespace limber
     void
     resize(std::size_t n);
     dealii::Tensor<2, dim>
-    shifts_of_children(const PointView<dim>          &points,
-                       std::size_t                    p,
-                       const std::array<double, dim> &spacing) const;
+    half_edges(const PointView<dim>          &points,
+               std::size_t                    p,
+               const std::array<double, dim> &spacing) const;
     void
     shift_point(std::size_t                   p,
                 const dealii::Tensor<1, dim> &way,

@@ -95,6 +95,9 @@ namespace limber
     // distance from that before it was stretched, m; 0 of others (see
     // reach_of())
     double *reach = nullptr;
+    // Of such points of a body that flows: b of the deformation since the start
+    // in the order of dealii::SymmetricTensor; null where the law knows it
+    std::array<double *, dim *(dim + 1) / 2> stretch{};
     // Of what the point stands for, as it was at the start, along the axes, m
     std::array<double *, dim> edge{};
 
@@ -103,6 +106,12 @@ namespace limber
     in_initial_frame() const
     {
       return deformation[0] != nullptr;
+    }
+
+    bool
+    keeps_stretch() const
+    {
+      return stretch[0] != nullptr;
     }
 
     /** Whether functions are averaged over domains of the points. */

@@ -161,6 +161,9 @@ namespace limber
 
     bool is_liquid  = false; // bears pressure, but no shape of its own
     bool is_plastic = false; // may flow plastically
+    // Points go on to be what they were to the surface: it flows like metal, if
+    // at all.
+    bool keeps_surface = true;
 
     // By number of the law's variables: 1 component each; those not given are
     // absent

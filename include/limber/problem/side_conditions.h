@@ -70,6 +70,30 @@ namespace limber
 
 
   /**
+   * Whether another side of the set alone holds this component, as the
+   * velocity through it: of two sides of which one moves, or material would go
+   * through the other at their edge (the lid of a cavity).
+   */
+  template <int dim>
+  bool
+  is_held_by_normal(const Sides<dim>  &sides,
+                    const unsigned int set,
+                    const unsigned int side,
+                    const unsigned int component)
+  {
+    if (component == side / 2)
+      return false;
+    for (const unsigned int other : {2 * component, 2 * component + 1})
+      if (set >> other & 1 && sides[other].held != HeldComponents::none &&
+          !sides[other].one_sided &&
+          !(sides[side].velocity.empty() && sides[other].velocity.empty()))
+        return true;
+    return false;
+  }
+
+
+
+  /**
    * What the sides of a set (bits) hold of a node that lies in all of them,
    * in the order in which they act: of several entries for one component the
    * last counts.
@@ -82,9 +106,10 @@ namespace limber
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (set >> side & 1)
         for (unsigned int component = 0; component < dim; ++component)
-          if (sides[side].held == HeldComponents::all ||
-              (sides[side].held == HeldComponents::normal &&
-               component == side / 2))
+          if ((sides[side].held == HeldComponents::all ||
+               (sides[side].held == HeldComponents::normal &&
+                component == side / 2)) &&
+              !is_held_by_normal(sides, set, side, component))
             result.push_back({side, component, sides[side].one_sided});
     return result;
   }

@@ -29,9 +29,10 @@ namespace limber
    * and cubes on a lattice that divides the common box of the two into parts
    * not larger than @p spacing (m, by direction). Corners of facets lie on the
    * surface to round-off, so smooth surfaces have errors of second order.
-   * Sharp edges are cut off within a part of the lattice, unless they lie in
-   * the sides of the common box, where lattice and shape fit. What is thinner
-   * than a part may be missed.
+   * Sharp corners in the plane are found where the tangents on both sides meet;
+   * sharp edges in space are cut off within a part of the lattice, unless they
+   * lie in the sides of the common box, where lattice and shape fit. What is
+   * thinner than a part may be missed.
    *
    * Nothing but Shape::contains() is asked for, so every shape will do.
    */

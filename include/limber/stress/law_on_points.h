@@ -2,7 +2,7 @@
 #ifndef limber_stress_law_on_points_h
 #define limber_stress_law_on_points_h
 
-#include <limber/materials/isochoric_strain.h>
+#include <limber/materials/further_deformation.h>
 #include <limber/stress/pack_strain.h>
 
 #include <algorithm>
@@ -289,16 +289,10 @@ namespace limber
          const double                            step,
          Findings                               &found) const
     {
-      // the stress is still that of before, as update() has it after the
-      // motion, of which nothing is left
-      auto state = stored_state(points, lanes);
-      isochoric::deform<dim>(state.history, f, determinant<dim>(f));
-      state.history[0] *= growth;
-      MotionIncrement<dim, PointPack<dim>> none{};
-      none.step = step;
-      found.plastic += lanes.only_active(lanes.load(points.mass)) *
-                       inverse_density *
-                       law.template update<dim>(none, state).plastic;
+      auto       state = stored_state(points, lanes);
+      const auto work  = flow_further<dim>(law, f, growth, step, state);
+      found.plastic +=
+        lanes.only_active(lanes.load(points.mass)) * inverse_density * work;
       return state;
     }
 

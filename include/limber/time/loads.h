@@ -9,16 +9,6 @@
 namespace limber
 {
   /**
-   * Takes a short vector at a point to what the gradients of the functions
-   * have to meet: itself, or F^-1 of it in the initial frame.
-   */
-  template <int dim>
-  dealii::Tensor<2, dim>
-  pull_back(const PointView<dim> &points, std::size_t p);
-
-
-
-  /**
    * Body force formulas, loads on faces and surfaces of bodies, and what
    * gravity does where unequal cells meet (HydrostaticLoad). Their
    * forces are kept apart from the internal ones so that their work is known;
@@ -51,10 +41,10 @@ namespace limber
     void
     look_at_cells(const NodalFields<dim> &nodes);
 
-    /** Add the forces at @p time to those of active nodes, on request without
-     * the pressures (FollowerPressure); collective. */
+    /** Add the forces at @p time to those of active nodes, whose masses are
+     * known; on request without FollowerLoads. Collective. */
     void
-    add(NodalFields<dim> &nodes, double time, bool pressures = true);
+    add(NodalFields<dim> &nodes, double time, bool followers = true);
 
     /**
      * Deform the pieces of faces as the points around them are strained, while
@@ -97,6 +87,10 @@ namespace limber
   private:
     void
     add_body_force(const MaterialBody<dim> &body, double time);
+    void
+    add_uniform_force(const NodalFields<dim> &nodes,
+                      unsigned int            field,
+                      double                  time);
     void
     add_face_load(LoadedFace<dim> &face, double time);
     void

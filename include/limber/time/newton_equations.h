@@ -5,7 +5,7 @@
 #include <limber/fem/linear_solver.h>
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
-#include <limber/time/follower_pressure.h>
+#include <limber/time/follower_loads.h>
 #include <limber/time/ghost_penalty.h>
 
 #include <memory>
@@ -54,11 +54,11 @@ namespace limber
                              unsigned int most_iterations = 2000);
     ~NewtonEquations();
 
-    /** Pressures that evaluate() takes account of; those of the caller. */
+    /** Loads that evaluate() takes account of; those of the caller. */
     void
-    set_pressures(FollowerPressure<dim> *const of_scene)
+    set_followers(FollowerLoads<dim> *const of_scene)
     {
-      pressures = of_scene;
+      followers = of_scene;
     }
 
     /**
@@ -141,11 +141,11 @@ namespace limber
       return total_forces;
     }
 
-    /** Of follower pressures at the last displacement, N; zero without any. */
+    /** Of follower loads at the last displacement, N; zero without any. */
     const std::vector<double> &
-    pressure_forces() const
+    follower_forces() const
     {
-      return forces_of_pressures;
+      return forces_of_followers;
     }
 
     /**
@@ -252,8 +252,8 @@ namespace limber
     std::vector<dealii::Point<dim>> places; // of nodes, as the step begins
     std::vector<double>             displacement_of_tangent; // m
     std::vector<double>             by_node, former_by_node; // displacements, m
-    std::vector<double>             total_forces, forces_of_pressures;
-    FollowerPressure<dim>          *pressures = nullptr; // or none
+    std::vector<double>             total_forces, forces_of_followers;
+    FollowerLoads<dim>             *followers = nullptr; // or none
     double total_energy = 0, energy_of_jumps = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;

@@ -131,14 +131,14 @@ namespace limber
     [[noreturn]] void
     fail(double time, double step) const;
 
-    const RunParts<dim>   parts;
-    const bool            in_motion; // has inertia
-    ExternalLoads<dim>    loads;
-    Relocation<dim>       relocation;
-    NewtonEquations<dim>  equations;
-    FollowerPressure<dim> pressures;
-    NewtonClock           clock;
-    NewtonMethod<dim>     newton;
+    const RunParts<dim>  parts;
+    const bool           in_motion; // has inertia
+    ExternalLoads<dim>   loads;
+    Relocation<dim>      relocation;
+    NewtonEquations<dim> equations;
+    FollowerLoads<dim>   followers;
+    NewtonClock          clock;
+    NewtonMethod<dim>    newton;
 
     // Of the nodes of the step, kg, m/s, m/s^2; accelerations of generalised-
     // alpha alone, else zero

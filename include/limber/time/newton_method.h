@@ -42,7 +42,7 @@ namespace limber
   {
     std::vector<double> held;     // displacements of held components, m; else 0
     std::vector<double> external; // forces that do not depend on those, N
-    std::vector<double> pressure_at_rest; // of follower pressures at none, N
+    std::vector<double> followers_at_rest; // of follower loads at none, N
     std::vector<double> inertia; // what multiplies displacements, kg/s^2
     // displacement without acceleration, m
     std::vector<double> inertial_displacement;

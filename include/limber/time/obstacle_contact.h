@@ -282,8 +282,6 @@ namespace limber
               std::uint32_t             cell);
     void
     find_points(unsigned int body, const std::vector<Way> &ways, double step);
-    double
-    stretch_along(unsigned int body, std::size_t p, const Vector &normal) const;
     void
     add_surface(unsigned int body,
                 const Near  &near,

@@ -65,8 +65,10 @@ namespace limber
 
     ImplicitPressure<dim> pressure;
     LazyArray<double>     hourglass; // forces by node and component, N
-    const bool            viscosity_acts;
-    const bool            remaps; // for solids and viscous liquids
+    // The largest by gravity and body force, m/s^2, see largest_acceleration()
+    const double acceleration;
+    const bool   viscosity_acts;
+    const bool   remaps; // for solids and viscous liquids
     // Its density, kg/m^3; 0 where the pressure of some solid is explicit
     const double lightest_solid;
   };

@@ -206,6 +206,9 @@ namespace limber::test
     EXPECT_EQ(bad.verdict, Verdict::bad);
     EXPECT_EQ(bad.entry, "Method/Kernel");
     EXPECT_LT(n_words(bad.text), 60u) << bad.text;
+    body.keeps_surface = false; // a fluid with a yield stress
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+    body.keeps_surface   = true;
     body.kernel          = KernelKind::quadratic;
     body.points_per_edge = 3;
     EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
@@ -295,6 +298,8 @@ namespace limber::test
     figures.contact              = 40;
     figures.bodies[0].is_plastic = true;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
+    figures.contact = -15; // but none may be given
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::bad);
     figures.bodies[0].is_plastic = false;
     figures.bodies[0].is_liquid  = true;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);

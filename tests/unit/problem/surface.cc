@@ -240,6 +240,34 @@ TEST(Surface, IsExactForABoxAlongTheLattice)
 
 
 
+// Corners of a turned square with a square hole, and a flat part between two of
+// them; no corner of a circle is one.
+TEST(Surface, SharpCornersInThePlaneAreFound)
+{
+  const FormulaShape<2> frame(
+    formula<2>("min(1 - max(abs(0.8*x + 0.6*y), abs(0.8*y - 0.6*x)), "
+               "max(abs(0.8*x + 0.6*y), abs(0.8*y - 0.6*x)) - 0.5)"),
+    cube<2>(-1.5, 1.5));
+  for (const double spacing : {0.2, 0.095, 0.0463})
+    {
+      const auto        facets = facets_of<2>(frame, spacing);
+      const Measures<2> found(facets);
+      EXPECT_TRUE(is_closed<2>(facets));
+      EXPECT_NEAR(found.area, 12, 1e-9);
+      EXPECT_NEAR(found.volume, 3, 1e-9);
+      const auto end = part_in<2>(
+        [](const Point<2> &x) { return 0.8 * x[0] + 0.6 * x[1] > 0.999; },
+        facets);
+      EXPECT_NEAR(Measures<2>(end).area, 2.002, 1e-6);
+    }
+  // with corners on nodes of the lattice
+  const FormulaShape<2> rectangle(
+    formula<2>("min(min(x, 1 - x), min(y, 0.5 - y))"), cube<2>(-0.2, 1.8));
+  EXPECT_NEAR(Measures<2>(facets_of<2>(rectangle, 0.05)).area, 3, 1e-9);
+}
+
+
+
 // Where parts meet in an edge, a lattice sees two corners across; both
 // answers are right, but neighbours must give the same.
 TEST(Surface, IsClosedForAnythingWhatever)

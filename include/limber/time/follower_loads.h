@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_time_follower_pressure_h
-#define limber_time_follower_pressure_h
+#ifndef limber_time_follower_loads_h
+#define limber_time_follower_loads_h
 
+#include <limber/interpolation/support.h>
 #include <limber/time/loads.h>
 #include <limber/time/numbered_nodes.h>
 
@@ -12,9 +13,11 @@
 namespace limber
 {
   /**
-   * Pressures on faces and surfaces of bodies in steps that Newton's method
-   * solves: they follow the displacements u of the nodes in the step. A piece
-   * at x_p + r with the edges a, whose carrier p has the functions N_i, goes to
+   * Loads that depend on where material goes in steps that Newton's method
+   * solves: they follow the displacements u of the nodes in the step.
+   *
+   * Of a pressure on a face or surface of a body, a piece at x_p + r with the
+   * edges a, whose carrier p has the functions N_i, goes to
    *
    *   x = x_p + r + sum_i w_i u_i,  w_i = N_i + r . grad N_i,
    *   a = a + sum_i u_i (a . grad N_i),
@@ -23,21 +26,24 @@ namespace limber
    * product of the edges (ExternalLoads, whose pieces these are). r and a of
    * the start of the step are pulled back where gradients are those of initial
    * places.
+   *
+   * Of a body force that varies in space, a point gives m_p N_i b(x_p + sum_j
+   * N_j u_j, t).
    */
   template <int dim>
-  class FollowerPressure
+  class FollowerLoads
   {
   public:
     /** All are those of the caller. */
-    FollowerPressure(const RunParts<dim>      &parts,
-                     const NumberedNodes<dim> &nodes,
-                     ExternalLoads<dim>       &loads)
+    FollowerLoads(const RunParts<dim>      &parts,
+                  const NumberedNodes<dim> &nodes,
+                  ExternalLoads<dim>       &loads)
       : parts(parts)
       , nodes(nodes)
       , loads(loads)
     {}
 
-    /** Whether the scene has pressures, on whatever rank. */
+    /** Whether the scene has such loads, on whatever rank. */
     bool
     any() const;
 
@@ -46,7 +52,7 @@ namespace limber
     void
     find();
 
-    /** Pressures are those of @p time times @p factor. */
+    /** Loads are those of @p time times @p factor. */
     void
     set(const double new_time, const double new_factor)
     {
@@ -66,8 +72,8 @@ namespace limber
 
     /**
      * Minus the derivative of these forces, N/m, row by row of the nodes with
-     * these numbers; or its symmetric part. That p may change with the place
-     * is left out.
+     * these numbers; or its symmetric part. That a pressure may change with
+     * the place is left out.
      */
     void
     add_tangent(const std::vector<double> &displacement,
@@ -86,10 +92,28 @@ namespace limber
       std::array<dealii::Tensor<1, dim>, dim - 1> edges; // m
     };
 
+    bool
+    has_pressures() const;
+    bool
+    has_body_force() const;
+    std::vector<std::uint32_t>
+    numbers_of(const Support<dim> &at, std::uint32_t cell) const;
     FacePiece<dim>
     moved(const Piece &piece, const std::vector<double> &displacement) const;
     double
     pressure(const Piece &piece, const FacePiece<dim> &at) const;
+    void
+    add_tangent_of_pressures(const std::vector<double> &displacement,
+                             bool                       symmetric,
+                             const Add                 &add) const;
+    void
+    add_tangent_of_body_force(const std::vector<double> &displacement,
+                              bool                       symmetric,
+                              const Add                 &add) const;
+    template <class Work>
+    void
+    for_each_point(const std::vector<double> &displacement,
+                   const Work                &work) const;
 
     const RunParts<dim>       parts;
     const NumberedNodes<dim> &nodes;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/time/follower_pressure.h>
+#include <limber/time/follower_loads.h>
 #include <limber/time/newton_equations.h>
 
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <cmath>
 
 /**
- * @file Pressures that follow the displacement of a step of Newton's method
- * (FollowerPressure), and bodies in equilibrium with them.
+ * @file Loads that follow the displacement of a step of Newton's method
+ * (FollowerLoads), and bodies in equilibrium with them.
  */
 
 using namespace limber;
@@ -86,17 +86,19 @@ namespace
   void
   check_tangent(const std::string &frame)
   {
-    SceneRun<dim> run(hollow_body<dim>(frame, in_equilibrium));
+    SceneRun<dim> run(hollow_body<dim>(frame, in_equilibrium),
+                      {"Loads/Body force=x*y; -y^2" +
+                       std::string(dim == 3 ? "; x*z" : "")});
     run.advance(0.5); // so that pieces are turned and stretched already
     const RunParts<dim> parts{
       run.problem, run.grid, run.nodes, run.bodies, run.ledger};
-    ExternalLoads<dim>    loads(run.problem, run.grid, run.bodies);
-    NewtonEquations<dim>  equations(parts);
-    FollowerPressure<dim> pressures(parts, equations.numbered_nodes(), loads);
-    ASSERT_TRUE(pressures.any());
+    ExternalLoads<dim>   loads(run.problem, run.grid, run.bodies);
+    NewtonEquations<dim> equations(parts);
+    FollowerLoads<dim>   followers(parts, equations.numbered_nodes(), loads);
+    ASSERT_TRUE(followers.any());
     equations.begin_step();
-    pressures.find();
-    pressures.set(0.5, 2.);
+    followers.find();
+    followers.set(0.5, 2.);
 
     const std::size_t   n = equations.size();
     std::vector<double> displacement(n), change(n), expected(n), symmetric(n);
@@ -106,7 +108,7 @@ namespace
         change[k]       = std::cos(3. * double(k));
       }
     const auto multiply = [&](std::vector<double> &result, const bool half) {
-      pressures.add_tangent(displacement,
+      followers.add_tangent(displacement,
                             half,
                             [&](const std::uint32_t *const numbers,
                                 const unsigned int         n_nodes,
@@ -126,10 +128,10 @@ namespace
     std::vector<double> before(n), after(n), former = displacement;
     for (std::size_t k = 0; k < n; ++k)
       displacement[k] = former[k] - h * change[k];
-    pressures.add_forces(displacement, before);
+    followers.add_forces(displacement, before);
     for (std::size_t k = 0; k < n; ++k)
       displacement[k] = former[k] + h * change[k];
-    pressures.add_forces(displacement, after);
+    followers.add_forces(displacement, after);
     double size = 0, work = 0, work_of_symmetric = 0;
     for (std::size_t k = 0; k < n; ++k)
       {
@@ -145,7 +147,7 @@ namespace
 
     // at rest: what ExternalLoads gives to the nodes, but for the factor
     std::vector<double> none(n), at_rest(n);
-    pressures.add_forces(none, at_rest);
+    followers.add_forces(none, at_rest);
     run.nodes.clear();
     loads.add(run.nodes, 0.5);
     for (std::size_t k = 0; k < n; ++k)
@@ -159,7 +161,7 @@ namespace
 
 
 
-TEST(FollowerPressures, TangentIsTheDerivative)
+TEST(FollowerLoads, TangentIsTheDerivative)
 {
   for (const std::string frame : {"initial", "current"})
     {
@@ -170,10 +172,64 @@ TEST(FollowerPressures, TangentIsTheDerivative)
 
 
 
+// In a field of springs fixed in space a body swings with the period 2
+// pi/sqrt(k) and, by the trapezoidal rule, keeps its energy.
+TEST(FollowerLoads, ABodySwingsInAField)
+{
+  const std::string block = R"(
+    set End time = 10
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 1.1, 0.9
+        set Upper corner = 1.5, 1.1
+      end
+      set Material = neo hookean
+      subsection Neo hookean
+        set Density = 1000
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 2
+      set Cells = 20, 20
+    end
+    subsection Boundaries
+      set left = free
+      set right = free
+      set bottom = free
+      set top = free
+    end
+    subsection Loads
+      set Body force = -9*(x - 1); -9*(y - 1)
+    end
+    subsection Method
+      set Time integration = implicit
+      set Time step = 0.02
+    end)";
+  SceneRun<2>       run(block);
+  const auto        centre = [&]() {
+    return run.totals().all.mass_moment[0] / run.totals().all.mass;
+  };
+  EXPECT_NEAR(centre(), 1.3, 1e-12);
+  double least = 2;
+  for (unsigned int k = 0; k < 419; ++k) // four periods, 8.38 s
+    {
+      run.advance(0.02);
+      least = std::min(least, centre());
+    }
+  EXPECT_NEAR(least, 0.7, 0.001);
+  EXPECT_NEAR(centre(), 1.3, 0.001);
+  EXPECT_LT(std::abs(run.totals().energy_drift), 1e-6);
+}
+
+
+
 // Incompressible neo-Hookean tube in plane strain, B/A = 2: pressure over G at
 // which the inner radius has grown to a,
 // ln((a/A)/(b/B)) + (k/2)(1/a^2 - 1/b^2), k = a^2 - A^2 = b^2 - B^2.
-TEST(FollowerPressures, TubeOfRubber)
+TEST(FollowerLoads, TubeOfRubber)
 {
   const double G = 1000. / (2 * 1.499);
   for (const double inner : {1.1, 1.25, 1.5})

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_problem_acceleration_h
+#define limber_problem_acceleration_h
+
+#include <limber/problem/problem.h>
+
+#include <cmath>
+
+namespace limber
+{
+  /** Call work(place) for those of a lattice in a box, @p n along each edge,
+   * from end to end. */
+  template <int dim, class Work>
+  void
+  for_each_place(const Corners<dim> &box,
+                 const unsigned int  n,
+                 const Work         &work)
+  {
+    for (unsigned int k = 0; k < std::pow(n, dim); ++k)
+      {
+        dealii::Point<dim> place;
+        for (unsigned int d = 0, rest = k; d < dim; ++d, rest /= n)
+          place[d] = box.first[d] +
+                     (box.second[d] - box.first[d]) * (rest % n) / (n - 1.);
+        work(place);
+      }
+  }
+
+
+
+  /**
+   * The largest size of each component of gravity and body force together, in
+   * the box around the body as it is at the start and at any time of the run,
+   * m/s^2: sampled, where the formula is finite.
+   */
+  template <int dim>
+  dealii::Tensor<1, dim>
+  largest_acceleration(const Problem<dim> &problem, const Body<dim> &body);
+} // namespace limber
+
+#endif

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/point_support.h>
+#include <limber/time/follower_loads.h>
+#include <limber/time/point_deformation.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  template <int dim>
+  bool
+  FollowerLoads<dim>::any() const
+  {
+    return has_pressures() || has_body_force();
+  }
+
+
+
+  template <int dim>
+  bool
+  FollowerLoads<dim>::has_pressures() const
+  {
+    const auto &faces = parts.problem.loads.faces;
+    return std::any_of(faces.begin(), faces.end(), [](const auto &load) {
+      return load.is_pressure;
+    });
+  }
+
+
+
+  template <int dim>
+  bool
+  FollowerLoads<dim>::has_body_force() const
+  {
+    const auto &force = parts.problem.loads.body_force;
+    return force && !force->is_uniform();
+  }
+
+
+
+  // Of the nodes that a point in a cell sees, in their order.
+  template <int dim>
+  std::vector<std::uint32_t>
+  FollowerLoads<dim>::numbers_of(const Support<dim> &at,
+                                 const std::uint32_t cell) const
+  {
+    std::vector<std::uint32_t> result;
+    for (int i = 0; i < at.n; ++i)
+      for (const std::uint32_t number : nodes.numbers_in(cell))
+        if (nodes.on_grid()[number] == at.node[i])
+          result.push_back(number);
+    AssertDimension(result.size(), std::size_t(at.n));
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  FollowerLoads<dim>::find()
+  {
+    pieces.clear();
+    for (LoadedFace<dim> &face : loads.loaded_faces())
+      {
+        if (!face.load.is_pressure)
+          continue;
+        const PointView<dim> points = face.body.points.view();
+        for (const auto &[p, former] : face.here())
+          {
+            const Support<dim> at =
+              support_of_point<dim>(parts.grid.view(), points, p);
+            const dealii::Tensor<2, dim> pull   = pull_back(points, p);
+            const auto                   slopes = [&](const auto &vector) {
+              const dealii::Tensor<1, dim> pulled = pull * vector;
+              std::vector<double>          result(at.n);
+              for (int i = 0; i < at.n; ++i)
+                for (int d = 0; d < dim; ++d)
+                  result[i] += at.gradient[i][d] * pulled[d];
+              return result;
+            };
+            Piece piece;
+            piece.load    = &face.load;
+            piece.edges   = former->edges;
+            piece.numbers = numbers_of(at, points.cell[p]);
+            piece.weights = slopes(former->arm);
+            for (int i = 0; i < at.n; ++i)
+              piece.weights[i] += at.value[i];
+            for (unsigned int e = 0; e < dim - 1; ++e)
+              piece.slopes[e] = slopes(former->edges[e]);
+            for (int d = 0; d < dim; ++d)
+              piece.place[d] = points.position[d][p] + former->arm[d];
+            pieces.push_back(std::move(piece));
+          }
+      }
+  }
+
+
+
+  // Place, as the arm, and edges
+  template <int dim>
+  FacePiece<dim>
+  FollowerLoads<dim>::moved(const Piece               &piece,
+                            const std::vector<double> &displacement) const
+  {
+    FacePiece<dim> result;
+    result.arm   = piece.place;
+    result.edges = piece.edges;
+    for (std::size_t i = 0; i < piece.numbers.size(); ++i)
+      for (int d = 0; d < dim; ++d)
+        {
+          const double u =
+            displacement[std::size_t(piece.numbers[i]) * dim + d];
+          result.arm[d] += piece.weights[i] * u;
+          for (unsigned int e = 0; e < dim - 1; ++e)
+            result.edges[e][d] += piece.slopes[e][i] * u;
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  FollowerLoads<dim>::pressure(const Piece          &piece,
+                               const FacePiece<dim> &at) const
+  {
+    return factor * piece.load->formula.value(dealii::Point<dim>(at.arm), time);
+  }
+
+
+
+  template <int dim>
+  void
+  FollowerLoads<dim>::add_forces(const std::vector<double> &displacement,
+                                 std::vector<double>       &forces) const
+  {
+    for (const Piece &piece : pieces)
+      {
+        const FacePiece<dim>         now = moved(piece, displacement);
+        const dealii::Tensor<1, dim> force =
+          -pressure(piece, now) * now.area_vector();
+        for (std::size_t i = 0; i < piece.numbers.size(); ++i)
+          for (int d = 0; d < dim; ++d)
+            forces[std::size_t(piece.numbers[i]) * dim + d] +=
+              piece.weights[i] * force[d];
+      }
+    for_each_point(displacement,
+                   [&](const dealii::Point<dim>         &place,
+                       const double                      mass,
+                       const Support<dim>               &at,
+                       const std::vector<std::uint32_t> &numbers) {
+                     const dealii::Tensor<1, dim> force =
+                       factor * mass *
+                       parts.problem.loads.body_force->vector(place, time);
+                     for (int i = 0; i < at.n; ++i)
+                       for (int d = 0; d < dim; ++d)
+                         forces[std::size_t(numbers[i]) * dim + d] +=
+                           at.value[i] * force[d];
+                   });
+  }
+
+
+
+  // Call work(place, mass, support, numbers of nodes) for those of this rank
+  // that a body force pushes, with their places after the displacement.
+  template <int dim>
+  template <class Work>
+  void
+  FollowerLoads<dim>::for_each_point(const std::vector<double> &displacement,
+                                     const Work                &work) const
+  {
+    if (!has_body_force())
+      return;
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points = body->points.view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const Support<dim> at =
+              support_of_point<dim>(parts.grid.view(), points, p);
+            const auto         numbers = numbers_of(at, points.cell[p]);
+            dealii::Point<dim> place;
+            for (int d = 0; d < dim; ++d)
+              {
+                place[d] = points.position[d][p];
+                for (int i = 0; i < at.n; ++i)
+                  place[d] += at.value[i] *
+                              displacement[std::size_t(numbers[i]) * dim + d];
+              }
+            work(place, points.mass[p], at, numbers);
+          }
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  FollowerLoads<dim>::add_tangent(const std::vector<double> &displacement,
+                                  const bool                 symmetric,
+                                  const Add                 &add) const
+  {
+    add_tangent_of_pressures(displacement, symmetric, add);
+    add_tangent_of_body_force(displacement, symmetric, add);
+  }
+
+
+
+  // The derivative of the formula by central differences.
+  template <int dim>
+  void
+  FollowerLoads<dim>::add_tangent_of_body_force(
+    const std::vector<double> &displacement,
+    const bool                 symmetric,
+    const Add                 &add) const
+  {
+    const double        h = 1e-2 * parts.grid.smallest_edge;
+    std::vector<double> block;
+    for_each_point(displacement,
+                   [&](const dealii::Point<dim>         &place,
+                       const double                      mass,
+                       const Support<dim>               &at,
+                       const std::vector<std::uint32_t> &numbers) {
+                     dealii::Tensor<2, dim> slope; // of minus the force
+                     for (int e = 0; e < dim; ++e)
+                       {
+                         dealii::Tensor<1, dim> way;
+                         way[e]            = h;
+                         const auto &force = *parts.problem.loads.body_force;
+                         const dealii::Tensor<1, dim> change =
+                           force.vector(place - way, time) -
+                           force.vector(place + way, time);
+                         for (int d = 0; d < dim; ++d)
+                           slope[d][e] = factor * mass / (2 * h) * change[d];
+                       }
+                     if (symmetric)
+                       slope = dealii::Tensor<2, dim>(symmetrize(slope));
+                     const std::size_t n = numbers.size() * dim;
+                     block.resize(n * n);
+                     for (std::size_t k = 0; k < n; ++k)
+                       for (std::size_t l = 0; l < n; ++l)
+                         block[k * n + l] = at.value[k / dim] *
+                                            at.value[l / dim] *
+                                            slope[k % dim][l % dim];
+                     add(numbers.data(), numbers.size(), block.data());
+                   });
+  }
+
+
+
+  template <int dim>
+  void
+  FollowerLoads<dim>::add_tangent_of_pressures(
+    const std::vector<double> &displacement,
+    const bool                 symmetric,
+    const Add                 &add) const
+  {
+    std::vector<double> block;
+    for (const Piece &piece : pieces)
+      {
+        const FacePiece<dim> now = moved(piece, displacement);
+        const double         p   = pressure(piece, now);
+        // n da is linear in each edge: its change with component c of one
+        std::array<dealii::Tensor<2, dim>, dim - 1> of_edge; // [c] is a vector
+        for (unsigned int e = 0; e < dim - 1; ++e)
+          for (int c = 0; c < dim; ++c)
+            {
+              FacePiece<dim> unit = now;
+              unit.edges[e]       = 0.;
+              unit.edges[e][c]    = 1;
+              of_edge[e][c]       = unit.area_vector();
+            }
+        const std::size_t n = piece.numbers.size() * dim;
+        block.assign(n * n, 0.);
+        for (std::size_t k = 0; k < n; ++k)
+          for (std::size_t l = 0; l < n; ++l)
+            for (unsigned int e = 0; e < dim - 1; ++e)
+              {
+                const double value = p * piece.weights[k / dim] *
+                                     piece.slopes[e][l / dim] *
+                                     of_edge[e][l % dim][k % dim];
+                if (symmetric)
+                  {
+                    block[k * n + l] += 0.5 * value;
+                    block[l * n + k] += 0.5 * value;
+                  }
+                else
+                  block[k * n + l] += value;
+              }
+        add(piece.numbers.data(), piece.numbers.size(), block.data());
+      }
+  }
+
+
+
+  template class FollowerLoads<2>;
+  template class FollowerLoads<3>;
+} // namespace limber
