@@ -200,14 +200,22 @@ namespace limber
                              const double *const mean_gradients)
   {
     for (LoadedFace<dim> &face : faces)
-      for (const auto &[p, piece] : face.here())
-        {
-          const dealii::Tensor<2, dim> change =
-            change_of_deformation(nodes, face.body, p, what, mean_gradients);
-          piece->arm += change * piece->arm;
-          for (auto &edge : piece->edges)
-            edge += change * edge;
-        }
+      {
+        const PointView<dim> points = face.body.points.view();
+        for (const auto &[p, piece] : face.here())
+          {
+            const dealii::Tensor<2, dim> change =
+              change_of_deformation(nodes,
+                                    points,
+                                    face.body.description.nodal_field,
+                                    p,
+                                    what,
+                                    mean_gradients);
+            piece->arm += change * piece->arm;
+            for (auto &edge : piece->edges)
+              edge += change * edge;
+          }
+      }
   }
 
 

@@ -51,17 +51,16 @@ namespace limber
 
   template <int dim>
   dealii::Tensor<2, dim>
-  change_of_deformation(NodalFields<dim>        &nodes,
-                        const MaterialBody<dim> &body,
-                        const std::size_t        p,
-                        const StressSweep       &what,
-                        const double *const      mean_gradients)
+  change_of_deformation(NodalFields<dim>     &nodes,
+                        const PointView<dim> &points,
+                        const unsigned int    field,
+                        const std::size_t     p,
+                        const StressSweep    &what,
+                        const double *const   mean_gradients)
   {
-    using Mean                  = DualDomainLayout<dim>;
-    const GridView<dim>  grid   = nodes.view();
-    const PointView<dim> points = body.points.view();
-    const unsigned int   field  = body.description.nodal_field;
-    const unsigned int   slot =
+    using Mean               = DualDomainLayout<dim>;
+    const GridView<dim> grid = nodes.view();
+    const unsigned int  slot =
       what.remapped ? NodeLayout<dim>::remapped : NodeLayout<dim>::velocity;
     const Support<dim>     at = support_of_point<dim>(grid, points, p);
     dealii::Tensor<2, dim> velocity_gradient;
@@ -93,10 +92,10 @@ namespace limber
 
   template <int dim>
   void
-  deform_surface(NodalFields<dim>   &nodes,
-                 MaterialBody<dim>  &body,
-                 const StressSweep  &what,
-                 const double *const mean_gradients)
+  deform_surface(NodalFields<dim>        &nodes,
+                 const MaterialBody<dim> &body,
+                 const StressSweep       &what,
+                 const double *const      mean_gradients)
   {
     const PointView<dim> points = body.points.view();
     if (!points.keeps_stretch())
@@ -105,7 +104,12 @@ namespace limber
       if (is_at_surface(points, p))
         {
           const dealii::Tensor<2, dim> f =
-            change_of_deformation(nodes, body, p, what, mean_gradients) +
+            change_of_deformation(nodes,
+                                  points,
+                                  body.description.nodal_field,
+                                  p,
+                                  what,
+                                  mean_gradients) +
             dealii::unit_symmetric_tensor<dim>();
           const dealii::SymmetricTensor<2, dim> b = symmetrize(
             f * dealii::Tensor<2, dim>(kept_stretch(points, p)) * transpose(f));
@@ -144,24 +148,26 @@ namespace limber
   pull_back(const PointView<3> &, std::size_t);
   template dealii::Tensor<2, 2>
   change_of_deformation(NodalFields<2> &,
-                        const MaterialBody<2> &,
+                        const PointView<2> &,
+                        unsigned int,
                         std::size_t,
                         const StressSweep &,
                         const double *);
   template dealii::Tensor<2, 3>
   change_of_deformation(NodalFields<3> &,
-                        const MaterialBody<3> &,
+                        const PointView<3> &,
+                        unsigned int,
                         std::size_t,
                         const StressSweep &,
                         const double *);
   template void
   deform_surface(NodalFields<2> &,
-                 MaterialBody<2> &,
+                 const MaterialBody<2> &,
                  const StressSweep &,
                  const double *);
   template void
   deform_surface(NodalFields<3> &,
-                 MaterialBody<3> &,
+                 const MaterialBody<3> &,
                  const StressSweep &,
                  const double *);
   template double

@@ -23,17 +23,19 @@ namespace limber
   pull_back(const PointView<dim> &points, std::size_t p);
 
   /**
-   * f - 1 of a point of the body over what.step, before it is moved: by the
-   * same velocity and square as the stress; with @p mean_gradients of the dual
-   * domain method (DualDomainLayout), if there are any.
+   * f - 1 of a point of a body, with these points and nodal field, over
+   * what.step, before it is moved: by the same velocity and square as the
+   * stress; with @p mean_gradients of the dual domain method
+   * (DualDomainLayout), if there are any.
    */
   template <int dim>
   dealii::Tensor<2, dim>
-  change_of_deformation(NodalFields<dim>        &nodes,
-                        const MaterialBody<dim> &body,
-                        std::size_t              p,
-                        const StressSweep       &what,
-                        const double            *mean_gradients);
+  change_of_deformation(NodalFields<dim>     &nodes,
+                        const PointView<dim> &points,
+                        unsigned int          field,
+                        std::size_t           p,
+                        const StressSweep    &what,
+                        const double         *mean_gradients);
 
   /**
    * b becomes f b f^T at the points of a surface that keep it
@@ -41,10 +43,10 @@ namespace limber
    */
   template <int dim>
   void
-  deform_surface(NodalFields<dim>  &nodes,
-                 MaterialBody<dim> &body,
-                 const StressSweep &what,
-                 const double      *mean_gradients);
+  deform_surface(NodalFields<dim>        &nodes,
+                 const MaterialBody<dim> &body,
+                 const StressSweep       &what,
+                 const double            *mean_gradients);
 
   /**
    * How much wider the material at a point is along a unit vector, between
