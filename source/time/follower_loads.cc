@@ -38,18 +38,21 @@ namespace limber
 
 
 
-  // Of the nodes that a point in a cell sees, in their order.
+  // Of the at.n nodes that a point in a cell sees, in their order.
   template <int dim>
-  std::vector<std::uint32_t>
+  typename FollowerLoads<dim>::Numbers
   FollowerLoads<dim>::numbers_of(const Support<dim> &at,
                                  const std::uint32_t cell) const
   {
-    std::vector<std::uint32_t> result;
+    Numbers result;
+    result.fill(invalid_cell);
     for (int i = 0; i < at.n; ++i)
-      for (const std::uint32_t number : nodes.numbers_in(cell))
-        if (nodes.on_grid()[number] == at.node[i])
-          result.push_back(number);
-    AssertDimension(result.size(), std::size_t(at.n));
+      {
+        for (const std::uint32_t number : nodes.numbers_in(cell))
+          if (nodes.on_grid()[number] == at.node[i])
+            result[i] = number;
+        Assert(result[i] != invalid_cell, dealii::ExcInternalError());
+      }
     return result;
   }
 
@@ -79,9 +82,10 @@ namespace limber
               return result;
             };
             Piece piece;
-            piece.load    = &face.load;
-            piece.edges   = former->edges;
-            piece.numbers = numbers_of(at, points.cell[p]);
+            piece.load            = &face.load;
+            piece.edges           = former->edges;
+            const Numbers numbers = numbers_of(at, points.cell[p]);
+            piece.numbers.assign(numbers.begin(), numbers.begin() + at.n);
             piece.weights = slopes(former->arm);
             for (int i = 0; i < at.n; ++i)
               piece.weights[i] += at.value[i];
@@ -145,10 +149,10 @@ namespace limber
               piece.weights[i] * force[d];
       }
     for_each_point(displacement,
-                   [&](const dealii::Point<dim>         &place,
-                       const double                      mass,
-                       const Support<dim>               &at,
-                       const std::vector<std::uint32_t> &numbers) {
+                   [&](const dealii::Point<dim> &place,
+                       const double              mass,
+                       const Support<dim>       &at,
+                       const Numbers            &numbers) {
                      const dealii::Tensor<1, dim> force =
                        factor * mass *
                        parts.problem.loads.body_force->vector(place, time);
@@ -217,10 +221,10 @@ namespace limber
     const double        h = 1e-2 * parts.grid.smallest_edge;
     std::vector<double> block;
     for_each_point(displacement,
-                   [&](const dealii::Point<dim>         &place,
-                       const double                      mass,
-                       const Support<dim>               &at,
-                       const std::vector<std::uint32_t> &numbers) {
+                   [&](const dealii::Point<dim> &place,
+                       const double              mass,
+                       const Support<dim>       &at,
+                       const Numbers            &numbers) {
                      dealii::Tensor<2, dim> slope; // of minus the force
                      for (int e = 0; e < dim; ++e)
                        {
@@ -235,14 +239,14 @@ namespace limber
                        }
                      if (symmetric)
                        slope = dealii::Tensor<2, dim>(symmetrize(slope));
-                     const std::size_t n = numbers.size() * dim;
+                     const std::size_t n = std::size_t(at.n) * dim;
                      block.resize(n * n);
                      for (std::size_t k = 0; k < n; ++k)
                        for (std::size_t l = 0; l < n; ++l)
                          block[k * n + l] = at.value[k / dim] *
                                             at.value[l / dim] *
                                             slope[k % dim][l % dim];
-                     add(numbers.data(), numbers.size(), block.data());
+                     add(numbers.data(), at.n, block.data());
                    });
   }
 

@@ -96,7 +96,8 @@ namespace limber
     has_pressures() const;
     bool
     has_body_force() const;
-    std::vector<std::uint32_t>
+    using Numbers = std::array<std::uint32_t, Support<dim>::most>;
+    Numbers
     numbers_of(const Support<dim> &at, std::uint32_t cell) const;
     FacePiece<dim>
     moved(const Piece &piece, const std::vector<double> &displacement) const;
