@@ -349,6 +349,36 @@ namespace limber
 
 
   template <int dim>
+  void
+  BoundaryConditions<dim>::for_each_constrained(const NodalFields<dim> &nodes,
+                                                const double            time,
+                                                const Visit            &visit)
+  {
+    for_each_node(nodes,
+                  time,
+                  [&](const std::uint32_t node,
+                      const auto          first,
+                      const auto          last) {
+                    visit(node, &*first, &*first + (last - first));
+                  });
+  }
+
+
+
+  template <int dim>
+  dealii::Tensor<1, dim>
+  BoundaryConditions<dim>::constrained(const Constraint *const first,
+                                       const Constraint *const last,
+                                       dealii::Tensor<1, dim>  velocity) const
+  {
+    for (const Constraint *c = first; c != last; ++c)
+      act(*c, velocity);
+    return velocity;
+  }
+
+
+
+  template <int dim>
   std::array<unsigned int, dim>
   BoundaryConditions<dim>::held(const NodalFields<dim> &nodes,
                                 const std::uint32_t     node) const

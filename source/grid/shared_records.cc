@@ -137,8 +137,33 @@ namespace limber
 
 
   void
+  ExchangePlan::add(const std::vector<Neighbour> &more)
+  {
+    for (const Neighbour &added : more)
+      {
+        auto at = std::lower_bound(neighbours.begin(),
+                                   neighbours.end(),
+                                   added.rank,
+                                   [](const auto &neighbour, const auto other) {
+                                     return neighbour.rank < other;
+                                   });
+        if (at == neighbours.end() || at->rank != added.rank)
+          at = neighbours.insert(at, Neighbour{added.rank, {}, {}});
+        at->send.insert(at->send.end(), added.send.begin(), added.send.end());
+        at->receive.insert(at->receive.end(),
+                           added.receive.begin(),
+                           added.receive.end());
+      }
+    collect_received();
+  }
+
+
+
+  void
   ExchangePlan::collect_received()
   {
+    received.clear();
+    contested.clear();
     for (const Neighbour &neighbour : neighbours)
       received.insert(received.end(),
                       neighbour.receive.begin(),

@@ -109,8 +109,8 @@ namespace limber
     {
       if (problem.grid.kernel != KernelKind::linear)
         return "the kernel is not 'linear'";
-      if (problem.grid.levels > 0)
-        return "cells have several sizes";
+      if (problem.grid.levels > 0 && !root.list("Obstacles").empty())
+        return "cells of several sizes may meet obstacles";
       if (!root.subsection("Contact").list("Pairs").empty())
         return "bodies touch by 'Contact/Pairs'";
       for (const std::string &name : root.list("Obstacles"))
@@ -190,9 +190,9 @@ namespace limber
         return say("'explicit', as " + ratio + ", at most " +
                    brief(fast_sound));
 
-      double edge = 1e300;
+      double edge = 1e300; // of the finest cells
       for (unsigned int d = 0; d < dim; ++d)
-        edge = std::min(edge, problem.grid.edge(d));
+        edge = std::min(edge, problem.grid.finest_edge(d));
       const double C            = problem.method.courant_number;
       const double former_steps = (speeds.sound + speeds.motion) / (C * edge);
       const double steps =

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/base/quadrature_lib.h>
 
-#include <limber/base/exceptions.h>
 #include <limber/time/implicit_pressure.h>
 
 #include <algorithm>
@@ -23,6 +22,10 @@ namespace limber
     // comes near nevertheless is held in the next step.
     constexpr unsigned int most_changes = 4, most_releases = 6;
 
+    // So often sides let go what they would have to pull, and so often more
+    // what they hold and how they rub is found anew.
+    constexpr unsigned int most_releases_by_sides = 10, most_more = 10;
+
     // In cells along an axis, of what makes room in a step.
     constexpr double longest_way_to_room = 0.25;
   } // namespace
@@ -36,17 +39,11 @@ namespace limber
                                           ObstacleContact<dim> *const obstacles)
     : parts(parts)
     , obstacles(obstacles)
+    , with_one_sided(boundaries.any_one_sided())
     , cells(parts, cut_cells)
     , system(parts, boundaries, cells)
     , solver(parts.grid.communicator)
   {
-    if (parts.problem.grid.levels > 0 &&
-        dealii::Utilities::MPI::n_mpi_processes(parts.grid.communicator) > 1)
-      throw InputError(
-        "Time integration 'semi-implicit' with cells of several sizes ('Grid/"
-        "Levels') is for one rank: ranks do not know all cells that share a "
-        "node. Run it without mpirun, or set 'Time integration = "
-        "explicit'.");
     reinit();
   }
 
@@ -96,21 +93,18 @@ namespace limber
       }
     if (obstacles != nullptr)
       meet_obstacles();
-    const auto          before   = spent.iterations;
-    double              residual = solve_equations(end, step, share);
+    if (with_one_sided)
+      {
+        sum_forces(former_pressures(), false);
+        system.expect_at_sides(end, step);
+      }
+    const auto before   = spent.iterations;
+    double     residual = solve_equations(end, step, share);
+    for (unsigned int k = 1; is_held_otherwise(end, step, k); ++k)
+      residual = solve_equations(end, step, share);
     std::vector<double> impulses; // of nodes that obstacles hold
     if (obstacles != nullptr)
-      {
-        sum_forces(system.pressures, true);
-        for (unsigned int k = 1; k < most_changes + most_releases &&
-                                 system.release_nodes(step, k < most_changes);
-             ++k)
-          {
-            residual = solve_equations(end, step, share);
-            sum_forces(system.pressures, true);
-          }
-        impulses = system.impulses_on_nodes(step);
-      }
+      impulses = system.impulses_on_nodes(step);
     sum_forces(system.pressures, false);
     ++spent.steps;
     spent.most_iterations =
@@ -122,6 +116,44 @@ namespace limber
     if (obstacles != nullptr)
       press_on_obstacles(step, impulses);
     find_way_to_room(step, residual);
+  }
+
+
+
+  // Whether pressures that have been found for the k-th time press other nodes
+  // on sides and obstacles than was assumed.
+  template <int dim>
+  bool
+  ImplicitPressure<dim>::is_held_otherwise(const double       end,
+                                           const double       step,
+                                           const unsigned int k)
+  {
+    if (obstacles == nullptr && !with_one_sided)
+      return false;
+    sum_forces(system.pressures, obstacles != nullptr);
+    bool result = false;
+    if (obstacles != nullptr && k < most_changes + most_releases)
+      result |= system.release_nodes(step, k < most_changes);
+    if (with_one_sided && k < most_releases_by_sides + most_more)
+      result |= system.meet_sides(end, step, k < most_releases_by_sides);
+    return result;
+  }
+
+
+
+  // That points bring, by rows of cells; those of surfaces have none.
+  template <int dim>
+  std::vector<double>
+  ImplicitPressure<dim>::former_pressures() const
+  {
+    std::vector<double> result(cells.n, 0.);
+    for (const Medium &medium : cells.media)
+      for (std::size_t k = 0; k < medium.cells.size(); ++k)
+        if (const double *const of_cell = medium.record(medium.cells[k]);
+            of_cell[Record::volume] > 0)
+          result[medium.first + k] =
+            of_cell[Record::moment] / of_cell[Record::volume];
+    return result;
   }
 
 

@@ -30,8 +30,11 @@ namespace limber
   void
   PressureCells<dim>::reinit()
   {
-    shared_cells.emplace(parts.grid.shared_cells);
     surfaces.reinit();
+    corners.reinit(parts);
+    shared_cells.emplace(parts.grid.shared_cells);
+    shared_cells->add(corners.far_exchange());
+    const std::size_t n_known = parts.grid.n_cells() + corners.n_far_cells();
     media.clear();
     for (auto &body : parts.bodies)
       if (body->implicit)
@@ -46,11 +49,9 @@ namespace limber
             }
           Medium medium;
           medium.bodies.push_back(body.get());
-          medium.records.reinit(std::size_t(parts.grid.n_cells()) *
-                                Record::stride);
+          medium.records.reinit(n_known * Record::stride);
           medium.around.reinit(std::size_t(parts.nodes.table.n()) * n_nodes);
-          medium.results.reinit(std::size_t(parts.grid.n_cells()) *
-                                Result::stride);
+          medium.results.reinit(n_known * Result::stride);
           media.insert(body->description.is_liquid ? media.begin() :
                                                      media.end(),
                        std::move(medium));
@@ -143,16 +144,28 @@ namespace limber
 
 
 
+  // Those that this rank knows from their owners.
+  template <int dim>
+  template <class Work>
+  void
+  PressureCells<dim>::for_each_of_others(const Work &work) const
+  {
+    for (const std::uint32_t cell : shared_cells->received)
+      if (cell >= parts.grid.n_owned_cells())
+        work(cell);
+  }
+
+
+
   // What the cells of this rank hold, which know the points of all ranks, and
   // what each rank knows of the pressure of its points.
   template <int dim>
   void
   PressureCells<dim>::gather(Medium &medium)
   {
-    for (const auto &neighbour : parts.grid.shared_cells.neighbours)
-      for (const std::uint32_t cell : neighbour.records)
-        if (cell >= parts.grid.n_owned_cells())
-          std::fill_n(medium.record(cell), Record::stride, 0.);
+    for_each_of_others([&](const std::uint32_t cell) {
+      std::fill_n(medium.record(cell), Record::stride, 0.);
+    });
 
     for (const std::uint32_t cell : medium.cells)
       {
@@ -239,11 +252,10 @@ namespace limber
   void
   PressureCells<dim>::share(Medium &medium, const unsigned int slot)
   {
-    for (const auto &neighbour : parts.grid.shared_cells.neighbours)
-      for (const std::uint32_t cell : neighbour.records)
-        if (cell >= parts.grid.n_owned_cells() ||
-            !(medium.record(cell)[Record::number] > 0))
-          medium.result(cell)[slot] = 0;
+    for (const std::uint32_t cell : shared_cells->received)
+      if (cell >= parts.grid.n_owned_cells() ||
+          !(medium.record(cell)[Record::number] > 0))
+        medium.result(cell)[slot] = 0;
     result_exchange.start(*shared_cells, medium.results.data(), slot, slot + 1);
     result_exchange.finish(medium.results.data());
   }

@@ -24,9 +24,9 @@ namespace limber
         {
           auto &of_row = near[medium.first + k];
           for (unsigned int a = 0; a < n_nodes; ++a)
-            corners.for_each_master(
+            cells.corners.for_each_master(
               cells.node_of(medium.cells[k], a), [&](const auto &master) {
-                corners.for_each(master.node, [&](const auto &corner) {
+                cells.corners.for_each(master.node, [&](const auto &corner) {
                   of_row.push_back(corner.cell);
                 });
               });
@@ -34,7 +34,8 @@ namespace limber
           of_row.erase(std::unique(of_row.begin(), of_row.end()), of_row.end());
           in_body = std::max<unsigned int>(in_body, of_row.size());
         }
-    of_cells               = in_body * media.size();
+    in_body  = dealii::Utilities::MPI::max(in_body, parts.grid.communicator);
+    of_cells = in_body * media.size();
     equations.width        = of_cells; // obstacles are for a lattice
     const std::size_t size = std::size_t(equations.n) * equations.width;
     equations.columns.assign(size, PressureEquations::no_column);
@@ -81,7 +82,7 @@ namespace limber
       return parts.grid.geometry[medium.cells_around(node)[k] - 1]
         .inverse_edge[0];
     };
-    for (unsigned int k = 1; k < n_nodes && !corners.empty(); ++k)
+    for (unsigned int k = 1; k < n_nodes && !cells.corners.empty(); ++k)
       if (size_of(k) != size_of(0))
         return false;
     return true;
@@ -100,29 +101,30 @@ namespace limber
     const auto         &media = cells.media;
     const double *const own   = media[number].record(cell);
     for (unsigned int a = 0; a < n_nodes; ++a)
-      corners.for_each_master(cells.node_of(cell, a), [&](const auto &master) {
-        double scaled[dim];
-        for (int d = 0; d < dim; ++d)
-          {
-            const std::size_t at = std::size_t(master.node) * dim + d;
-            const double      entry =
-              step * master.share * own[Record::rows + a * dim + d];
-            equations.right_side[row] -= entry * velocity[at];
-            scaled[d] = step * entry * mobility[at];
-          }
-        corners.for_each(master.node, [&](const auto &corner) {
-          for (std::size_t l = 0; l < media.size(); ++l)
+      cells.corners.for_each_master(
+        cells.node_of(cell, a), [&](const auto &master) {
+          double scaled[dim];
+          for (int d = 0; d < dim; ++d)
             {
-              const double *const mate = media[l].record(corner.cell);
-              if (!(mate[Record::number] > 0 && mate[Record::volume] > 0))
-                continue;
-              double &value = equations.values[entry_of(row, l, corner.cell)];
-              for (int d = 0; d < dim; ++d)
-                value += scaled[d] * corner.share *
-                         mate[Record::rows + corner.corner * dim + d];
+              const std::size_t at = std::size_t(master.node) * dim + d;
+              const double      entry =
+                step * master.share * own[Record::rows + a * dim + d];
+              equations.right_side[row] -= entry * velocity[at];
+              scaled[d] = step * entry * mobility[at];
             }
+          cells.corners.for_each(master.node, [&](const auto &corner) {
+            for (std::size_t l = 0; l < media.size(); ++l)
+              {
+                const double *const mate = media[l].record(corner.cell);
+                if (!(mate[Record::number] > 0 && mate[Record::volume] > 0))
+                  continue;
+                double &value = equations.values[entry_of(row, l, corner.cell)];
+                for (int d = 0; d < dim; ++d)
+                  value += scaled[d] * corner.share *
+                           mate[Record::rows + corner.corner * dim + d];
+              }
+          });
         });
-      });
   }
 
 
@@ -134,14 +136,10 @@ namespace limber
                                           const double        density) const
   {
     double result = 0;
-    corners.for_each_master(corner, [&](const auto &master) {
+    cells.corners.for_each_master(corner, [&](const auto &master) {
       double room = 0;
-      corners.for_each(master.node, [&](const auto &part) {
-        double volume = 1. / n_nodes;
-        for (int d = 0; d < dim; ++d)
-          volume /= parts.grid.geometry[part.cell].inverse_edge[d];
-        room += part.share * volume;
-      });
+      cells.corners.for_each(master.node,
+                             [&](const auto &part) { room += part.room; });
       result += master.share * excess_in(room, master.node, density);
     });
     return result;

@@ -104,7 +104,7 @@ namespace limber
     held_as.reinit(parts.nodes.table.n());
     held.clear();
     to_hold = nullptr;
-    corners.reinit(parts);
+    at_sides.clear();
     if (needs_volumes)
       volumes.reinit(parts.nodes.table.n());
     if (controls_density)
@@ -126,7 +126,7 @@ namespace limber
     equations.n     = cells.n;
     equations.first = cells.first;
     equations.n_all = cells.n_all;
-    if (corners.empty())
+    if (cells.corners.empty())
       find_columns_of_lattice();
     else
       find_columns_over_levels();
@@ -184,14 +184,7 @@ namespace limber
               mass > 0 ? of_node[Layout::velocity + d] : 0;
           }
       }
-    boundaries.for_each_held(parts.nodes,
-                             end,
-                             [&](const std::uint32_t node,
-                                 const unsigned int  d,
-                                 const double        value) {
-                               mobility[std::size_t(node) * dim + d] = 0;
-                               velocity[std::size_t(node) * dim + d] = value;
-                             });
+    hold_by_sides(end);
     if (to_hold != nullptr)
       hold_by_obstacles();
   }
@@ -282,10 +275,10 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           {
             const std::uint32_t node = cells.node_of(cell, a);
-            if (corners.empty())
+            if (cells.corners.empty())
               at_surface[node] += 1;
             else
-              corners.for_each_master(node, [&](const auto &master) {
+              cells.corners.for_each_master(node, [&](const auto &master) {
                 at_surface[master.node] += 1;
               });
           }
@@ -381,7 +374,7 @@ namespace limber
           {
             const std::uint32_t row = medium.first + k;
             double             &diagonal =
-              equations.values[corners.empty() ?
+              equations.values[cells.corners.empty() ?
                                  std::size_t(row) * equations.width +
                                    l * in_body + place_in_row<dim>(0, 0) :
                                  entry_of(row, l, medium.cells[k])];
@@ -446,7 +439,7 @@ namespace limber
     const auto entry_at = [&](const std::uint32_t node,
                               const unsigned int  a,
                               const unsigned int  b) {
-      return corners.empty() ?
+      return cells.corners.empty() ?
                begin + number * in_body + place_in_row<dim>(a, b) :
                entry_of(row, number, medium.cells_around(node)[b] - 1);
     };
@@ -454,9 +447,10 @@ namespace limber
       {
         const std::uint32_t node = cells.node_of(cell, a);
         if (control > 0)
-          growth[row] += share * control / n_nodes *
-                         (corners.empty() ? excess(cell, node, density) :
-                                            excess_over_levels(node, density));
+          growth[row] +=
+            share * control / n_nodes *
+            (cells.corners.empty() ? excess(cell, node, density) :
+                                     excess_over_levels(node, density));
         if (const double scale = pattern_scales[number][node]; scale > 0)
           for_each_pattern<dim>(parts.grid.geometry[cell],
                                 [&](const unsigned int pattern,
@@ -467,11 +461,11 @@ namespace limber
                                       sign(pattern, b);
                                 });
       }
-    if (corners.empty())
+    if (cells.corners.empty())
       couple_on_lattice(medium.record(cell) + Record::rows, cell, row, step);
     else
       couple_over_levels(number, cell, row, step);
-    equations.values[corners.empty() ?
+    equations.values[cells.corners.empty() ?
                        begin + number * in_body + place_in_row<dim>(0, 0) :
                        entry_of(row, number, cell)] += former[row].compliance;
   }

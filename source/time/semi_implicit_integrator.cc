@@ -105,7 +105,8 @@ namespace limber
            (spent.solutions > spent.steps ?
               "; solved " +
                 brief(double(spent.solutions) / double(spent.steps)) +
-                " times a step, as tension is cut off" :
+                " times a step, until tension is cut off and sides and obstacles "
+                "hold what presses on them" :
               "") +
            (spent.for_room > 0 ?
               "; for the density control " +

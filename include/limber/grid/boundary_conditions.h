@@ -119,6 +119,23 @@ namespace limber
     void
     for_each_held(const NodalFields<dim> &nodes, double time, const Hold &hold);
 
+    using Visit = std::function<void(std::uint32_t     node,
+                                     const Constraint *first,
+                                     const Constraint *last)>;
+
+    /** Nodes with mass and their constraints at @p time, in the order in which
+     * these act. */
+    void
+    for_each_constrained(const NodalFields<dim> &nodes,
+                         double                  time,
+                         const Visit            &visit);
+
+    /** What constraints of a node make of its new velocity, m/s. */
+    dealii::Tensor<1, dim>
+    constrained(const Constraint      *first,
+                const Constraint      *last,
+                dealii::Tensor<1, dim> velocity) const;
+
     /**
      * For each component of the new velocity of a node the directions (bits)
      * in which a side holds it, so that nothing may change it. Sides with

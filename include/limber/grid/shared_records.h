@@ -58,6 +58,10 @@ namespace limber
                  const std::function<bool(std::uint32_t)> &may_add,
                  const std::function<bool(std::uint32_t)> &wants);
 
+    /** More records to send and to receive, which neighbours have agreed on. */
+    void
+    add(const std::vector<Neighbour> &more);
+
     MPI_Comm                   communicator;
     unsigned int               rank; // this one
     std::vector<Neighbour>     neighbours;

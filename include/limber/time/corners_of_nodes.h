@@ -10,8 +10,9 @@ namespace limber
 {
   /**
    * Which corners of cells follow a node where cells have several sizes: its
-   * own, and hanging ones with the share that it has in them. Known for the
-   * nodes of one rank that has all cells; empty where no node hangs.
+   * own, and hanging ones with the share that it has in them; empty where no
+   * node hangs. They may be those of far cells, which are owned by another rank
+   * and are no ghosts here: these have numbers beyond all cells of the grid.
    */
   template <int dim>
   class CornersOfNodes
@@ -22,6 +23,7 @@ namespace limber
       std::uint32_t cell;
       std::uint32_t corner;
       double        share; // of the motion of the node
+      double        room;  // this share in the room around the corner, m^3
     };
 
     /** What a corner follows. */
@@ -31,14 +33,28 @@ namespace limber
       double        share;
     };
 
-    /** Adopt a mesh. */
+    /** Adopt a mesh. Collective. */
     void
     reinit(const RunParts<dim> &parts);
+
+    /** Of this rank, that follow a node. */
+    std::uint32_t
+    n_far_cells() const
+    {
+      return far_cells;
+    }
+
+    /** What neighbours are to be told for their far cells. */
+    const std::vector<ExchangePlan::Neighbour> &
+    far_exchange() const
+    {
+      return neighbours;
+    }
 
     bool
     empty() const
     {
-      return corners.empty();
+      return !has_hanging;
     }
 
     /** Call work(corner) for those that follow a node. */
@@ -62,9 +78,30 @@ namespace limber
     }
 
   private:
+    // One that follows a node; what ranks tell each other of it besides
+    struct Follower
+    {
+      std::uint32_t node; // its place among the nodes that both share
+      Corner        corner;
+      // The place of the cell among those that both share, or none
+      std::uint32_t shared_cell;
+    };
+
+    using Followers = std::vector<std::pair<std::uint32_t, Corner>>;
+
+    Followers
+    find_own(const RunParts<dim> &parts) const;
+    void
+    add_those_of_others(const RunParts<dim> &parts, Followers &followers);
+    void
+    sort(const Followers &followers);
+
     std::vector<const HangingNode *> hanging; // by node; null: does not hang
     std::vector<std::size_t>         first;   // by node, and the end
     std::vector<Corner>              corners; // node by node
+    bool                             has_hanging = false; // on any rank
+    std::uint32_t                    far_cells   = 0;
+    std::vector<ExchangePlan::Neighbour> neighbours;
   };
 } // namespace limber
 

@@ -162,6 +162,10 @@ namespace limber
                  double                   pressure) const;
     void
     meet_obstacles();
+    bool
+    is_held_otherwise(double end, double step, unsigned int k);
+    std::vector<double>
+    former_pressures() const;
     double
     solve_equations(double end, double step, double share);
     void
@@ -181,7 +185,8 @@ namespace limber
                        const std::vector<double> &impulses_on_nodes);
 
     const RunParts<dim>         parts;
-    ObstacleContact<dim> *const obstacles; // or null
+    ObstacleContact<dim> *const obstacles;      // or null
+    const bool                  with_one_sided; // sides
     PressureCells<dim>          cells;
     PressureSystem<dim>         system;
     // Of the pressures, by node and component, N

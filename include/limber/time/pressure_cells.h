@@ -2,6 +2,7 @@
 #ifndef limber_time_pressure_cells_h
 #define limber_time_pressure_cells_h
 
+#include <limber/time/corners_of_nodes.h>
 #include <limber/time/integrator.h>
 #include <limber/time/pressure_surfaces.h>
 
@@ -50,11 +51,11 @@ namespace limber
     struct Medium
     {
       std::vector<MaterialBody<dim> *> bodies;
-      LazyArray<double>                records; // by cell
+      LazyArray<double>                records; // by cell, far ones too
       // By node, the cell of the medium at each place around it, from 1 on: the
       // node is corner k of the cell at place k.
       LazyArray<std::uint32_t> around;
-      LazyArray<double>        results; // by cell
+      LazyArray<double>        results; // by cell, far ones too
       // Owned, in the order of their rows; the first of these, here
       std::vector<std::uint32_t> cells;
       std::uint32_t              first = 0;
@@ -121,7 +122,7 @@ namespace limber
 
     PressureCells(const RunParts<dim> &parts, CutCells<dim> *cut_cells);
 
-    /** Adopt a mesh that has changed. */
+    /** Adopt a mesh that has changed. Collective. */
     void
     reinit();
 
@@ -167,11 +168,15 @@ namespace limber
 
     std::vector<Medium>   media;
     PressureSurfaces<dim> surfaces;
+    CornersOfNodes<dim>   corners;   // where cells have several sizes
     std::uint32_t         n     = 0; // unknowns of this rank
     std::uint32_t         first = 0; // of them among those of all ranks
     std::uint32_t         n_all = 0; // of all ranks
 
   private:
+    template <class Work>
+    void
+    for_each_of_others(const Work &work) const;
     void
     gather(Medium &medium);
     bool

@@ -3,7 +3,6 @@
 #define limber_time_pressure_system_h
 
 #include <limber/grid/boundary_conditions.h>
-#include <limber/time/corners_of_nodes.h>
 #include <limber/time/obstacle_contact.h>
 #include <limber/time/pressure_cells.h>
 #include <limber/time/pressure_solver.h>
@@ -95,6 +94,20 @@ namespace limber
     bool
     release_nodes(double step, bool may_return);
 
+    /** What one-sided sides are to do to nodes in a new step until @p end, by
+     * the forces of expected pressures at Layout::pressure_force. */
+    void
+    expect_at_sides(double end, double step);
+
+    /**
+     * The same with the forces of all pressures: hold what presses, let go what
+     * sides would have to pull, if they @p may_release, and rub what slides.
+     * Returns whether the equations have not known it, so that all has to be
+     * assembled and solved anew. Collective.
+     */
+    bool
+    meet_sides(double end, double step, bool may_release);
+
     /** What holds the nodes of meet_nodes() across the surface, kg m/s, with
      * the forces of all pressures at Layout::pressure_force; nothing where they
      * are let go. */
@@ -150,6 +163,20 @@ namespace limber
     using Piece  = typename PressureSurfaces<dim>::Piece;
     static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
+    // What one-sided sides do to a node
+    struct AtSide
+    {
+      std::uint32_t node;
+      unsigned int  held;     // components (bits) that are at rest
+      Vector        friction; // on the others, m/s
+
+      bool
+      holds(const int d) const
+      {
+        return held >> d & 1;
+      }
+    };
+
     void
     hold_nodes(double end);
     void
@@ -200,6 +227,10 @@ namespace limber
     double
     scale_surfaces();
     void
+    hold_by_sides(double end);
+    std::vector<AtSide>
+    find_at_sides(double end, double step);
+    void
     hold_by_obstacles();
     void
     move(std::uint32_t node, double *vector) const;
@@ -246,7 +277,6 @@ namespace limber
     const RunParts<dim>      parts;
     BoundaryConditions<dim> &boundaries;
     PressureCells<dim>      &cells;
-    CornersOfNodes<dim>      corners;     // where cells have several sizes
     unsigned int             in_body = 0; // places of a medium in a row
     unsigned int of_cells = 0; // of all media; those of surfaces follow
     // By node and component: 1/m, or 0 where a side holds it; and the velocity
@@ -264,9 +294,10 @@ namespace limber
     LazyArray<double> volumes;
     // Only with a density control; by node, how many of the cells around it are
     // at a surface
-    Surroundings<dim> surroundings;
-    LazyArray<double> at_surface;
-    RecordExchange    node_exchange{1};
+    Surroundings<dim>   surroundings;
+    LazyArray<double>   at_surface;
+    RecordExchange      node_exchange{1};
+    std::vector<AtSide> at_sides; // by nodes
     // Of a node that obstacles hold: orthogonal directions that are held
     struct Held
     {

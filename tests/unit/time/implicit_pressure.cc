@@ -556,3 +556,53 @@ TEST(ImplicitPressure, HoldsSolidsAsItHoldsLiquids)
       expect_hydrostatic(1e-3);
     }
 }
+
+
+
+// Water of 2.2 GPa that collapses between sides that let go and rub: it is held
+// where it presses, goes the less far the more it is rubbed, and the balance of
+// energy closes.
+TEST(ImplicitPressure, FindsWhatPressesOnSides)
+{
+  struct Result
+  {
+    double front, drift, heat;
+  };
+  const auto run_with = [](const std::string &word, const double friction) {
+    std::string sides;
+    for (const std::string side : {"left", "right", "bottom"})
+      {
+        sides += "set " + side + " = " + word + "\n";
+        if (friction > 0)
+          sides += "subsection Side " + side +
+                   "\nset Friction coefficient = " + digits(friction) +
+                   "\nend\n";
+      }
+    const std::size_t first = vessel.find("set left"),
+                      last  = vessel.find("set top");
+    SceneRun<2> run(vessel.substr(0, first) + sides + vessel.substr(last),
+                    {gravity,
+                     "Grid/Upper corner=8, 6",
+                     "Grid/Cells=16, 12",
+                     "Body water/Box/Upper corner=3, 4",
+                     "Body water/Points per cell edge=2",
+                     "Body water/Newtonian fluid/Bulk modulus=2.2e9"});
+    run.advance(0.02, 40);
+    Result     result{0, run.totals().energy_drift, run.totals().friction_heat};
+    const auto points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      result.front = std::max(result.front, points.position[0][p]);
+    return result;
+  };
+  const Result slip       = run_with("slip", 0),
+               separating = run_with("separating", 0),
+               rough      = run_with("friction", 0.1),
+               rougher    = run_with("friction", 0.3);
+  for (const Result &result : {slip, separating, rough, rougher})
+    EXPECT_NEAR(result.drift, 0, 1e-5);
+  EXPECT_NEAR(separating.front, slip.front, 0.02 * slip.front);
+  EXPECT_LT(rough.front, 0.99 * slip.front);
+  EXPECT_LT(rougher.front, 0.97 * rough.front);
+  EXPECT_GT(rough.heat, 1000);
+  EXPECT_GT(rougher.heat, rough.heat);
+}
