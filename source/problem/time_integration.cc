@@ -36,6 +36,7 @@ namespace limber
       double surface      = 0; // sqrt(g H), H the height of the liquid
       double acceleration = 0; // g, of liquids, m/s^2
       double waves        = 0; // in solids
+      double viscosity    = 0; // of liquids, kinematic, m^2/s
     };
 
 
@@ -53,6 +54,11 @@ namespace limber
             std::sqrt((moduli.bulk + 4. / 3. * moduli.shear) / body.density());
           (body.is_liquid ? result.sound : result.waves) =
             std::max(body.is_liquid ? result.sound : result.waves, speed);
+          if (body.is_liquid)
+            result.viscosity = std::max(
+              result.viscosity,
+              body.material[NewtonianFluid<true>::viscosity_entry] /
+                body.density());
           const auto box = body.shape->bounding_box();
           if (!body.initial_velocity.empty() &&
               !body.initial_velocity.is_zero())
@@ -195,8 +201,13 @@ namespace limber
         edge = std::min(edge, problem.grid.finest_edge(d));
       const double C            = problem.method.courant_number;
       const double former_steps = (speeds.sound + speeds.motion) / (C * edge);
+      const double of_viscosity = 4 * speeds.viscosity / (C * edge * edge);
       const double steps =
-        std::max(other / (C * edge), 5 * std::sqrt(speeds.acceleration / edge));
+        std::max({other / (C * edge),
+                  5 * std::sqrt(speeds.acceleration / edge),
+                  of_viscosity});
+      if (!(former_steps > fast_sound * of_viscosity))
+        return say("'explicit', as viscosity would limit other steps as well");
       const std::string gain = "about " + brief(former_steps / steps) +
                                " times fewer steps, which take some " +
                                brief(cost_of_step) + " times as long";

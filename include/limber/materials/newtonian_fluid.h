@@ -57,7 +57,8 @@ namespace limber
     template <int>
     static constexpr int          n_history     = 1;
     static constexpr bool         has_deviator  = viscous;
-    static constexpr unsigned int tension_entry = 3; // of the parameters
+    // Of the parameters
+    static constexpr unsigned int viscosity_entry = 2, tension_entry = 3;
 
     static constexpr bool keeps_deviator = false;
     static constexpr bool uses_spin      = true;
@@ -72,7 +73,7 @@ namespace limber
     explicit NewtonianFluid(const std::array<double, 6> &values)
       : density(values[0])
       , bulk_modulus(values[1])
-      , viscosity(values[2])
+      , viscosity(values[viscosity_entry])
       , tension_cutoff(values[tension_entry] != 0)
       // with the exponent one the two are the same, and only one has an energy
       , tait(values[4] != 0 && values[5] != 1)

@@ -187,6 +187,8 @@ TEST(Scenes, AutomaticTimeIntegration)
              false,
              "at most 30"},
         Case{{"Body water/Newtonian fluid/Tension cutoff=true"}, true, "319.7"},
+        Case{{"Body water/Newtonian fluid/Viscosity=500"}, true, "319.7"},
+        Case{{"Body water/Newtonian fluid/Viscosity=5000"}, false, "viscosity"},
         Case{{"Method/Stress update=musl"}, false, "stress update"},
         Case{{"Method/Kernel=quadratic"}, false, "kernel"},
         Case{{"Body water/Locking treatment=none"}, false, "treatment"},
