@@ -55,10 +55,10 @@ namespace limber
           (body.is_liquid ? result.sound : result.waves) =
             std::max(body.is_liquid ? result.sound : result.waves, speed);
           if (body.is_liquid)
-            result.viscosity = std::max(
-              result.viscosity,
-              body.material[NewtonianFluid<true>::viscosity_entry] /
-                body.density());
+            result.viscosity =
+              std::max(result.viscosity,
+                       body.material[NewtonianFluid<true>::viscosity_entry] /
+                         body.density());
           const auto box = body.shape->bounding_box();
           if (!body.initial_velocity.empty() &&
               !body.initial_velocity.is_zero())
@@ -202,10 +202,9 @@ namespace limber
       const double C            = problem.method.courant_number;
       const double former_steps = (speeds.sound + speeds.motion) / (C * edge);
       const double of_viscosity = 4 * speeds.viscosity / (C * edge * edge);
-      const double steps =
-        std::max({other / (C * edge),
-                  5 * std::sqrt(speeds.acceleration / edge),
-                  of_viscosity});
+      const double steps        = std::max({other / (C * edge),
+                                            5 * std::sqrt(speeds.acceleration / edge),
+                                            of_viscosity});
       if (!(former_steps > fast_sound * of_viscosity))
         return say("'explicit', as viscosity would limit other steps as well");
       const std::string gain = "about " + brief(former_steps / steps) +

@@ -191,7 +191,8 @@ namespace limber
         const double step  = integrator->advance(state.time, asked);
         if (step < asked)
           console.say("step " + std::to_string(state.step + 1) + " from time " +
-                      brief(state.time) + " s: no solution over " +
+                      brief(state.time) + " s: " +
+                      integrator->reason_for_shorter_step() + " over " +
                       brief(asked) + " s, so it is " + brief(step) + " s long");
         if (const std::string warning = integrator->warning(); !warning.empty())
           console.warn("At time " + brief(state.time) + " s " + warning);

@@ -155,7 +155,7 @@ namespace limber
     wave_speed  = std::sqrt(extremes.wave_squared);
     point_speed = std::sqrt(extremes.speed_squared);
     lap(Verb::relocate);
-    return length;
+    return step;
   }
 
 

@@ -186,8 +186,8 @@ namespace limber
 
 
   template <int dim>
-  void
-  ExplicitIntegrator<dim>::check_nodes()
+  double
+  ExplicitIntegrator<dim>::way_of_fastest_node()
   {
     if (parallel)
       MPI_Allreduce(MPI_IN_PLACE,
@@ -197,7 +197,16 @@ namespace limber
                     MPI_MAX,
                     parts.grid.communicator);
     lap(Verb::check_nodes);
-    const double cells = fastest_node;
+    return fastest_node;
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::check_nodes()
+  {
+    const double cells = way_of_fastest_node();
     if (cells <= 1)
       return;
 
@@ -606,6 +615,8 @@ namespace limber
   ExplicitIntegrator<2>::advance_nodes();
   template void
   ExplicitIntegrator<2>::measure_nodes();
+  template double
+  ExplicitIntegrator<2>::way_of_fastest_node();
   template void
   ExplicitIntegrator<2>::check_nodes();
   template void
@@ -658,6 +669,8 @@ namespace limber
   ExplicitIntegrator<3>::advance_nodes();
   template void
   ExplicitIntegrator<3>::measure_nodes();
+  template double
+  ExplicitIntegrator<3>::way_of_fastest_node();
   template void
   ExplicitIntegrator<3>::check_nodes();
   template void

@@ -16,6 +16,8 @@ namespace limber
 
     constexpr double step_growth = 1.5; // of steps, from one to the next
 
+    constexpr unsigned int most_shorter_steps = 10; // that are tried for one
+
     // Of the mass of a full node: less is light
     constexpr double light = 0.3;
 
@@ -116,10 +118,62 @@ namespace limber
 
 
 
-  // As an explicit step, but for the pressure of its end.
+  // As an explicit step, but for the pressure of its end. What is set in motion
+  // at once, as by a piston or an impact, may be faster than anything before:
+  // the step was too long, and nothing but nodes and ledger knows of it yet.
   template <int dim>
   void
   SemiImplicitIntegrator<dim>::do_scheme()
+  {
+    const Ledger<dim> before = this->parts.ledger;
+    find_velocity();
+    for (unsigned int n = 0; n < most_shorter_steps && is_too_long(); ++n)
+      {
+        this->step *= this->parts.problem.method.courant_number / too_far;
+        this->history_time = this->step;
+        this->parts.ledger = before;
+        this->parts.nodes.clear();
+        find_velocity();
+      }
+    this->check_nodes();
+    if (viscosity_acts)
+      pressure.complete_dilations(this->step);
+    if (remaps)
+      update_all();
+    else
+      update_liquids();
+  }
+
+
+
+  // Whether nodes move by more than a cell. A step that the scene prescribes
+  // stands.
+  template <int dim>
+  bool
+  SemiImplicitIntegrator<dim>::is_too_long()
+  {
+    const double cells = this->way_of_fastest_node();
+    if (!(cells > 1 && cells < 1e300) ||
+        this->parts.problem.method.time_step > 0)
+      return false;
+    too_far = cells;
+    return true;
+  }
+
+
+
+  template <int dim>
+  std::string
+  SemiImplicitIntegrator<dim>::reason_for_shorter_step() const
+  {
+    return "nodes would move by " + brief(too_far) + " cells";
+  }
+
+
+
+  template <int dim>
+  void
+  SemiImplicitIntegrator<dim>::find_velocity()
   {
     this->p2g();
     resist_hourglass();
@@ -132,13 +186,6 @@ namespace limber
     this->apply_boundaries();
     this->interpolate_hanging();
     this->measure_nodes();
-    this->check_nodes();
-    if (viscosity_acts)
-      pressure.complete_dilations(this->step);
-    if (remaps)
-      update_all();
-    else
-      update_liquids();
   }
 
 

@@ -55,8 +55,8 @@ namespace limber
     static constexpr std::array<StateVariable, 0> variables{};
 
     template <int>
-    static constexpr int          n_history     = 1;
-    static constexpr bool         has_deviator  = viscous;
+    static constexpr int  n_history    = 1;
+    static constexpr bool has_deviator = viscous;
     // Of the parameters
     static constexpr unsigned int viscosity_entry = 2, tension_entry = 3;
 

@@ -167,6 +167,8 @@ namespace limber
     smooth_surfaces(double share);
     void
     measure_nodes();
+    double
+    way_of_fastest_node();
     void
     check_nodes();
     void

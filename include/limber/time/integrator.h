@@ -55,9 +55,10 @@ namespace limber
    * of it. All functions but those that only tell something are collective.
    *
    * How often a step has to be tried is the integrator's own affair. An
-   * explicit step is done once and stands. One that iterates may find no
-   * solution; it then leaves points and ledger as they were, tries a shorter
-   * step, and tells by the result of advance() how far it has come.
+   * explicit step is done once and stands. One that solves equations may find
+   * no solution, or one that goes too far; it then leaves points and ledger as
+   * they were, tries a shorter step, and tells by the result of advance() how
+   * far it has come.
    */
   template <int dim>
   class Integrator
@@ -143,6 +144,14 @@ namespace limber
     /** A line for the end of a run about work that varies; may be empty. */
     virtual std::string
     effort() const = 0;
+
+    /** Why the last step was shorter than asked for: what is said of the
+     * step, before 'over' and its length. */
+    virtual std::string
+    reason_for_shorter_step() const
+    {
+      return "no solution";
+    }
 
     /** What happened in the last step that a user should know; said once,
      * empty otherwise. */

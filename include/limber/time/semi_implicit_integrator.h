@@ -31,6 +31,8 @@ namespace limber
     reinit() override;
     std::string
     effort() const override;
+    std::string
+    reason_for_shorter_step() const override;
 
   private:
     using Base   = ExplicitIntegrator<dim>;
@@ -38,6 +40,10 @@ namespace limber
 
     void
     do_scheme() override;
+    void
+    find_velocity();
+    bool
+    is_too_long();
     bool
     is_viscous() const;
     double
@@ -65,6 +71,8 @@ namespace limber
 
     ImplicitPressure<dim> pressure;
     LazyArray<double>     hourglass; // forces by node and component, N
+    // Way of the fastest node in a step that was too long, cells
+    double too_far = 0;
     // The largest by gravity and body force, m/s^2, see largest_acceleration()
     const double acceleration;
     const bool   viscosity_acts;
