@@ -27,22 +27,19 @@ namespace limber
 
 
 
-    /** The smallest density of bodies that bear shear, kg/m^3, where the
-     * pressure of all of them is implicit; otherwise 0. */
+    /** The smallest density of bodies that bear shear, kg/m^3; 0: there are
+     * none. */
     template <int dim>
     double
     lightest_solid_of(const RunParts<dim> &parts)
     {
       double result = 0;
       for (const auto &body : parts.bodies)
-        {
-          if (body->description.is_liquid)
-            continue;
-          if (!body->implicit)
-            return 0;
-          const double density = body->stress->density();
-          result = result > 0 ? std::min(result, density) : density;
-        }
+        if (!body->description.is_liquid)
+          {
+            const double density = body->stress->density();
+            result = result > 0 ? std::min(result, density) : density;
+          }
       return result;
     }
 
@@ -260,9 +257,11 @@ namespace limber
   // The pressures of solids work along the new velocity v1: so do the stresses
   // that resist them, or work would come from the difference to what points
   // give back (in bending both are large and opposite), the more the longer
-  // steps are. But nodes that are light fly off with what stress makes of them
-  // in a step of full ones. Points give back less of short waves than lumped
-  // nodes have got: the work of stress on that is lost.
+  // steps are. Nor do points give back the velocity that a liquid below has
+  // just been allowed, and a soft solid that is strained by another one bounces
+  // on it higher and higher. But nodes that are light fly off with what stress
+  // makes of them in a step of full ones. Points give back less of short waves
+  // than lumped nodes have got: the work of stress on that is lost.
   template <int dim>
   void
   SemiImplicitIntegrator<dim>::strain_by_heavy_nodes()

@@ -76,9 +76,8 @@ namespace limber
     // The largest by gravity and body force, m/s^2, see largest_acceleration()
     const double acceleration;
     const bool   viscosity_acts;
-    const bool   remaps; // for solids and viscous liquids
-    // Its density, kg/m^3; 0 where the pressure of some solid is explicit
-    const double lightest_solid;
+    const bool   remaps;         // for solids and viscous liquids
+    const double lightest_solid; // its density, kg/m^3; 0: there is none
   };
 } // namespace limber
 
