@@ -107,7 +107,7 @@ namespace limber
       mesh.join(held);
     mesh.grade(0);
 
-    const bool split   = split_points(mesh, kept);
+    const bool split   = split_points(mesh, kept, time);
     const bool changed = change_mesh(grid, bodies, mesh);
     if (changed)
       {
@@ -166,10 +166,47 @@ namespace limber
 
 
 
+  // Zero where no obstacle is as near as the surface of the body and one cell
+  // more.
+  template <int dim>
+  std::vector<dealii::Tensor<1, dim>>
+  Adaptation<dim>::normals_to_obstacles(const MaterialPoints<dim>      &points,
+                                        const std::vector<std::size_t> &which,
+                                        const double time) const
+  {
+    const PointView<dim> view = points.view();
+    if (view.reach == nullptr || problem.obstacles.empty())
+      return {};
+    std::vector<ObstaclePlace<dim>> obstacles;
+    for (const Obstacle<dim> &obstacle : problem.obstacles)
+      obstacles.emplace_back(obstacle, time);
+    std::vector<dealii::Tensor<1, dim>> normals(which.size());
+    for (std::size_t k = 0; k < which.size(); ++k)
+      {
+        const std::size_t  p = which[k];
+        dealii::Point<dim> place;
+        for (int d = 0; d < dim; ++d)
+          place[d] = view.position[d][p];
+        double nearest =
+          view.reach[p] + 1 / grid.geometry[view.cell[p]].inverse_edge[0];
+        for (const ObstaclePlace<dim> &obstacle : obstacles)
+          if (const auto distance = obstacle.distance(place);
+              distance.value < nearest)
+            {
+              nearest    = distance.value;
+              normals[k] = -distance.normal;
+            }
+      }
+    return normals;
+  }
+
+
+
   template <int dim>
   bool
   Adaptation<dim>::split_points(const RefinedCells<dim> &mesh,
-                                const KeptPoints        &kept)
+                                const KeptPoints        &kept,
+                                const double             time)
   {
     const GridDescription<dim> &box = grid.description;
     bool                        any = false;
@@ -205,7 +242,11 @@ namespace limber
                   take_numbers(b, large[k].size() * n_new, first);
                 if (all == 0)
                   continue;
-                points.split(large[k], parts, spacing, first);
+                points.split(large[k],
+                             parts,
+                             spacing,
+                             first,
+                             normals_to_obstacles(points, large[k], time));
                 memory.points_split += all / n_new;
                 any_here = any = true;
               }

@@ -10,6 +10,15 @@ namespace limber
 {
   namespace
   {
+    // Of a cell: a liquid at rest that is lifted by so little, as points find
+    // their places, does not drift.
+    constexpr double least_lift = 1e-4;
+  } // namespace
+
+
+
+  namespace
+  {
     /** Sums of one rank or of all, side by side for one reduction. */
     template <int dim>
     struct RowSums
@@ -192,6 +201,10 @@ namespace limber
                                         body.points.view()),
                                       state.grid.communicator);
         start.stiffness += totals.bodies[b].mass * wave_speed_squared;
+        if (body.description.is_liquid)
+          start.energy_scale += least_lift * state.grid.smallest_edge *
+                                totals.bodies[b].mass *
+                                state.problem.loads.gravity.norm();
       }
   }
 

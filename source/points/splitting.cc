@@ -211,14 +211,41 @@ namespace limber
 
 
 
+  namespace
+  {
+    /**
+     * Shorten the @p steps, columns, between the parts of a point at a surface
+     * across it, so that the outermost, @p end steps off, goes at most so far.
+     */
+    template <int dim>
+    void
+    keep_inside(const double                  reach,
+                const dealii::Tensor<1, dim> &normal,
+                const double                  end,
+                dealii::Tensor<2, dim>       &steps)
+    {
+      constexpr double             share    = 0.75; // of the way to the surface
+      const dealii::Tensor<1, dim> across   = normal * steps;
+      double                       farthest = 0;
+      for (int k = 0; k < dim; ++k)
+        farthest += std::abs(end * across[k]);
+      if (farthest > share * reach)
+        steps -= (1 - share * reach / farthest) *
+                 dealii::outer_product(normal, across);
+    }
+  } // namespace
+
+
+
   // Shifted alike to both sides: the centre of mass stays, and with it whatever
   // is linear in each direction within the cell.
   template <int dim>
   void
-  MaterialPoints<dim>::split(const std::vector<std::size_t> &which,
-                             const unsigned int              parts,
-                             const std::array<double, dim>  &spacing,
-                             std::uint64_t                   next_id)
+  MaterialPoints<dim>::split(const std::vector<std::size_t>            &which,
+                             const unsigned int                         parts,
+                             const std::array<double, dim>             &spacing,
+                             std::uint64_t                              next_id,
+                             const std::vector<dealii::Tensor<1, dim>> &normals)
   {
     const unsigned int n_children = dealii::Utilities::fixed_power<dim>(parts);
     const unsigned int own        = parts == 2 ? 0 : n_children / 2;
@@ -241,12 +268,14 @@ namespace limber
             if (const double room = room_in_cell(points, p, d); all > room)
               steps[d] *= room / all;
           }
+        const double reach = points.reach != nullptr ? points.reach[p] : 0;
+        const dealii::Tensor<1, dim> normal =
+          reach > 0 && !normals.empty() ? normals[i] : dealii::Tensor<1, dim>();
+        keep_inside(reach, normal, end, steps);
         points.mass[p] /= n_children;
         for (double *const component : points.domain)
           if (component != nullptr)
             component[p] /= parts;
-        if (points.reach != nullptr)
-          points.reach[p] /= parts;
         for (double *const component : points.edge)
           if (component != nullptr)
             component[p] /= parts;
@@ -258,14 +287,21 @@ namespace limber
               way[d] += (digits % parts - end) * steps[d][k];
           return way;
         };
+        const auto place = [&](const std::size_t q, const unsigned int child) {
+          const dealii::Tensor<1, dim> way = way_to(child);
+          shift_point(q, way, initial[i]);
+          if (reach > 0)
+            points.reach[q] =
+              normal.norm() > 0 ? reach - normal * way : reach / parts;
+        };
         for (unsigned int child = 0; child < n_children; ++child)
           if (child != own)
             {
               move(p, last);
               ids[last] = next_id++;
-              shift_point(last++, way_to(child), initial[i]);
+              place(last++, child);
             }
-        shift_point(p, way_to(own), initial[i]);
+        place(p, own);
       }
     ++n_reorderings;
   }
@@ -346,6 +382,37 @@ namespace limber
 
 
 
+  // How far it is from the middle of a set to the surface that its outermost
+  // point reaches, if one along an axis.
+  template <int dim>
+  double
+  MaterialPoints<dim>::joint_reach(const std::vector<std::size_t> &set) const
+  {
+    const PointView<dim>   points = view();
+    dealii::Tensor<1, dim> middle;
+    double                 mass = 0;
+    for (const std::size_t p : set)
+      {
+        mass += points.mass[p];
+        for (int d = 0; d < dim; ++d)
+          middle[d] += points.mass[p] * points.position[d][p];
+      }
+    middle /= mass;
+    double result = 0;
+    for (const std::size_t p : set)
+      if (points.reach[p] > 0)
+        {
+          double way = 0;
+          for (int d = 0; d < dim; ++d)
+            way = std::max(way, std::abs(points.position[d][p] - middle[d]));
+          const double reach = points.reach[p] + way;
+          result             = result > 0 ? std::min(result, reach) : reach;
+        }
+    return result;
+  }
+
+
+
   template <int dim>
   void
   MaterialPoints<dim>::join(const std::vector<std::vector<std::size_t>> &sets)
@@ -357,6 +424,7 @@ namespace limber
         double all = 0;
         for (const std::size_t p : set)
           all += mass[p];
+        const double reach = points.reach != nullptr ? joint_reach(set) : 0;
         for (auto &field : fields)
           {
             if (field.data() == mass)
@@ -369,7 +437,7 @@ namespace limber
           }
         mass[set[0]] = all;
         if (points.reach != nullptr)
-          points.reach[set[0]] *= 2;
+          points.reach[set[0]] = reach;
         for (double *const component : points.edge)
           if (component != nullptr)
             component[set[0]] *= 2;
@@ -386,12 +454,14 @@ namespace limber
   MaterialPoints<2>::split(const std::vector<std::size_t> &,
                            const unsigned int,
                            const std::array<double, 2> &,
-                           std::uint64_t);
+                           std::uint64_t,
+                           const std::vector<dealii::Tensor<1, 2>> &);
   template void
   MaterialPoints<3>::split(const std::vector<std::size_t> &,
                            const unsigned int,
                            const std::array<double, 3> &,
-                           std::uint64_t);
+                           std::uint64_t,
+                           const std::vector<dealii::Tensor<1, 3>> &);
   template double
   MaterialPoints<2>::divide(const std::vector<Division<2>> &, std::uint64_t);
   template double

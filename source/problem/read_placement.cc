@@ -201,6 +201,25 @@ namespace limber
 
 
 
+    /** Whether 'regular' is good enough for an upright block. Bodies side by
+     * side or at obstacles need their faces where they are, and so do liquids
+     * in cells of several sizes, or their level is another one in each. */
+    template <int dim>
+    bool
+    suits(const BlockShape<dim> &block,
+          const bool             touches,
+          const Body<dim>       &body,
+          const Problem<dim>    &problem)
+    {
+      return is_in_lattice(block, body, problem.grid) ||
+             (problem.bodies.size() == 1 && !touches &&
+              !(body.is_liquid && problem.grid.levels > 0) &&
+              std::abs(filled_by_regular(block, body, problem.grid) - 1) <=
+                least_misfill);
+    }
+
+
+
     /**
      * Whether the faces of a shape run as they like, so that parts that count
      * as a whole miss its volume. Pictures and lists bring theirs along.
@@ -230,7 +249,8 @@ namespace limber
     // Legendre in what they fill of cells: rows at the middle of parts have
     // less of a second moment, and bend too easily. Liquids that obstacles
     // bound have to have the mass of what they fill there: counted by parts,
-    // water of 93 J moves beside a wall that it should rest at. (Linear
+    // water of 93 J moves beside a wall that it should rest at; and so have
+    // boxes of a liquid, whose level would be off. (Linear
     // functions without a treatment lock in bending, which such rows make up
     // for in part: a disk that swirls errs by a third less.)
     template <int dim>
@@ -267,6 +287,12 @@ namespace limber
                       "cut",
                       "a liquid beside obstacles rests with the mass of what "
                       "it fills");
+      if (block != nullptr && body.is_liquid && !touches &&
+          problem.grid.kernel == KernelKind::linear && is_upright(*block) &&
+          !suits(*block, touches, body, problem))
+        return choose(Placement::cut,
+                      "cut",
+                      "its faces do not lie between the points of 'regular'");
       // 'fitted', which solids with domains or in contact may need, does not
       // go with cells of several sizes.
       if (body.is_liquid || (problem.grid.levels > 0 &&
@@ -284,13 +310,7 @@ namespace limber
       if (block == nullptr)
         return;
       const bool upright = is_upright(*block);
-      // Bodies side by side need their faces where they are.
-      const bool suits =
-        problem.bodies.size() > 1 ?
-          is_in_lattice(*block, body, problem.grid) :
-          std::abs(filled_by_regular(*block, body, problem.grid) - 1) <=
-            least_misfill;
-      if (upright && suits)
+      if (upright && suits(*block, touches, body, problem))
         return;
       if (has_domains(problem.grid.kernel) ||
           (upright && touches && !is_spline(problem.grid.kernel)))

@@ -26,7 +26,7 @@ namespace limber
 
     /** Where no cause has been found: the usual one, and what to change. */
     std::string
-    usual_cause(const FailureKind kind, const bool a_side_is_open)
+    usual_cause(const FailureKind kind, const bool through_open_side)
     {
       switch (kind)
         {
@@ -40,11 +40,11 @@ namespace limber
                    "'Grid/Cells', load more slowly, or set 'Method/Courant "
                    "number' to 0.4 or below.";
           case FailureKind::lost_points:
-            return a_side_is_open ?
+            return through_open_side ?
                      "Usually a side is free there or moves away. Close it in 'Boundaries' "
                      "with slip, or raise 'Method/Lost points limit' above the "
                      "share that is lost." :
-                     "No side is free, so the motion is unstable there. Set "
+                     "No side is free there, so the motion is unstable there. Set "
                      "'Method/Blend time', smaller cells, or a 'Method/Lost "
                      "points limit' above the share that is lost.";
           case FailureKind::step_too_small:
@@ -110,20 +110,16 @@ namespace limber
   Simulation<dim>::finish_failed(const ComputationError &failure)
   {
     integrator->synchronise();
-    Diagnosis  suspected      = look_for_cause(/*unstable=*/true);
-    const bool a_side_is_open = std::any_of(
-      problem.sides.begin(), problem.sides.end(), [](const Side<dim> &side) {
-        return side.held == HeldComponents::none || !side.velocity.empty();
-      });
+    Diagnosis suspected = look_for_cause(/*unstable=*/true);
     // A body that is wrong inside goes through an open side like others.
-    if (failure.kind == FailureKind::lost_points && a_side_is_open &&
+    if (failure.kind == FailureKind::lost_points && lost_through_open_side &&
         !suspected.is_unstable)
       suspected = {};
-    std::string message =
-      std::string(failure.what()) + " " +
-      (suspected.mode.empty() ? usual_cause(failure.kind, a_side_is_open) :
-                                in_words(suspected)) +
-      " " + describe_last_state();
+    std::string message = std::string(failure.what()) + " " +
+                          (suspected.mode.empty() ?
+                             usual_cause(failure.kind, lost_through_open_side) :
+                             in_words(suspected)) +
+                          " " + describe_last_state();
     try
       {
         const std::string checkpoint = describe_last_checkpoint();

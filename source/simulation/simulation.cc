@@ -338,6 +338,7 @@ namespace limber
   {
     std::vector<std::string> own;
     std::string              first; // of them, without its velocity
+    int                      through_open = 0;
     for (const auto &[body, point] : integrator->lost_points())
       {
         std::ostringstream text;
@@ -350,15 +351,26 @@ namespace limber
           first = text.str();
         text << " with velocity (" << point.momentum / point.mass << ") m/s";
         own.push_back(text.str());
+        for (unsigned int d = 0; d < dim; ++d)
+          for (const unsigned int end : {0, 1})
+            if (const Side<dim> &side = problem.sides[2 * d + end];
+                (end == 0 ? point.position[d] < problem.grid.lower[d] :
+                            point.position[d] > problem.grid.upper[d]) &&
+                (side.held == HeldComponents::none || !side.velocity.empty()))
+              through_open = 1;
       }
+    lost_through_open_side =
+      dealii::Utilities::MPI::max(through_open, communicator) > 0;
     for (const auto &texts : gather_texts(own, communicator))
       for (const std::string &text : texts)
         console.warn_once(
           "lost point " +
             std::to_string(std::min<std::size_t>(texts.size(), 5)),
           "At time " + brief(state.time) + " s " + text +
-            ". Usually a side is free there or moves away, or the motion is "
-            "unstable.");
+            (lost_through_open_side ?
+               ". Usually a side is free there or moves away, or the motion is "
+               "unstable." :
+               ". No side is free there: the motion is unstable."));
 
     const auto lost =
       dealii::Utilities::MPI::sum(state.ledger.lost_points, communicator);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
 #include <limber/problem/acceleration.h>
+#include <limber/problem/time_scale.h>
 #include <limber/time/semi_implicit_integrator.h>
 
 #include <algorithm>
@@ -15,6 +16,9 @@ namespace limber
     constexpr double share_of_swing = 0.2;
 
     constexpr double step_growth = 1.5; // of steps, from one to the next
+
+    // Of the time in which what drives the scene changes: 25 steps a period
+    constexpr double share_of_change = 0.25;
 
     constexpr unsigned int most_shorter_steps = 10; // that are tried for one
 
@@ -68,6 +72,7 @@ namespace limber
                Base::obstacles ? &*Base::obstacles : nullptr)
     , hourglass(std::size_t(parts.nodes.table.n()) * dim)
     , acceleration(largest_acceleration_of(parts.problem))
+    , time_of_change(time_scale_of_formulas(parts.problem))
     , viscosity_acts(!this->full_mass && is_viscous())
     , remaps(
         viscosity_acts ||
@@ -435,9 +440,10 @@ namespace limber
   SemiImplicitIntegrator<dim>::longest_step() const
   {
     const Problem<dim> &problem = this->parts.problem;
-    const double        longest = Base::longest_step();
     if (problem.method.time_step > 0)
-      return longest;
+      return Base::longest_step();
+    const double longest =
+      std::min(Base::longest_step(), share_of_change * time_of_change);
     if (acceleration > 0)
       return std::min(longest, step_of_motion());
     // Nothing says how fast it will become what other loads set in motion.

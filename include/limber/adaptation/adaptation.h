@@ -107,8 +107,15 @@ namespace limber
     divide_points(std::size_t                              body,
                   const std::unordered_set<std::uint64_t> &kept);
 
+    std::vector<dealii::Tensor<1, dim>>
+    normals_to_obstacles(const MaterialPoints<dim>      &points,
+                         const std::vector<std::size_t> &which,
+                         double                          time) const;
+
     bool
-    split_points(const RefinedCells<dim> &mesh, const KeptPoints &kept);
+    split_points(const RefinedCells<dim> &mesh,
+                 const KeptPoints        &kept,
+                 double                   time);
 
     bool
     join_points(const KeptPoints &kept);

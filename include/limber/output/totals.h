@@ -101,7 +101,8 @@ namespace limber
    * integration in time and of points that cross cells, beyond round-off and
    * what gravity does in half a step where points move by the velocity at the
    * end of the step, which is that of its middle. The scale is the
-   * largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far.
+   * largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far, and at least
+   * what lifts the liquids by 1e-4 of a cell.
    */
   template <int dim>
   class Balance

@@ -213,13 +213,16 @@ namespace limber
      * divided likewise. With @p spacing of points of size class 0, m, that have
      * none. The first of two or the middle of three along each edge, which
      * stays where it is, keeps the number, the others get numbers from
-     * @p next_id on.
+     * @p next_id on. Of points at the surface whose outward normal there is
+     * among the @p normals (zero: not known), no part sticks out: each ends at
+     * the surface as the whole does.
      */
     void
-    split(const std::vector<std::size_t> &which,
-          const unsigned int              parts,
-          const std::array<double, dim>  &spacing,
-          std::uint64_t                   next_id);
+    split(const std::vector<std::size_t>            &which,
+          unsigned int                               parts,
+          const std::array<double, dim>             &spacing,
+          std::uint64_t                              next_id,
+          const std::vector<dealii::Tensor<1, dim>> &normals = {});
 
     /**
      * Let each of these points become some that share its mass, its domain or
@@ -292,6 +295,8 @@ namespace limber
                 const dealii::Tensor<2, dim> &initial);
     std::vector<dealii::Tensor<2, dim>>
     initial_gradients(const std::vector<std::size_t> &which) const;
+    double
+    joint_reach(const std::vector<std::size_t> &set) const;
     double
     room_in_cell(const PointView<dim> &points,
                  std::size_t           p,

@@ -139,7 +139,8 @@ namespace limber
     std::vector<double> targets;              // times to land on, ascending, s
     double              next_pictures = 0;    // s
     double              start_wall = 0, start_cpu = 0, output_cpu = 0;
-    double              last_progress = 0;
+    double              last_progress          = 0;
+    bool                lost_through_open_side = false; // points, last time
 
     // Of a run that is resumed: where it has been taken up
     std::optional<RunState<dim>> resumed;

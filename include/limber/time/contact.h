@@ -371,6 +371,53 @@ namespace limber
                                            ranks_of_vertex;
     std::map<unsigned int, PartsElsewhere> parts_elsewhere;
   };
+
+
+
+  // Each rank has gathered over its points at the touches; all that hold the
+  // node get the same. Without other ranks there is nothing to do.
+  template <int dim>
+  template <class SlotsOf>
+  void
+  Contact<dim>::share(SharedSlots &slots, const SlotsOf &slots_of)
+  {
+    const ExchangePlan &plan = parts.nodes.node_plan();
+    if (plan.neighbours.empty())
+      return;
+    const unsigned int n = slots.n;
+    if (slots.records.size() != std::size_t(parts.nodes.table.n()) * n)
+      slots.records.reinit(std::size_t(parts.nodes.table.n()) * n);
+    double *const records = slots.records.data();
+    const auto    clear   = [&](const std::vector<std::uint32_t> &nodes) {
+      for (const std::uint32_t node : nodes)
+        std::fill_n(records + std::size_t(node) * n, n, slots.nothing);
+    };
+    // work(slot of the touch, slot of the record)
+    const auto for_each_slot = [&](const auto &pair, const auto &work) {
+      for (std::size_t t = 0; t < touches.size(); ++t)
+        if (touches[t].a == pair[0] && touches[t].b == pair[1])
+          {
+            double *record = records + std::size_t(touches[t].node) * n;
+            for (double *const slot : slots_of(t))
+              work(*slot, *record++);
+          }
+    };
+    for (const auto &pair : parting)
+      {
+        for (const auto &neighbour : plan.neighbours)
+          {
+            clear(neighbour.send);
+            clear(neighbour.receive);
+          }
+        for_each_slot(pair, [](double &own, double &shared) { shared = own; });
+        slots.exchange.start(plan, records, 0, n);
+        if (slots.of_largest)
+          slots.exchange.finish_largest(records);
+        else
+          slots.exchange.finish(records);
+        for_each_slot(pair, [](double &own, double &shared) { own = shared; });
+      }
+  }
 } // namespace limber
 
 #endif

@@ -22,8 +22,9 @@ namespace limber
     /**
      * The shortest of: the time in which points move by the Courant number in
      * cells; a part of the time in which a surface wave as short as a cell
-     * swings, as the surface moves explicitly; and what waves in other bodies
-     * and viscosity allow.
+     * swings, as the surface moves explicitly; a part of the time in which what
+     * drives the scene changes; and what waves in other bodies and viscosity
+     * allow.
      */
     double
     longest_step() const override;
@@ -75,6 +76,7 @@ namespace limber
     double too_far = 0;
     // The largest by gravity and body force, m/s^2, see largest_acceleration()
     const double acceleration;
+    const double time_of_change; // see time_scale_of_formulas(), s
     const bool   viscosity_acts;
     const bool   remaps;         // for solids and viscous liquids
     const double lightest_solid; // its density, kg/m^3; 0: there is none

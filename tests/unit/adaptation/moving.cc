@@ -291,6 +291,49 @@ namespace
 
 
 
+// A point at a slanted surface: no part sticks out, and all end where the whole
+// does; the centre of mass stays. Joined again, it is as before.
+TEST(Splitting, PartsAtASurfaceEndWhereTheWholeDoes)
+{
+  SceneRun<2>          run(block<2>("set Upper corner = 1, 1"),
+                  {"Obstacles=floor",
+                            "Obstacle floor/Shape=half-space",
+                            "Obstacle floor/Half-space/Point=0, -1",
+                            "Obstacle floor/Half-space/Normal=0, 1"});
+  MaterialPoints<2>   &points = run.bodies[0]->points;
+  dealii::Tensor<1, 2> normal;
+  normal[0] = -0.5;
+  normal[1] = -std::sqrt(0.75);
+  for (const double reach : {0.05, 0.125, 0.3})
+    for (const unsigned int parts : {2, 3})
+      {
+        SCOPED_TRACE(std::to_string(reach) + ", " + std::to_string(parts));
+        const std::size_t      p     = 0;
+        const std::size_t      n     = points.size();
+        const dealii::Point<2> whole = run.position(p);
+        ASSERT_NE(points.view().reach, nullptr);
+        points.view().reach[p] = reach;
+        points.split({p}, parts, {{0.25, 0.25}}, 1000, {normal});
+        std::vector<std::size_t> all = {p};
+        for (std::size_t q = n; q < points.size(); ++q)
+          all.push_back(q);
+        ASSERT_EQ(all.size(), parts * parts);
+        dealii::Tensor<1, 2> centre;
+        for (const std::size_t q : all)
+          {
+            const dealii::Tensor<1, 2> way = run.position(q) - whole;
+            centre += way;
+            EXPECT_NEAR(normal * way + points.view().reach[q], reach, 1e-15);
+            EXPECT_GE(points.view().reach[q], 0.249 * reach);
+          }
+        EXPECT_LT(centre.norm(), 1e-15);
+        points.join({all});
+        EXPECT_EQ(points.size(), n);
+      }
+}
+
+
+
 TEST(Splitting, PartsWereWhereTheDeformationSays)
 {
   for (const bool mixed : {false, true})

@@ -391,7 +391,7 @@ TEST(Scenes, PlacementFollowsTheFaces)
             Placement::fitted);
   EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12",
                        "Body block/Material=newtonian fluid"}),
-            Placement::regular);
+            Placement::cut);
   EXPECT_EQ(placement({"Body block/Box/Lower corner=0, 0.12",
                        "Body block/Placement=jittered"}),
             Placement::jittered);
@@ -484,9 +484,11 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
   };
   EXPECT_EQ(placement("0.73, 0.5", true), Placement::cut);
   EXPECT_EQ(placement("0.6875, 0.5", true), Placement::regular);
-  EXPECT_EQ(placement("0.73, 0.5", false), Placement::regular);
+  EXPECT_EQ(placement("0.73, 0.5", false), Placement::cut); // 2.7 % off
+  EXPECT_EQ(placement("0.75, 0.51", false), Placement::regular);
   EXPECT_EQ(placement("0.6875, 0.5", true, 1), Placement::regular);
   EXPECT_EQ(placement("0.71875, 0.5", true, 1), Placement::cut);
+  EXPECT_EQ(placement("0.75, 0.51", false, 1), Placement::cut);
 }
 
 

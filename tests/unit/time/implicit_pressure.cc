@@ -682,3 +682,25 @@ TEST(ImplicitPressure, CarriesAnElasticBlock)
   EXPECT_GT(run.ledger.viscous, -0.01);
   EXPECT_NEAR(run.totals().energy_drift, 0, 1e-3);
 }
+
+
+
+// Water in the air, without gravity, under a body force A sin(w t): steps are
+// short enough for it. They move points by the velocity at their ends, which is
+// A dt / w t in all.
+TEST(ImplicitPressure, ResolvesFormulasOfTime)
+{
+  SceneRun<2> run(vessel,
+                  {"Body water/Box/Lower corner=1, 2",
+                   "Body water/Box/Upper corner=2, 3",
+                   "Body water/Newtonian fluid/Bulk modulus=2.2e9",
+                   "Loads/Body force=0.2*sin(20*t); 0",
+                   "End time=2"});
+  const auto  before = run.positions();
+  run.advance_to(2);
+  const auto   after    = run.positions();
+  const double expected = 0.2 * 2 / 20 - 0.2 * std::sin(40.) / 400;
+  EXPECT_LT(run.last_step, 0.25 / 20 * 1.01);
+  for (std::size_t p = 0; p < before.size(); ++p)
+    EXPECT_NEAR(after[p][0] - before[p][0], expected, 0.1 * expected);
+}

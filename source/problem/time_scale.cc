@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/problem/acceleration.h>
+#include <limber/problem/time_scale.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace limber
+{
+  namespace
+  {
+    constexpr unsigned int n_places = 3, n_times = 1001;
+
+
+
+    /** Of a vector as a function of time, from zero to @p end. */
+    template <int dim, class Function>
+    double
+    time_scale(const Function &function, const double end)
+    {
+      const double           interval = end / (n_times - 1);
+      dealii::Tensor<1, dim> sum, former;
+      double                 squares = 0, squares_of_rate = 0;
+      for (unsigned int k = 0; k < n_times; ++k)
+        {
+          const dealii::Tensor<1, dim> value = function(k * interval);
+          sum += value;
+          squares += value.norm_square();
+          if (k > 0)
+            squares_of_rate +=
+              (value - former).norm_square() / (interval * interval);
+          former = value;
+        }
+      const double variance = squares - sum.norm_square() / n_times;
+      // what is left of a constant is round-off
+      return std::isfinite(variance) && variance > 1e-12 * squares ?
+               std::sqrt(variance / squares_of_rate) :
+               std::numeric_limits<double>::infinity();
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  double
+  time_scale_of_formulas(const Problem<dim> &problem)
+  {
+    double     result   = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const auto &function) {
+      result = std::min(result, time_scale<dim>(function, problem.end_time));
+    };
+    const auto anywhere = [&](const auto &consider_at) {
+      for_each_place(Corners<dim>(problem.grid.lower, problem.grid.upper),
+                     n_places,
+                     consider_at);
+    };
+    for (const auto &side : problem.sides)
+      if (!side.velocity.empty())
+        anywhere([&](const dealii::Point<dim> &place) {
+          consider([&](const double time) {
+            dealii::Tensor<1, dim> velocity;
+            for (unsigned int d = 0; d < dim; ++d)
+              velocity[d] = side.prescribed_velocity(place, time, d);
+            return velocity;
+          });
+        });
+    if (const auto &force = problem.loads.body_force)
+      anywhere([&](const dealii::Point<dim> &place) {
+        consider([&](const double time) { return force->vector(place, time); });
+      });
+    for (const Obstacle<dim> &obstacle : problem.obstacles)
+      anywhere([&](const dealii::Point<dim> &place) {
+        consider([&](const double time) {
+          return ObstaclePlace<dim>(obstacle, time).place_of(place) - place;
+        });
+      });
+    return result;
+  }
+
+
+
+  template double
+  time_scale_of_formulas(const Problem<2> &);
+  template double
+  time_scale_of_formulas(const Problem<3> &);
+} // namespace limber
