@@ -373,8 +373,6 @@ namespace limber
         if (!body.is_liquid)
           refuse("the solid " + in_quotes(body.name),
                  "'newtonian fluid' for it");
-      if (problem.grid.levels > 0)
-        refuse("cells of several sizes", "'Grid/Levels = 0'");
       for (const Obstacle<dim> &obstacle : problem.obstacles)
         if (obstacle.friction > 0)
           refuse("friction on obstacle " + in_quotes(obstacle.name),

@@ -115,8 +115,6 @@ namespace limber
     {
       if (problem.grid.kernel != KernelKind::linear)
         return "the kernel is not 'linear'";
-      if (problem.grid.levels > 0 && !root.list("Obstacles").empty())
-        return "cells of several sizes may meet obstacles";
       if (!root.subsection("Contact").list("Pairs").empty())
         return "bodies touch by 'Contact/Pairs'";
       for (const std::string &name : root.list("Obstacles"))

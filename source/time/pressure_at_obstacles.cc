@@ -35,10 +35,17 @@ namespace limber
       return 0;
     unsigned int result = 0;
     for_each_row([&](std::uint32_t, const std::uint32_t cell) {
-      unsigned int n = 0;
-      cells.for_each_near(cell, 1, [&](unsigned int, const auto near) {
+      unsigned int n     = 0;
+      const auto   count = [&](const std::uint32_t near) {
         cells.surfaces.for_each_in(near, [&](std::uint32_t) { ++n; });
-      });
+      };
+      if (cells.corners.empty())
+        cells.for_each_near(cell, 1, [&](unsigned int, const auto near) {
+          count(near);
+        });
+      else
+        for (const std::uint32_t near : coupled_to(cell))
+          count(near);
       result = std::max(result, n);
     });
     return dealii::Utilities::MPI::max(result, parts.grid.communicator);
@@ -254,7 +261,7 @@ namespace limber
         if (!piece.is_wet)
           continue;
         may_be_cut[row] = 1;
-        couple_on_lattice(piece.entries.data(), piece.cell, row, step);
+        couple(piece.entries.data(), piece.cell, row, step);
         equations.right_side[row] += step * piece.leaving;
       }
   }

@@ -30,8 +30,8 @@ namespace limber
   void
   PressureCells<dim>::reinit()
   {
-    surfaces.reinit();
     corners.reinit(parts);
+    surfaces.reinit(corners);
     shared_cells.emplace(parts.grid.shared_cells);
     shared_cells->add(corners.far_exchange());
     const std::size_t n_known = parts.grid.n_cells() + corners.n_far_cells();

@@ -11,7 +11,26 @@
 
 namespace limber
 {
-  // The cells that follow a node which a cell follows as well.
+  // The cells that follow a node which a cell follows as well, ascending.
+  template <int dim>
+  std::vector<std::uint32_t>
+  PressureSystem<dim>::coupled_to(const std::uint32_t cell) const
+  {
+    std::vector<std::uint32_t> result;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      cells.corners.for_each_master(
+        cells.node_of(cell, a), [&](const auto &master) {
+          cells.corners.for_each(master.node, [&](const auto &corner) {
+            result.push_back(corner.cell);
+          });
+        });
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
+
+
+
   template <int dim>
   void
   PressureSystem<dim>::find_columns_over_levels()
@@ -19,39 +38,39 @@ namespace limber
     const auto                             &media = cells.media;
     std::vector<std::vector<std::uint32_t>> near(equations.n);
     in_body = 0;
-    for (const Medium &medium : media)
-      for (std::size_t k = 0; k < medium.cells.size(); ++k)
-        {
-          auto &of_row = near[medium.first + k];
-          for (unsigned int a = 0; a < n_nodes; ++a)
-            cells.corners.for_each_master(
-              cells.node_of(medium.cells[k], a), [&](const auto &master) {
-                cells.corners.for_each(master.node, [&](const auto &corner) {
-                  of_row.push_back(corner.cell);
-                });
-              });
-          std::sort(of_row.begin(), of_row.end());
-          of_row.erase(std::unique(of_row.begin(), of_row.end()), of_row.end());
-          in_body = std::max<unsigned int>(in_body, of_row.size());
-        }
+    for_each_row([&](const std::uint32_t row, const std::uint32_t cell) {
+      near[row] = coupled_to(cell);
+      in_body   = std::max<unsigned int>(in_body, near[row].size());
+    });
     in_body  = dealii::Utilities::MPI::max(in_body, parts.grid.communicator);
     of_cells = in_body * media.size();
-    equations.width        = of_cells; // obstacles are for a lattice
+    equations.width        = of_cells + most_surfaces_near();
     const std::size_t size = std::size_t(equations.n) * equations.width;
     equations.columns.assign(size, PressureEquations::no_column);
     mates.assign(size, invalid_cell);
     for (std::uint32_t row = 0; row < equations.n; ++row)
-      for (std::size_t l = 0; l < media.size(); ++l)
-        {
-          std::size_t at = std::size_t(row) * equations.width + l * in_body;
-          for (const std::uint32_t cell : near[row])
-            if (const double number = media[l].record(cell)[Record::number];
-                number > 0)
-              {
-                equations.columns[at] = number - 1;
-                mates[at++]           = cell;
-              }
-        }
+      {
+        const std::size_t begin = std::size_t(row) * equations.width;
+        for (std::size_t l = 0; l < media.size(); ++l)
+          {
+            std::size_t at = begin + l * in_body;
+            for (const std::uint32_t cell : near[row])
+              if (const double number = media[l].record(cell)[Record::number];
+                  number > 0)
+                {
+                  equations.columns[at] = number - 1;
+                  mates[at++]           = cell;
+                }
+          }
+        if (!cells.surfaces.any())
+          continue;
+        std::size_t at = begin + of_cells;
+        for (const std::uint32_t cell : near[row])
+          cells.surfaces.for_each_in(cell, [&](const std::uint32_t k) {
+            equations.columns[at] = cells.surfaces.pieces[k].row;
+            mates[at++]           = k;
+          });
+      }
   }
 
 
@@ -93,36 +112,44 @@ namespace limber
   // As on the lattice, with what corners follow.
   template <int dim>
   void
-  PressureSystem<dim>::couple_over_levels(const std::size_t   number,
+  PressureSystem<dim>::couple_over_levels(const double *const own,
                                           const std::uint32_t cell,
                                           const std::uint32_t row,
                                           const double        step)
   {
-    const auto         &media = cells.media;
-    const double *const own   = media[number].record(cell);
+    const auto &media = cells.media;
     for (unsigned int a = 0; a < n_nodes; ++a)
       cells.corners.for_each_master(
         cells.node_of(cell, a), [&](const auto &master) {
           double scaled[dim];
           for (int d = 0; d < dim; ++d)
             {
-              const std::size_t at = std::size_t(master.node) * dim + d;
-              const double      entry =
-                step * master.share * own[Record::rows + a * dim + d];
+              const std::size_t at    = std::size_t(master.node) * dim + d;
+              const double      entry = step * master.share * own[a * dim + d];
               equations.right_side[row] -= entry * velocity[at];
               scaled[d] = step * entry * mobility[at];
             }
+          if (to_hold != nullptr && held_as[master.node] > 0)
+            move(master.node, scaled);
           cells.corners.for_each(master.node, [&](const auto &corner) {
+            const auto add = [&](double &value, const double *const entries) {
+              for (int d = 0; d < dim; ++d)
+                value +=
+                  scaled[d] * corner.share * entries[corner.corner * dim + d];
+            };
             for (std::size_t l = 0; l < media.size(); ++l)
-              {
-                const double *const mate = media[l].record(corner.cell);
-                if (!(mate[Record::number] > 0 && mate[Record::volume] > 0))
-                  continue;
-                double &value = equations.values[entry_of(row, l, corner.cell)];
-                for (int d = 0; d < dim; ++d)
-                  value += scaled[d] * corner.share *
-                           mate[Record::rows + corner.corner * dim + d];
-              }
+              if (const double *const mate = media[l].record(corner.cell);
+                  mate[Record::number] > 0 && mate[Record::volume] > 0)
+                add(equations.values[entry_of(row, l, corner.cell)],
+                    mate + Record::rows);
+            if (cells.surfaces.any())
+              cells.surfaces.for_each_in(
+                corner.cell, [&](const std::uint32_t k) {
+                  if (const Piece &piece = cells.surfaces.pieces[k];
+                      piece.is_wet)
+                    add(equations.values[surface_entry(row, k)],
+                        piece.entries.data());
+                });
           });
         });
   }
@@ -149,8 +176,10 @@ namespace limber
 
   template void
   PressureSystem<2>::find_columns_over_levels();
+  template std::vector<std::uint32_t>
+    PressureSystem<2>::coupled_to(std::uint32_t) const;
   template void
-                       PressureSystem<2>::couple_over_levels(std::size_t,
+                       PressureSystem<2>::couple_over_levels(const double *,
                                         std::uint32_t,
                                         std::uint32_t,
                                         double);
@@ -163,8 +192,10 @@ namespace limber
   PressureSystem<2>::is_inside(const Medium &, std::uint32_t) const;
   template void
   PressureSystem<3>::find_columns_over_levels();
+  template std::vector<std::uint32_t>
+    PressureSystem<3>::coupled_to(std::uint32_t) const;
   template void
-                       PressureSystem<3>::couple_over_levels(std::size_t,
+                       PressureSystem<3>::couple_over_levels(const double *,
                                         std::uint32_t,
                                         std::uint32_t,
                                         double);

@@ -10,22 +10,22 @@ namespace limber
                                           CutCells<dim> *const cut_cells)
     : parts(parts)
     , cut_cells(cut_cells)
-  {
-    reinit();
-  }
+  {}
 
 
 
   template <int dim>
   void
-  PressureSurfaces<dim>::reinit()
+  PressureSurfaces<dim>::reinit(const CornersOfNodes<dim> &corners)
   {
     pieces.clear();
     n_own = most_in_cell = 0;
     if (cut_cells == nullptr)
       return;
     shared_cells.emplace(parts.grid.shared_cells);
-    first_of.reinit(parts.grid.n_cells());
+    shared_cells->add(corners.far_exchange());
+    n_known = parts.grid.n_cells() + corners.n_far_cells();
+    first_of.reinit(n_known);
   }
 
 
@@ -102,7 +102,7 @@ namespace limber
   {
     constexpr unsigned int n_entries = n_nodes * dim;
     const unsigned int     n_numbers = most_in_cell * (1 + n_entries);
-    told.reinit(std::size_t(parts.grid.n_cells()) * n_numbers);
+    told.reinit(n_known * n_numbers);
     between_ranks.emplace(n_numbers);
     for (std::uint32_t k = 0; k < n_own; ++k)
       {
@@ -139,7 +139,7 @@ namespace limber
   double *
   PressureSurfaces<dim>::told_in(const std::uint32_t cell)
   {
-    return told.data() + std::size_t(cell) * told.size() / parts.grid.n_cells();
+    return told.data() + std::size_t(cell) * (told.size() / n_known);
   }
 
 

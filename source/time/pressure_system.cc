@@ -461,10 +461,7 @@ namespace limber
                                       sign(pattern, b);
                                 });
       }
-    if (cells.corners.empty())
-      couple_on_lattice(medium.record(cell) + Record::rows, cell, row, step);
-    else
-      couple_over_levels(number, cell, row, step);
+    couple(medium.record(cell) + Record::rows, cell, row, step);
     equations.values[cells.corners.empty() ?
                        begin + number * in_body + place_in_row<dim>(0, 0) :
                        entry_of(row, number, cell)] += former[row].compliance;
@@ -525,6 +522,21 @@ namespace limber
         response.pressure       = own[Record::moment] / own[Record::volume];
       }
     return {V, response.pressure, V / response.stiffness, J};
+  }
+
+
+
+  template <int dim>
+  void
+  PressureSystem<dim>::couple(const double *const entries,
+                              const std::uint32_t cell,
+                              const std::uint32_t row,
+                              const double        step)
+  {
+    if (cells.corners.empty())
+      couple_on_lattice(entries, cell, row, step);
+    else
+      couple_over_levels(entries, cell, row, step);
   }
 
 

@@ -2,6 +2,7 @@
 #ifndef limber_time_pressure_surfaces_h
 #define limber_time_pressure_surfaces_h
 
+#include <limber/time/corners_of_nodes.h>
 #include <limber/time/cut_cells.h>
 
 #include <array>
@@ -48,9 +49,9 @@ namespace limber
 
     PressureSurfaces(const RunParts<dim> &parts, CutCells<dim> *cut_cells);
 
-    /** Adopt a mesh that has changed. */
+    /** Adopt a mesh that has changed, and the cells that follow its nodes. */
     void
-    reinit();
+    reinit(const CornersOfNodes<dim> &corners);
 
     /** Whether the pieces are no longer those of the obstacles. */
     bool
@@ -161,6 +162,7 @@ namespace limber
     unsigned int             version      = 0;
     std::uint32_t            n_own        = 0;
     unsigned int             most_in_cell = 0; // of all ranks
+    std::size_t              n_known      = 0; // cells, far ones too
     LazyArray<std::uint32_t> first_of; // by cell, 1 + its first piece, or 0
     // By cell: a number for each piece in it, and their entries
     LazyArray<double>             told;

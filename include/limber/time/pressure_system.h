@@ -186,10 +186,15 @@ namespace limber
                  double        step,
                  double        share);
     void
-    couple_over_levels(std::size_t   medium,
+    couple_over_levels(const double *entries,
                        std::uint32_t cell,
                        std::uint32_t row,
                        double        step);
+    void
+    couple(const double *entries,
+           std::uint32_t cell,
+           std::uint32_t row,
+           double        step);
     void
     couple_on_lattice(const double *entries,
                       std::uint32_t cell,
@@ -205,6 +210,8 @@ namespace limber
       for (std::uint32_t k = 0; k < cells.surfaces.n_of_rank(); ++k)
         work(cells.first_of_surfaces() + k, cells.surfaces.pieces[k].cell);
     }
+    std::vector<std::uint32_t>
+    coupled_to(std::uint32_t cell) const;
     unsigned int
     most_surfaces_near() const;
     std::size_t
