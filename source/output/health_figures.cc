@@ -179,13 +179,16 @@ namespace limber
     figures.drift        = totals.energy_drift;
     figures.transfer     = totals.removed_by_transfer;
     figures.viscous      = totals.dissipated;
-    figures.history      = totals.removed_with_history;
-    figures.plastic      = totals.plastic_work;
-    figures.friction     = totals.friction_heat;
-    figures.contact      = totals.contact_loss;
-    figures.adaptation   = totals.removed_by_adaptation;
-    figures.sides        = totals.boundary_work;
-    figures.loads        = totals.load_work;
+    figures.is_semi_implicit =
+      state.problem.method.integration == TimeIntegration::semi_implicit;
+    figures.lost_by_steps = totals.lost_by_steps;
+    figures.history       = totals.removed_with_history;
+    figures.plastic       = totals.plastic_work;
+    figures.friction      = totals.friction_heat;
+    figures.contact       = totals.contact_loss;
+    figures.adaptation    = totals.removed_by_adaptation;
+    figures.sides         = totals.boundary_work;
+    figures.loads         = totals.load_work;
     figures.may_hit =
       !state.problem.obstacles.empty() ||
       std::any_of(state.problem.sides.begin(),

@@ -223,6 +223,7 @@ namespace limber
     totals.put_back_way          = ledger.put_back_way;
     totals.put_out               = ledger.put_out;
     totals.dissipated            = ledger.viscous;
+    totals.lost_by_steps         = ledger.by_steps;
     totals.removed_with_history  = ledger.history;
     totals.plastic_work          = ledger.plastic;
     totals.friction_heat         = ledger.friction;

@@ -82,8 +82,8 @@ namespace limber
   serialize(Archive &archive, Ledger<dim> &ledger, const unsigned int)
   {
     archive &ledger.transfer &ledger.boundary_work &ledger.load_work &ledger
-      .viscous &ledger.history &ledger.plastic &ledger.friction &ledger
-      .contact &ledger.adaptation &ledger.load_impulse &ledger
+      .viscous &ledger.by_steps &ledger.history &ledger.plastic &ledger
+      .friction &ledger.contact &ledger.adaptation &ledger.load_impulse &ledger
       .gravity_impulse &ledger.side_impulse &ledger.put_back &ledger
       .put_back_way &ledger.put_out &ledger.lost_mass &ledger
       .lost_energy &ledger.lost_momentum &ledger.lost_points &ledger.obstacles;

@@ -352,7 +352,7 @@ namespace limber
           }
         keep_dilation(medium, *body);
       }
-    parts.ledger.viscous += lost;
+    parts.ledger.lose_by_steps(lost);
   }
 
 
@@ -519,10 +519,11 @@ namespace limber
               const double after  = of_node[Layout::velocity + d];
               const double before = after - of_node[Layout::increment + d];
               const double mean = 0.5 * (before + of_node[velocity_after + d]);
-              parts.ledger.viscous += step *
-                                      (force[std::size_t(node) * dim + d] +
-                                       mass * parts.problem.loads.gravity[d]) *
-                                      (after - mean);
+              parts.ledger.lose_by_steps(
+                step *
+                (force[std::size_t(node) * dim + d] +
+                 mass * parts.problem.loads.gravity[d]) *
+                (after - mean));
             }
       }
   }

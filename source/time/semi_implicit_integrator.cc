@@ -203,7 +203,7 @@ namespace limber
     this->g2p();
     const double weighs = make_room();
     this->update_stress_and_move(this->step, false);
-    this->parts.ledger.viscous += expected - weighs - energy_of_points();
+    this->parts.ledger.lose_by_steps(expected - weighs - energy_of_points());
   }
 
 
@@ -286,7 +286,8 @@ namespace limber
             const double change = record[Layout::velocity + d] -
                                   record[Layout::strain_velocity + d];
             if (this->parts.nodes.owns(node))
-              this->parts.ledger.viscous += change * impulse_of_stress(node, d);
+              this->parts.ledger.lose_by_steps(change *
+                                               impulse_of_stress(node, d));
             record[Layout::strain_velocity + d] += change;
           }
       }

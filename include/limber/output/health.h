@@ -106,6 +106,9 @@ namespace limber
     // Taken or given on record
     double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
            contact = 0, adaptation = 0, sides = 0, loads = 0;
+    // Of what viscosity has taken, what semi-implicit steps have lost
+    bool   is_semi_implicit = false;
+    double lost_by_steps    = 0;
     // The entry that sets the length of steps
     std::string step_entry = "Method/Courant number";
   };

@@ -42,6 +42,7 @@ namespace limber
     dealii::Tensor<1, dim>       centre_of_mass; // m
 
     double dissipated            = 0; // by viscosity, J
+    double lost_by_steps         = 0; // of these, by semi-implicit steps, J
     double removed_with_history  = 0; // with volumetric history or tension, J
     double plastic_work          = 0; // on plastic strain, J
     double friction_heat         = 0; // J

@@ -43,6 +43,7 @@ namespace limber
     double boundary_work = 0; // done on the material by sides and obstacles
     double load_work     = 0; // by body force formulas and face loads
     double viscous       = 0; // turned into heat by viscosity and damping
+    double by_steps      = 0; // of these, what semi-implicit steps lose
     double history       = 0; // removed with volumetric history or tension
     double plastic       = 0; // work on plastic strain
     double friction      = 0; // turned into heat where bodies slide
@@ -74,6 +75,14 @@ namespace limber
     {
       contact += loss.across;
       friction += loss.along;
+    }
+
+    /** Of what is set in motion or stopped at once, and of short waves, J. */
+    void
+    lose_by_steps(const double energy)
+    {
+      viscous += energy;
+      by_steps += energy;
     }
 
     Ledger
