@@ -11,6 +11,10 @@ namespace limber
   {
     constexpr unsigned int n_places = 3, n_times = 1001;
 
+    // Of the time between samples: a rate is that over this, which sees what is
+    // faster than they are, or that from one to the next, which sees jumps.
+    constexpr double at_once = 1e-4;
+
 
 
     /** Of a vector as a function of time, from zero to @p end. */
@@ -18,23 +22,33 @@ namespace limber
     double
     time_scale(const Function &function, const double end)
     {
-      const double           interval = end / (n_times - 1);
+      const double           interval = end / n_times;
       dealii::Tensor<1, dim> sum, former;
-      double                 squares = 0, squares_of_rate = 0;
+      double squares = 0, squares_of_rate = 0, squares_of_steps = 0, before = 0;
       for (unsigned int k = 0; k < n_times; ++k)
         {
-          const dealii::Tensor<1, dim> value = function(k * interval);
+          // not at equal times, as what swings might be the same at all
+          const double golden = 0.5 * (std::sqrt(5.) - 1) * k,
+                       time   = interval * (k + golden - std::floor(golden));
+          const dealii::Tensor<1, dim> value = function(time),
+                                       rate =
+                                         (function(time + at_once * interval) -
+                                          value) /
+                                         (at_once * interval);
           sum += value;
           squares += value.norm_square();
+          squares_of_rate += rate.norm_square();
           if (k > 0)
-            squares_of_rate +=
-              (value - former).norm_square() / (interval * interval);
+            squares_of_steps +=
+              ((value - former) / (time - before)).norm_square();
           former = value;
+          before = time;
         }
       const double variance = squares - sum.norm_square() / n_times;
       // what is left of a constant is round-off
       return std::isfinite(variance) && variance > 1e-12 * squares ?
-               std::sqrt(variance / squares_of_rate) :
+               std::sqrt(variance /
+                         std::max(squares_of_rate, squares_of_steps)) :
                std::numeric_limits<double>::infinity();
     }
   } // namespace

@@ -71,8 +71,9 @@ namespace limber
 
   /**
    * Whether another side of the set alone holds this component, as the
-   * velocity through it: of two sides of which one moves, or material would go
-   * through the other at their edge (the lid of a cavity).
+   * velocity through it: what presses on that side at the edge of the two is
+   * its force, and if one of them moves, material would go through the other
+   * (the lid of a cavity).
    */
   template <int dim>
   bool
@@ -85,8 +86,7 @@ namespace limber
       return false;
     for (const unsigned int other : {2 * component, 2 * component + 1})
       if (set >> other & 1 && sides[other].held != HeldComponents::none &&
-          !sides[other].one_sided &&
-          !(sides[side].velocity.empty() && sides[other].velocity.empty()))
+          !sides[other].one_sided)
         return true;
     return false;
   }

@@ -212,21 +212,26 @@ TEST(Choices, SidesHoldWhatTheirWordsSay)
 
 
 
-/** The last that holds a component counts. */
-TEST(Choices, SidesThatMeetActInTheirOrder)
+/** They act in their order, but the velocity through a side is held by this
+ * one alone, if it lets nothing go. */
+TEST(Choices, SidesThatMeetHoldWhatGoesThroughThem)
 {
   Sides<3> sides;
-  sides[0].held   = HeldComponents::all;
-  sides[3].held   = HeldComponents::none;
-  const auto held = held_components(sides, 1 << 0 | 1 << 3 | 1 << 4);
-  ASSERT_EQ(held.size(), 4u);
-  for (unsigned int d = 0; d < 3; ++d)
+  sides[0].held = HeldComponents::all;
+  sides[3].held = HeldComponents::none;
+  for (const bool one_sided : {false, true})
     {
-      EXPECT_EQ(held[d].side, 0u);
-      EXPECT_EQ(held[d].component, d);
+      sides[4].one_sided = one_sided;
+      const auto held    = held_components(sides, 1 << 0 | 1 << 3 | 1 << 4);
+      ASSERT_EQ(held.size(), one_sided ? 4u : 3u);
+      for (unsigned int d = 0; d < held.size() - 1; ++d)
+        {
+          EXPECT_EQ(held[d].side, 0u);
+          EXPECT_EQ(held[d].component, d);
+        }
+      EXPECT_EQ(held.back().side, 4u);
+      EXPECT_EQ(held.back().component, 2u);
     }
-  EXPECT_EQ(held[3].side, 4u);
-  EXPECT_EQ(held[3].component, 2u);
 }
 
 
