@@ -26,7 +26,9 @@ namespace limber
 
     /** Where no cause has been found: the usual one, and what to change. */
     std::string
-    usual_cause(const FailureKind kind, const bool through_open_side)
+    usual_cause(const FailureKind     kind,
+                const TimeIntegration integration,
+                const bool            through_open_side)
     {
       switch (kind)
         {
@@ -48,6 +50,11 @@ namespace limber
                      "'Method/Blend time', smaller cells, or a 'Method/Lost "
                      "points limit' above the share that is lost.";
           case FailureKind::step_too_small:
+            if (integration == TimeIntegration::quasi_static)
+              return "Usually the load is the largest that can be borne (limit "
+                     "load, buckling): there is no equilibrium beyond. Let a "
+                     "side or an obstacle move instead of a load, or set "
+                     "'Method/Time integration = implicit'.";
             return "Usually a point is compressed to nothing, see 'smallest "
                    "volume ratio' in the statistics. Refine 'Grid/Cells' or "
                    "load more slowly.";
@@ -115,11 +122,13 @@ namespace limber
     if (failure.kind == FailureKind::lost_points && lost_through_open_side &&
         !suspected.is_unstable)
       suspected = {};
-    std::string message = std::string(failure.what()) + " " +
-                          (suspected.mode.empty() ?
-                             usual_cause(failure.kind, lost_through_open_side) :
-                             in_words(suspected)) +
-                          " " + describe_last_state();
+    std::string message =
+      std::string(failure.what()) + " " +
+      (suspected.mode.empty() ? usual_cause(failure.kind,
+                                            problem.method.integration,
+                                            lost_through_open_side) :
+                                in_words(suspected)) +
+      " " + describe_last_state();
     try
       {
         const std::string checkpoint = describe_last_checkpoint();
