@@ -181,6 +181,38 @@ namespace limber
 
 
 
+    double
+    largest_of(const std::vector<double> &values, const double origin)
+    {
+      double result = 0;
+      for (const double value : values)
+        if (std::isfinite(value))
+          result = std::max(result, std::abs(value - origin));
+      return result;
+    }
+
+
+
+    /** Whether it changes by nothing but round-off, held against all that are
+     * measured in the same unit: what has no change has no relative one. */
+    template <int dim>
+    bool
+    stays(const Problem<dim>        &problem,
+          const Trial               &scene,
+          const std::string         &unit,
+          const std::vector<double> &values)
+    {
+      constexpr double round_off = 1e-9;
+      double           largest   = 0;
+      for (const Observable<dim> &observable : problem.observables)
+        if (const auto *const any = column(scene.table, observable.name);
+            any != nullptr && observable.kind->unit == unit)
+          largest = std::max(largest, largest_of(*any, 0));
+      return largest_of(values, values.front()) <= round_off * largest;
+    }
+
+
+
     template <int dim>
     void
     compare_observables(const Problem<dim> &problem,
@@ -194,7 +226,8 @@ namespace limber
         {
           const auto *const own  = column(scene.table, observable.name);
           const auto *const with = column(changed.table, observable.name);
-          if (own == nullptr || with == nullptr)
+          if (own == nullptr || with == nullptr ||
+              stays(problem, scene, observable.kind->unit, *own))
             continue;
           const std::string name = in_quotes(observable.name);
           if (observable.kind->looks_at != ObservedPart::column)
