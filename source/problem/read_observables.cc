@@ -380,13 +380,49 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Say so where the point that will be followed is far from the place. */
+    template <int dim>
+    void
+    look_at_location(const Observable<dim> &observable, Problem<dim> &problem)
+    {
+      for (const Body<dim> &body : problem.bodies)
+        if (body.name == observable.body)
+          {
+            const Corners<dim> box  = body.shape->bounding_box();
+            double             edge = 0, squares = 0;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double x      = observable.location[d],
+                             beyond = std::max(
+                               {0., box.first[d] - x, x - box.second[d]});
+                squares += beyond * beyond;
+                edge = std::max(edge, problem.grid.edge(d));
+              }
+            if (const double distance = std::sqrt(squares); distance > edge)
+              problem.notes.push_back(
+                "Observable " + in_quotes(observable.name) + ": " +
+                to_text(observable.location) + " is " + brief(distance) +
+                " m off body " + in_quotes(body.name) +
+                "; its nearest point is followed.");
+          }
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   read_observables(const Section &root, Problem<dim> &problem)
   {
     for (const std::string &name : root.list("Observables"))
-      problem.observables.push_back(
-        read_observable(root.subsection("Observable " + name), name, problem));
+      {
+        const Section section = root.subsection("Observable " + name);
+        problem.observables.push_back(read_observable(section, name, problem));
+        if (!section.is_empty("Location"))
+          look_at_location(problem.observables.back(), problem);
+      }
     check_frequencies(root, problem);
   }
 

@@ -68,13 +68,14 @@ namespace limber
                     true,
                     "psi, degrees, at most phi: how much flow dilates; it does "
                     "so without end"},
-       LawParameter{"Tensile strength",
-                    0,
-                    0,
-                    1e300,
-                    true,
-                    "Pa: tension at which the material parts; never more than "
-                    "c cot(phi)"},
+       LawParameter{
+         "Tensile strength",
+         0,
+         0,
+         1e300,
+         true,
+         "Pa: mean tension -p at which the material parts; never more than "
+         "c cot(phi)"},
        LawParameter{"Fit",
                     0,
                     0,

@@ -493,6 +493,37 @@ TEST(Scenes, LiquidsBesideObstaclesAreCut)
 
 
 
+TEST(Scenes, ObservablesFarFromTheirBodyAreTold)
+{
+  const auto notes_with = [](const std::string &location) {
+    std::string notes;
+    for (const std::string &note : read_problem<2>(scene_of(R"(
+      set Bodies = block
+      subsection Body block
+        subsection Box
+          set Upper corner = 0.5, 0.5
+        end
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end
+      set Observables = tip
+      subsection Observable tip
+        set Type = displacement
+        set Location = )" + location + R"(
+        set Direction = x
+      end)"))
+                                     .notes)
+      notes += note + "\n";
+    return notes;
+  };
+  EXPECT_EQ(notes_with("0.5, 0.55").find("'tip'"), std::string::npos);
+  EXPECT_NE(notes_with("0.9, 0.8").find("0.5 m off body 'block'"),
+            std::string::npos);
+}
+
+
+
 TEST(Scenes, ThreeDimensionsUnionFrictionAndMovingSide)
 {
   const Problem<3> problem = read_problem<3>(scene_of(R"(
