@@ -554,7 +554,7 @@ namespace limber
     // volume     Laws are measured to about a third and three; e^2.3 = 10.
     // clumping   The level of water errs by as much; scenes with a reference
     //            have up to 2 %.
-    // dissipation Dam breaks lose 3 to 5 %, a drop that falls flat 25 %.
+    // dissipation Dam breaks lose 1 to 4 %, a drop that falls flat 14 %.
     // obstacles  Flow past a convex surface cuts its corners by less; what is
     //            half a cell inside has gone through the surface.
     constexpr HealthCheck checks[] = {

@@ -46,7 +46,7 @@ namespace limber
                      "Usually a side is free there or moves away. Close it in 'Boundaries' "
                      "with slip, or raise 'Method/Lost points limit' above the "
                      "share that is lost." :
-                     "No side is free there, so the motion is unstable there. Set "
+                     "No side is free there, so the motion is unstable. Set "
                      "'Method/Blend time', smaller cells, or a 'Method/Lost "
                      "points limit' above the share that is lost.";
           case FailureKind::step_too_small:

@@ -330,6 +330,15 @@ TEST(Splitting, PartsAtASurfaceEndWhereTheWholeDoes)
         points.join({all});
         EXPECT_EQ(points.size(), n);
       }
+
+  // The last of a row along an axis, whose parts are of two kinds
+  dealii::Tensor<1, 2> down;
+  down[1]                = -1;
+  const std::size_t n    = points.size();
+  points.view().reach[0] = 0.125;
+  points.split({0}, 2, {{0.25, 0.25}}, 2000, {down});
+  points.join({{0, n, n + 1, n + 2}});
+  EXPECT_NEAR(points.view().reach[0], 0.125, 1e-15);
 }
 
 

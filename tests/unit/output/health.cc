@@ -556,6 +556,32 @@ namespace limber::test
 
 
 
+  // What controls have given to points ends as such, too, and is no loss.
+  TEST(Health, TellsWhatSemiImplicitStepsLose)
+  {
+    HealthFigures figures = sound();
+    figures.energy_scale  = 100;
+    figures.lost_by_steps = 60;
+    for (const HealthLine &other : judge(figures))
+      EXPECT_NE(other.name, "dissipation"); // of other steps
+    figures.is_semi_implicit = true;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::bad);
+    EXPECT_NE(line("dissipation", figures).text.find("lost"),
+              std::string::npos);
+    figures.history = -40;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::look);
+    EXPECT_DOUBLE_EQ(line("dissipation", figures).value, 0.2);
+    figures.history = -55;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::good);
+    figures.lost_by_steps = -30;
+    figures.history       = 0;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::look);
+    EXPECT_NE(line("dissipation", figures).text.find("created"),
+              std::string::npos);
+  }
+
+
+
   TEST(Health, InnerCellsWithOnePointAreCounted)
   {
     const std::array<unsigned int, 3> n{{3, 3, 3}};
