@@ -123,7 +123,8 @@ namespace limber
       to_text(place) + ", p = " + brief(start.pressure) + " Pa, q = " +
       brief(std::sqrt(1.5 * squared_norm<dim, double>(start.deviator))) +
       " Pa, is outside the yield surface. Usually K0 is too small for the "
-      "strength. Correct 'Body " +
+      "strength, or clay has a 'Preconsolidation pressure' below its pressure. "
+      "Correct 'Body " +
       body.name + "/Initial stress' or the material.");
   }
 

@@ -191,8 +191,9 @@ namespace limber
     }
 
     /**
-     * As FiniteElasticity::start_under(); a preconsolidation pressure of zero
-     * becomes the one that has the stress on the yield surface.
+     * As FiniteElasticity::start_under(). The preconsolidation pressure is that
+     * of Cauchy in the volume of the start; one of zero becomes the one that
+     * has the stress on the yield surface.
      */
     template <int dim>
     void
@@ -205,6 +206,8 @@ namespace limber
       state.pressure = stress_at(state.history[0]) - attraction;
       if (double &borne = variable<dim>(state, 1); borne == 0)
         borne = std::max(needed_size<dim>(state) - attraction, 0.);
+      else
+        borne *= volume_ratio<dim>(state);
     }
 
     /** Whether the stress is within the yield surface. */

@@ -494,8 +494,11 @@ TYPED_TEST(Sweep, SummariesAreSumsOverPoints)
       PointStart<dim> start;
       start.pressure = pressure;
       sweep.initialise(points, 3, start);
-      const auto wanted = law.template initialise<dim>(pressure);
-      const auto state  = this->get(points, 3);
+      auto wanted = law.template initialise<dim>(pressure);
+      if constexpr (std::is_same_v<Law, CamClay>) // given as Cauchy's
+        wanted.history[index_of_variable<dim, Law>(1)] *=
+          law.template volume_ratio<dim>(wanted);
+      const auto state = this->get(points, 3);
       EXPECT_EQ(state.pressure, wanted.pressure);
       EXPECT_EQ(state.history, wanted.history);
       // the mass of what is strained little does not follow its volume

@@ -259,6 +259,11 @@ TEST(InitialStress, RefusesWhatTheLawDoesNotAdmit)
                  {stress + "K0: 0.6",
                   "Body column/Cam clay/Preconsolidation pressure=1e3"},
                  {"yield surface"});
+  // Kirchhoff's stress is 8 % less than it
+  expect_refusal(clay,
+                 {stress + "xx: -5e4; yy: -5e4; zz: -5e4",
+                  "Body column/Cam clay/Preconsolidation pressure=4.9e4"},
+                 {"yield surface", "'Preconsolidation pressure'"});
   expect_refusal(clay,
                  {stress + "xx: 5e4; yy: 5e4; zz: 5e4"},
                  {"yield surface"});
