@@ -28,6 +28,13 @@ class Parser(argparse.ArgumentParser):
         charts.fail(f"{message}. See 'limber {self.prog.split()[-1]} --help'.")
 
 
+def finite(text):
+    value = float(text)
+    if not np.isfinite(value):
+        raise argparse.ArgumentTypeError(f"'{text}' is not a finite number")
+    return value
+
+
 def parser_for(word, description):
     """The options that 'limber plot' and 'limber animate' have in common."""
     parser = Parser(
@@ -38,11 +45,11 @@ def parser_for(word, description):
                         help="folder of a run, a reference or a study")
     parser.add_argument("--field", help="what the colours show")
     parser.add_argument("--body", help="only the points of this body")
-    parser.add_argument("--enlarge", type=float, default=1., metavar="FACTOR",
+    parser.add_argument("--enlarge", type=finite, default=1., metavar="FACTOR",
                         help="draw displacements this many times as large")
-    parser.add_argument("--range", type=float, nargs=2, metavar=("LOW", "HIGH"),
+    parser.add_argument("--range", type=finite, nargs=2, metavar=("LOW", "HIGH"),
                         help="ends of the colours, in the SI unit of the field")
-    parser.add_argument("--view", type=float, nargs=2, default=(30., 20.),
+    parser.add_argument("--view", type=finite, nargs=2, default=(30., 20.),
                         metavar=("AZIMUTH", "ELEVATION"),
                         help="of the camera in three dimensions, in degrees")
     parser.add_argument("--grid", action="store_true",
@@ -57,6 +64,9 @@ def parser_for(word, description):
 
 def checked(arguments):
     """Sources and labels of the runs; ends with a message if they do not fit."""
+    if arguments.range and arguments.range[0] >= arguments.range[1]:
+        charts.fail("'--range' takes the lower end of the colours first, and a "
+                    "higher one.")
     sources = [fields.Source(folder) for folder in arguments.folders]
     if len({source.dimension for source in sources}) > 1:
         charts.fail("Runs in two and in three dimensions cannot be drawn side by "
@@ -171,7 +181,7 @@ def energies(sources, labels):
 
 def main(words=None):
     parser = parser_for("plot", __doc__)
-    parser.add_argument("--time", type=float, nargs="+", metavar="T",
+    parser.add_argument("--time", type=finite, nargs="+", metavar="T",
                         help="the pictures nearest to these times, in s")
     parser.add_argument("--snapshots", type=int, default=4, metavar="N",
                         help="so many pictures, evenly over the run (4)")

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
+import charts
+
 VTK_TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4",
              "UInt32": "<u4", "Int64": "<i8", "UInt64": "<u8",
              "Int8": "i1", "UInt8": "u1"}
@@ -43,9 +45,23 @@ def statistics(folder):
     path = Path(folder) / "statistics"
     columns = re.findall(r"^# *(\d+): *(.+?) *(?:\[([^\]]*)\])? *$",
                          path.read_text(), re.MULTILINE)
+    rows = path.read_text().splitlines()
+    if all(not row or row.startswith("#") for row in rows):
+        charts.fail(f"The table '{path}' has no rows: the run has not made a step.")
     table = np.loadtxt(path, ndmin=2)
     values = {name: table[:, int(n) - 1] for n, name, _ in columns}
     return values, {name: unit for _, name, unit in columns}
+
+
+def tree(path):
+    """The root of an XML file of the run; ends with a message if it cannot be
+    read."""
+    try:
+        return xml.parse(path).getroot()
+    except (OSError, xml.ParseError) as error:
+        charts.fail(f"The picture '{path}' is missing or damaged ({error}). "
+                    "Usually the machine failed while it was written. Go on from "
+                    "the checkpoint with '--resume', which writes it anew.")
 
 
 def data_array(element, compressed):
@@ -74,7 +90,7 @@ def data_array(element, compressed):
 def points(path):
     """Reads a .vtu or .pvtu: {'position': ..., and each field by its name}."""
     path = Path(path)
-    root = xml.parse(path).getroot()
+    root = tree(path)
     if path.suffix == ".pvtu":
         pieces = [points(path.parent / piece.get("Source"))
                   for piece in root.iter("Piece")]
@@ -101,7 +117,7 @@ def series(folder, name="points"):
     if not path.exists():
         return np.array([]), []
     files = {}
-    for entry in xml.parse(path).getroot().iter("DataSet"):
+    for entry in tree(path).iter("DataSet"):
         files[float(entry.get("timestep"))] = path.parent / entry.get("file")
     times = sorted(files)
     return np.array(times), [files[time] for time in times]

@@ -159,6 +159,8 @@ def _blurred(values, r):
 def _shifted(values, i, j, outside):
     result = np.full_like(values, outside)
     rows, columns = values.shape
+    if abs(i) >= rows or abs(j) >= columns:
+        return result
     result[max(i, 0):rows + min(i, 0), max(j, 0):columns + min(j, 0)] = (
         values[max(-i, 0):rows + min(-i, 0), max(-j, 0):columns + min(-j, 0)])
     return result
