@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iostream>
 #include <new>
+#include <regex>
 #include <sstream>
 
 namespace limber
@@ -170,6 +171,15 @@ namespace limber
       return result;
     }
   } // namespace
+
+
+
+  bool
+  asks_for_time(const std::string &formula)
+  {
+    static const std::regex time("(^|[^A-Za-z_0-9.])t($|[^A-Za-z_0-9])");
+    return std::regex_search(formula, time);
+  }
 
 
 

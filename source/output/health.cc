@@ -139,9 +139,10 @@ namespace limber
     HealthLine
     judge_impacts(const HealthFigures &figures, const HealthCheck &check)
     {
-      bool is_solid = true, is_elastic = true;
+      bool is_solid = true, is_elastic = true, crosses_cells = false;
       for (const BodyFigures &body : figures.bodies)
         {
+          crosses_cells |= !body.stays_in_cells;
           is_solid &= !body.is_liquid;
           is_elastic &= !body.is_liquid && !body.is_plastic;
         }
@@ -170,10 +171,11 @@ namespace limber
                      (is_uneven ? ", or 'Placement = cut'" : "") +
                      "; smaller steps do not help";
       else
-        line.text += ": points come to rest against what they hit one by one, "
-                     "in each impact those of about half a cell. Take smaller "
-                     "cells, or a smaller 'Courant number'; for what turns on "
-                     "a 'separating' side, a half-space as obstacle";
+        line.text +=
+          ": points come to rest against what they hit one by one, "
+          "in each impact those of up to a cell. Take smaller "
+          "cells" +
+          std::string(crosses_cells ? ", or a smaller 'Courant number'" : "");
       return line;
     }
 

@@ -152,7 +152,8 @@ namespace limber
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());
-        figures.is_cut = body.placement == Placement::cut ||
+        figures.stays_in_cells = body.frame == Frame::initial;
+        figures.is_cut         = body.placement == Placement::cut ||
                          body.placement == Placement::fitted ||
                          body.placement == Placement::gauss;
         at_start.push_back(figures);
@@ -193,7 +194,7 @@ namespace limber
       !state.problem.obstacles.empty() ||
       std::any_of(state.problem.sides.begin(),
                   state.problem.sides.end(),
-                  [](const Side<dim> &side) { return side.one_sided; }) ||
+                  [](const Side<dim> &side) { return side.may_be_hit; }) ||
       std::any_of(state.problem.contacts.begin(),
                   state.problem.contacts.end(),
                   [](const ContactPair &pair) {

@@ -407,9 +407,13 @@ namespace limber
     {
       for (const ListedPoint<dim> &listed : list.points)
         {
+          // Cells do not have their upper faces; those of the box have the
+          // last.
           std::array<double, dim> x;
           for (int d = 0; d < dim; ++d)
-            x[d] = listed.place[d];
+            x[d] = std::min(listed.place[d],
+                            std::nextafter(grid.description.upper[d],
+                                           grid.description.lower[d]));
           const std::uint32_t cell = grid.bins.cell_at(x);
           if (cell >= grid.n_owned_cells())
             continue;

@@ -1,23 +1,28 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <deal.II/base/symmetric_tensor.h>
-
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/materials/neo_hookean.h>
+#include <limber/problem/ball.h>
+#include <limber/problem/block.h>
 #include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limber
 {
   namespace
   {
-    // A bar n cells thick vibrates in torsion slower by this over n^2
-    // (doc/theory/initial_frame.md).
-    constexpr double torsion_of_linear = 1.5, torsion_of_splines = 3.3;
+    // Of edges: beyond, a body may fold onto itself when it hits something.
+    constexpr double slender = 4;
+
+    // A disc whose fall has .13 times its Young's modulus as energy per volume
+    // bounces in its initial frame, with 1.3 times its points invert.
+    constexpr double most_violence = 0.3;
 
 
 
@@ -221,6 +226,102 @@ namespace limber
 
 
 
+    /** Whether a body never folds onto itself: a ball, or a box or block that
+     * is not slender. */
+    template <int dim>
+    bool
+    is_compact(const Shape<dim> &shape)
+    {
+      const auto *block = dynamic_cast<const BlockShape<dim> *>(&shape);
+      if (block == nullptr)
+        return dynamic_cast<const BallShape<dim> *>(&shape) != nullptr;
+      using Info     = dealii::GeometryInfo<dim>;
+      double longest = 0, shortest = std::numeric_limits<double>::max();
+      for (unsigned int line = 0; line < Info::lines_per_cell; ++line)
+        {
+          const double edge =
+            block->vertices[Info::line_to_cell_vertices(line, 0)].distance(
+              block->vertices[Info::line_to_cell_vertices(line, 1)]);
+          longest  = std::max(longest, edge);
+          shortest = std::min(shortest, edge);
+        }
+      return longest <= slender * shortest;
+    }
+
+
+
+    /**
+     * Energy per volume that a body of rubber may hit a side with, over Young's
+     * modulus: that of its fall and of its velocity, from places on a lattice.
+     */
+    template <int dim>
+    double
+    violence(const Body<dim> &body, const Problem<dim> &problem)
+    {
+      constexpr unsigned int n    = 8; // along each edge
+      const Corners<dim>     box  = body.shape->bounding_box();
+      double                 fall = 0; // times gravity, m^2/s^2
+      for (unsigned int d = 0; d < dim; ++d)
+        {
+          const double g = problem.loads.gravity[d];
+          fall += std::abs(g) * (g < 0 ? box.first[d] - problem.grid.lower[d] :
+                                         problem.grid.upper[d] - box.second[d]);
+        }
+      double fastest = 0;
+      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (!body.initial_velocity.empty())
+            fastest =
+              std::max(fastest, body.initial_velocity.vector(place, 0).norm());
+        }
+      const double stiffness = body.material[1];
+      static_assert(NeoHookean::parameters[1].name ==
+                    law_parameters::young_modulus.name);
+      return body.density() * (fall + 0.5 * fastest * fastest) / stiffness;
+    }
+
+
+
+    /**
+     * Whether a body may hit sides in its initial frame: it feels them at its
+     * surface (choose_side_contact()), does not fold onto itself, may rotate as
+     * it likes, and is not hit so hard that cells that stay with it would
+     * invert.
+     */
+    template <int dim>
+    bool
+    may_bounce(const Section      &root,
+               const Body<dim>    &body,
+               const Problem<dim> &problem)
+    {
+      if (problem.bodies.size() != 1 || body.law != NeoHookean::name ||
+          problem.method.integration != TimeIntegration::explicit_steps ||
+          filters_velocity(problem.method.transfer) ||
+          problem.loads.body_force || !root.list("Obstacles").empty() ||
+          !root.subsection("Loads").list("Face loads").empty() ||
+          !is_compact(*body.shape))
+        return false;
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        {
+          const Side<dim> &wall = problem.sides[side];
+          // What rolls there rolls on its points, which stay where they are in
+          // the surface: gently sloped, it stands still.
+          if (wall.friction > 0)
+            return false;
+          if (wall.held != HeldComponents::none && !wall.one_sided &&
+              (wall.held == HeldComponents::all || !wall.velocity.empty() ||
+               has_face_in(side, body, problem.grid)))
+            return false;
+        }
+      return violence(body, problem) < most_violence;
+    }
+
+
+
     /**
      * Why a body may meet something that its initial frame would not notice;
      * empty if it is held or if there is nothing to meet. A side where it may
@@ -300,14 +401,17 @@ namespace limber
           meeting = may_flow_far(part, problem.method.integration) ?
                       "it may flow far" :
                       what_it_may_meet(root, part, problem);
-      body.frame =
-        !obstacle && meeting.empty() ? Frame::initial : Frame::current;
+      const bool bounces = !meeting.empty() && may_bounce(root, body, problem);
+      body.frame = !obstacle && (meeting.empty() || bounces) ? Frame::initial :
+                                                               Frame::current;
       if (!body.is_liquid)
         problem.notes.push_back(
           "Body " + in_quotes(body.name) + ": frame 'auto' is " +
           (body.frame == Frame::initial ?
-             "'initial', in which nothing crosses cells: it is one solid, held "
-             "or without walls to meet." :
+             "'initial', in which nothing crosses cells: it is one solid, " +
+               std::string(bounces ?
+                             "compact, which feels the sides at its surface." :
+                             "held or without walls to meet.") :
            obstacle ? "'current', as 'initial' " + obstacle->cause + "." :
                       "'current', as " + meeting + "."));
     }
@@ -414,109 +518,6 @@ namespace limber
           }
       say("'linear', as no solid crosses cells");
     }
-
-
-
-    /**
-     * What bends with linear functions and does not creep is right only if
-     * it bends along the axes of the cells: else they have no field of
-     * constant curvature.
-     */
-    template <int dim>
-    void
-    warn_of_bending_across_cells(Problem<dim> &problem)
-    {
-      if (problem.grid.kernel != KernelKind::linear)
-        return;
-      const bool is_newton = is_solved_by_newton(problem.method.integration);
-      for (const auto &body : problem.bodies)
-        if (!body.is_liquid && !body.is_plastic && !is_upright(*body.shape) &&
-            (body.frame == Frame::initial || is_newton))
-          problem.notes.push_back(
-            "Body " + in_quotes(body.name) +
-            ": where it bends across the cells, linear functions store too "
-            "little energy, 20 % two cells deep, 6 % four, 2 % eight. Set " +
-            (body.frame == Frame::current ||
-                 !problem.grid.against_splines.empty() ?
-               "more" :
-               "'Method/Kernel = quadratic', or more") +
-            " 'Grid/Cells', if it is thin.");
-    }
-    /**
-     * Variances of the places inside a shape along its principal axes, the
-     * largest first, m^2: L^2 / 12 of an edge L. From places on a lattice.
-     */
-    std::array<double, 3>
-    principal_variances(const Shape<3> &shape)
-    {
-      constexpr unsigned int        n   = 24;
-      const Corners<3>              box = shape.bounding_box();
-      dealii::Tensor<1, 3>          sum;
-      dealii::SymmetricTensor<2, 3> squares;
-      double                        count = 0;
-      for (unsigned int i = 0; i < n * n * n; ++i)
-        {
-          dealii::Point<3> place;
-          for (unsigned int d = 0, rest = i; d < 3; ++d, rest /= n)
-            place[d] = box.first[d] +
-                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
-          if (!shape.contains(place))
-            continue;
-          const dealii::Tensor<1, 3> x = place - box.first;
-          sum += x;
-          squares += symmetrize(outer_product(x, x));
-          ++count;
-        }
-      if (count == 0)
-        return {};
-      return eigenvalues(squares / count -
-                         symmetrize(outer_product(sum, sum)) / (count * count));
-    }
-
-
-
-    /**
-     * Nodes carry the mass of points h^2/6 further out (mean square, with
-     * linear functions; h^2/4 with splines), which slows what turns: in torsion
-     * a bar that is n cells thick by about twice that share of its polar moment
-     * (doc/theory/initial_frame.md).
-     */
-    template <int dim>
-    void
-    warn_of_torsion(Problem<dim> &problem)
-    {
-      if constexpr (dim == 3)
-        {
-          const bool linear = problem.grid.kernel == KernelKind::linear;
-          if (problem.method.integration == TimeIntegration::quasi_static ||
-              !(linear || problem.grid.kernel == KernelKind::quadratic))
-            return;
-          double edge = 0; // mean square
-          for (unsigned int d = 0; d < dim; ++d)
-            edge += problem.grid.edge(d) * problem.grid.edge(d) / dim;
-          edge = std::sqrt(edge) / (1 << problem.grid.levels);
-          for (const auto &body : problem.bodies)
-            {
-              if (body.is_liquid || !is_held(body, problem))
-                continue;
-              const auto   spread = principal_variances(*body.shape);
-              const double across = spread[1] + spread[2];
-              // of a square section; bars alone, twice as long as thick
-              const double n = std::sqrt(6 * across) / edge;
-              const double slowness =
-                (linear ? torsion_of_linear : torsion_of_splines) / (n * n);
-              if (spread[0] > 2 * across && slowness > 0.05)
-                problem.notes.push_back(
-                  "Body " + in_quotes(body.name) + ": about " +
-                  brief(std::round(10 * n) / 10) +
-                  " cells across, it vibrates in torsion some " +
-                  std::to_string(std::lround(100 * slowness)) +
-                  " % too slowly, as nodes carry the mass further out than "
-                  "points. If it twists, set more 'Grid/Cells'; the error "
-                  "falls with their square.");
-            }
-        }
-    }
   } // namespace
 
 
@@ -547,8 +548,7 @@ namespace limber
             "': " + found->reason + ". Set " + found->remedy +
             ", or 'Kernel = linear'.");
       }
-    warn_of_bending_across_cells(problem);
-    warn_of_torsion(problem);
+    warn_of_solid_motion(problem);
     if (has_domains(problem.grid.kernel) &&
         is_affine(read_word(method, "Transfer", transfer_words())))
       throw InputError("The transfer " + in_quotes(method.text("Transfer")) +

@@ -3,6 +3,7 @@
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
 #include <limber/problem/read_parts.h>
+#include <limber/problem/side_contact.h>
 #include <limber/problem/words.h>
 
 #include <algorithm>
@@ -398,6 +399,20 @@ namespace limber
 
 
 
+    /** Throws InputError where a formula of the start asks for the time. */
+    void
+    refuse_time(const Section &section, const std::string &entry)
+    {
+      if (asks_for_time(section.text(entry)))
+        throw InputError("The formula '" + section.text(entry) + "' in " +
+                         section.where(entry) +
+                         " depends on the time t, but it is that of the start "
+                         "alone. Usually a 'Body force' or a side with "
+                         "'velocity' is meant. Leave out t.");
+    }
+
+
+
     template <int dim>
     Body<dim>
     read_body(const Section     &root,
@@ -411,6 +426,7 @@ namespace limber
       body.name  = name;
       body.shape = read_shape(section, constants, corners(problem.grid));
       check_inside_grid(section, body, problem.grid);
+      refuse_time(section, "Initial velocity");
       body.initial_velocity = read_formula(section,
                                            "Initial velocity",
                                            dim,
@@ -467,14 +483,21 @@ namespace limber
     for (const std::string &name : root.list("Bodies"))
       problem.bodies.push_back(read_body(root, name, problem));
     choose_frames_and_kernel(root, problem);
-    const bool has_obstacles = !root.list("Obstacles").empty();
-    const bool touches =
-      has_obstacles || !root.subsection("Contact").list("Pairs").empty();
+    Meetings meets;
+    meets.obstacles = !root.list("Obstacles").empty();
+    meets.bodies    = !root.subsection("Contact").list("Pairs").empty();
+    bool any_hit    = false; // of the sides
+    for (unsigned int side = 0; side < 2 * dim; ++side)
+      any_hit = any_hit ||
+                may_be_hit(side,
+                           !root.subsection("Loads").list("Face loads").empty(),
+                           problem);
     for (auto &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);
         read_treatment(section, body, problem);
-        read_placement(section, touches, has_obstacles, body, problem);
+        meets.sides = any_hit && why_at_nodes(body, problem).empty();
+        read_placement(section, meets, body, problem);
       }
     warn_of_unbounded_gradients(problem);
   }

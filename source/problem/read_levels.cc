@@ -6,7 +6,6 @@
 #include <limber/problem/words.h>
 
 #include <algorithm>
-#include <regex>
 
 namespace limber
 {
@@ -192,8 +191,7 @@ namespace limber
       if (!section.is_empty("Where"))
         result.where = read_formula<dim>(
           section, "Where", 1, read_constants(section), result.box);
-      static const std::regex time("(^|[^A-Za-z_0-9.])t($|[^A-Za-z_0-9])");
-      result.depends_on_time = std::regex_search(section.text("Where"), time);
+      result.depends_on_time = asks_for_time(section.text("Where"));
 
       result.bodies    = split(section.text("Bodies"), ',');
       result.obstacles = split(section.text("Obstacles"), ',');

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
+
 #include <limber/base/exceptions.h>
 #include <limber/base/law_parameter.h>
 #include <limber/base/text.h>
@@ -10,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace limber
 {
@@ -163,6 +166,41 @@ namespace limber
       const auto words = split(parameter.words, '|');
       return std::find(words.begin(), words.end(), text) - words.begin();
     }
+    /** Of an entry of a law, if it has it. */
+    std::optional<double>
+    value_of(const std::string         &entry,
+             const LawDescription      &law,
+             const std::vector<double> &material)
+    {
+      for (std::size_t k = 0; k < law.parameters.size(); ++k)
+        if (law.parameters[k].name == entry)
+          return material[k];
+      return {};
+    }
+
+
+
+    // Soil with cohesion is often meant to bear some tension, and sheds points
+    // where it does not.
+    template <int dim>
+    void
+    note_lack_of_tension(const LawDescription &law,
+                         const Body<dim>      &body,
+                         Problem<dim>         &problem)
+    {
+      const auto cohesion = value_of("Cohesion", law, body.material),
+                 tension  = value_of("Tensile strength", law, body.material),
+                 angle    = value_of("Friction angle", law, body.material);
+      if (!cohesion || !tension || *cohesion == 0 || *tension > 0)
+        return;
+      const double apex =
+        *cohesion / std::tan(*angle * dealii::numbers::PI / 180);
+      problem.notes.push_back(
+        "Body " + in_quotes(body.name) +
+        " has cohesion but bears no tension: it comes apart where it is "
+        "pulled. 'Tensile strength' gives it some" +
+        (*angle > 0 ? ", at most " + brief(apex) + " Pa, c cot(phi)." : "."));
+    }
   } // namespace
 
 
@@ -184,6 +222,7 @@ namespace limber
       throw InputError("In the section " + in_quotes(law.section()) +
                        " of body " + in_quotes(body.name) + " " + objection +
                        ".");
+    note_lack_of_tension(law, body, problem);
   }
 
 

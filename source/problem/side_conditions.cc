@@ -36,7 +36,9 @@ namespace limber
       using Detail                       = SideDetail;
       static const Words<SideKind> words = {
         {"free", SideKind{Held::none}, "nothing is prescribed"},
-        {"slip", SideKind{Held::normal}, "no velocity through the side"},
+        {"slip",
+         SideKind{Held::normal},
+         "no velocity through the side; solids that come to it later may leave it again"},
         {"no slip", SideKind{Held::all}, "no velocity"},
         {"separating",
          SideKind{Held::normal, Detail::none, true},

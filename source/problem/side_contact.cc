@@ -1,69 +1,121 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/problem/body_at_sides.h>
 #include <limber/problem/half_space.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/side_contact.h>
+
+#include <algorithm>
 
 namespace limber
 {
   namespace
   {
-    /** Why nodes feel one-sided sides, and not surfaces; empty if these do. */
+    /** Who flows without end of those that share the nodes of a body, itself
+     * included; null: nobody. */
     template <int dim>
-    std::string
-    why_at_nodes(const Body<dim> &body, const Problem<dim> &problem)
+    const Body<dim> *
+    who_flows(const Body<dim> &body, const Problem<dim> &problem)
     {
-      if (problem.method.integration != TimeIntegration::explicit_steps)
-        return "steps are not explicit";
-      if (filters_velocity(problem.method.transfer))
-        return "the transfer is 'fmpm' or 'xpic'";
       if (!body.keeps_surface)
-        return "its material flows without end";
+        return &body;
       for (const Body<dim> &other : problem.bodies)
         if (other.nodal_field == body.nodal_field && !other.keeps_surface)
-          return "it shares nodes with body " + in_quotes(other.name) +
-                 ", which flows without end";
-      return "";
+          return &other;
+      return nullptr;
     }
   } // namespace
 
 
 
-  // What rolls or slides needs the surface, or its friction has the wrong arm;
-  // an impact on nodes is softer and loses less.
+  template <int dim>
+  std::string
+  why_at_nodes(const Body<dim> &body, const Problem<dim> &problem)
+  {
+    if (problem.method.integration != TimeIntegration::explicit_steps)
+      return "steps are not explicit";
+    if (filters_velocity(problem.method.transfer))
+      return "the transfer is 'fmpm' or 'xpic'";
+    const Body<dim> *const flowing = who_flows(body, problem);
+    if (flowing == &body)
+      return "its material flows without end";
+    if (flowing != nullptr)
+      return "it shares nodes with body " + in_quotes(flowing->name) +
+             ", which flows without end";
+    return "";
+  }
+
+
+
+  // What lies at a side that slips is held there in both directions, as by a
+  // plane of symmetry.
+  template <int dim>
+  bool
+  may_be_hit(const unsigned int  side,
+             const bool          face_loads,
+             const Problem<dim> &problem)
+  {
+    const Side<dim> &wall = problem.sides[side];
+    if (wall.one_sided)
+      return true;
+    if (wall.held != HeldComponents::normal || !wall.velocity.empty())
+      return false;
+    const auto &bodies = problem.bodies;
+    return std::none_of(bodies.begin(),
+                        bodies.end(),
+                        [&](const Body<dim> &body) {
+                          return has_face_in(side, body, problem.grid) ||
+                                 is_held(body, problem);
+                        }) &&
+           !std::all_of(bodies.begin(),
+                        bodies.end(),
+                        [&](const Body<dim> &body) {
+                          return stays_clear(face_loads, body, problem);
+                        });
+  }
+
+
+
+  // Nodes stop what comes to a side from a cell before it on: a block that is
+  // slow against its waves then rebounds by a quarter too fast, and what rolls
+  // is braked (doc/theory/boundaries_and_loads.md).
   template <int dim>
   void
   choose_side_contact(Problem<dim> &problem)
   {
-    std::vector<std::string> rough, smooth; // names of sides
+    std::vector<std::string> hit, one_sided; // names
     for (unsigned int side = 0; side < 2 * dim; ++side)
-      if (problem.sides[side].one_sided)
-        (problem.sides[side].friction > 0 ? rough : smooth)
-          .push_back(in_quotes(side_names(dim)[side]));
+      {
+        Side<dim> &wall = problem.sides[side];
+        wall.may_be_hit =
+          may_be_hit(side, !problem.loads.faces.empty(), problem);
+        if (wall.may_be_hit)
+          hit.push_back(in_quotes(side_names(dim)[side]));
+        if (wall.one_sided)
+          one_sided.push_back(hit.back());
+      }
     bool any = false;
     for (Body<dim> &body : problem.bodies)
       {
         const std::string reason = why_at_nodes(body, problem);
         body.meets_sides         = reason.empty();
         any                      = any || body.meets_sides;
-        if (body.is_liquid)
-          continue;
-        const std::string feels = "Body " + in_quotes(body.name) + " feels ";
-        if (!rough.empty() && !reason.empty())
-          problem.notes.push_back(feels + join(rough, ", ") + " at nodes, as " +
-                                  reason +
-                                  ": it may end up to a cell before the side, "
-                                  "and is braked by a quarter if it rolls (8 "
-                                  "cells over its radius).");
-        if (!smooth.empty())
+        // In a tank the sides that slip are those of what flows.
+        const auto &names = who_flows(body, problem) ? one_sided : hit;
+        if (!body.is_liquid && !reason.empty() && !names.empty())
           problem.notes.push_back(
-            feels + join(smooth, ", ") +
-            " at nodes, where impacts lose least: it may end up to a cell "
-            "before the side, and what turns there is braked. For that, a "
-            "'half-space' as obstacle touches its surface.");
+            "Body " + in_quotes(body.name) + " feels " + join(names, ", ") +
+            " at nodes, as " + reason +
+            ": it may end up to a cell before the side, rebounds up to a "
+            "quarter too fast, and is braked by a quarter if it rolls (8 cells "
+            "over its radius).");
+        if (body.meets_sides && !hit.empty())
+          problem.notes.push_back("Body " + in_quotes(body.name) + " feels " +
+                                  join(hit, ", ") +
+                                  " where its material ends.");
       }
     for (Side<dim> &side : problem.sides)
-      side.meets_surfaces = side.one_sided && side.friction > 0 && any;
+      side.meets_surfaces = side.may_be_hit && any;
   }
 
 
@@ -99,8 +151,16 @@ namespace limber
 
 
 
+  template bool
+  may_be_hit(unsigned int, bool, const Problem<2> &);
+  template std::string
+  why_at_nodes(const Body<2> &, const Problem<2> &);
   template void
   choose_side_contact(Problem<2> &);
+  template bool
+  may_be_hit(unsigned int, bool, const Problem<3> &);
+  template std::string
+  why_at_nodes(const Body<3> &, const Problem<3> &);
   template void
                     choose_side_contact(Problem<3> &);
   template Sides<2> sides_at_nodes(Sides<2>);

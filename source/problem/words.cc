@@ -247,8 +247,8 @@ namespace limber
        Frame::automatic,
        "'initial' for one elastic body, with implicit and quasi-static steps "
        "also one of metal or several that are one piece, with quasi-static ones "
-       "of any solid, that a side holds or that has no walls to meet, else "
-       "'current'"},
+       "of any solid, that a side holds or that has no walls to meet, and for "
+       "compact rubber that meets smooth ones; else 'current'"},
       {"current",
        Frame::current,
        "where the points are: bodies may flow, meet and cross cells"},

@@ -17,6 +17,8 @@ namespace limber
     // And by that share of an edge by what was so many edges from it at the
     // start: next to what is held a body that is bent or pressed bulges.
     constexpr double widest_bulge = 0.5, neighbourhood = 2;
+    // And by that share by points at a surface that feels the side.
+    constexpr double deepest_dent = 0.5;
 
 
 
@@ -88,6 +90,20 @@ namespace limber
               continue;
             const std::string name = side_names(dim)[side];
             const std::string who = "Body " + in_quotes(body->description.name);
+            if (wall.meets_surfaces &&
+                state.problem.meets_sides(body->description.nodal_field))
+              {
+                if (most > deepest_dent * edge)
+                  throw ComputationError(
+                    who + " has been pressed through the side '" + name +
+                      "' by " + brief(most) + " m at time " +
+                      brief(state.time) +
+                      " s. Usually the steps are too long for what hits it. "
+                      "Lower 'Method/Courant number', or 'Time step' if it is "
+                      "set, or take smaller cells.",
+                    FailureKind::passed_side);
+                continue;
+              }
             const std::string how =
               " the side '" + name + "' by " + brief(most) + " m at time " +
               brief(state.time) +

@@ -94,6 +94,20 @@ namespace limber
          << integrator->longest_step() << " s, to end time " << problem.end_time
          << " s";
     console.say(text.str());
+    if (problem.method.integration == TimeIntegration::explicit_steps)
+      {
+        const auto   speeds = integrator->state();
+        const double number = integrator->longest_step() *
+                              (speeds.wave_speed + speeds.point_speed) /
+                              grid.smallest_edge;
+        if (number > 1 + 1e-6)
+          console.warn("The first step has Courant number " + brief(number) +
+                       ": explicit steps beyond 1 become unstable. Set "
+                       "'Method/" +
+                       (problem.method.time_step > 0 ?
+                          "Time step = 0'." :
+                          "Courant number = 0.4'."));
+      }
     for (const FaceLoad<dim> &load : problem.loads.faces)
       for (const auto &body : problem.bodies)
         if (body.name == load.body)

@@ -76,6 +76,22 @@ namespace limber
 
 
 
+  // In the initial frame points are not asked, and nodes of hardly any mass
+  // never are.
+  template <int dim>
+  double
+  ExplicitIntegrator<dim>::longest_way() const
+  {
+    double edge = 0; // the longest of a cell
+    for (int d = 0; d < dim; ++d)
+      edge = std::max(edge, parts.problem.grid.edge(d));
+    return std::max({extremes.displacement * edge,
+                     fastest_node * parts.grid.smallest_edge,
+                     point_speed * step});
+  }
+
+
+
   template <int dim>
   void
   ExplicitIntegrator<dim>::find_speeds()
@@ -154,6 +170,8 @@ namespace limber
     shifting.follow(extremes.displacement);
     wave_speed  = std::sqrt(extremes.wave_squared);
     point_speed = std::sqrt(extremes.speed_squared);
+    if (obstacles)
+      obstacles->approach(longest_way());
     lap(Verb::relocate);
     return step;
   }

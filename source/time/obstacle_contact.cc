@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/array_view.h>
+
 #include <limber/grid/node_vector.h>
 #include <limber/interpolation/point_support.h>
 #include <limber/problem/side_contact.h>
@@ -9,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace limber
 {
@@ -16,6 +20,19 @@ namespace limber
   {
     // With four, water at rest starts with .03 g, with these .002 g.
     constexpr unsigned int passes_of_surfaces = 16;
+
+
+
+    /** Of a place in the box, m. */
+    template <int dim>
+    double
+    distance_from_side(const GridDescription<dim> &box,
+                       const unsigned int          side,
+                       const dealii::Point<dim>   &place)
+    {
+      const unsigned int d = side / 2;
+      return side % 2 == 0 ? place[d] - box.lower[d] : box.upper[d] - place[d];
+    }
 
 
 
@@ -57,7 +74,7 @@ namespace limber
           rigid.push_back(half_space_beyond(side, parts.problem));
           sides_that_meet.push_back(side);
         }
-    cell_distance.resize(rigid.size());
+    cell_distance.resize(n_obstacles());
     parts.ledger.obstacles.resize(n_obstacles());
     for (const auto &body : parts.bodies)
       {
@@ -91,6 +108,7 @@ namespace limber
     touches.clear();
     for (auto &distances : cell_distance)
       distances.reinit(std::size_t(parts.grid.n_cells()) * (1 + dim));
+    room.assign(parts.bodies.size(), 0.);
     const bool any_liquid =
       std::any_of(parts.bodies.begin(), parts.bodies.end(), [](auto &body) {
         return body->description.is_liquid;
@@ -116,6 +134,29 @@ namespace limber
 
 
 
+  // A body that is far from all sides is not looked at until it may have come
+  // near; on no rank, as points change ranks.
+  template <int dim>
+  void
+  ObstacleContact<dim>::find_points_at_sides(const std::vector<Way> &ways,
+                                             const double            step)
+  {
+    bool any_looks = false; // the same on all ranks
+    for (unsigned int b = 0; b < parts.bodies.size(); ++b)
+      {
+        if (room[b] > 0)
+          continue;
+        room[b]   = find_points(b, ways, step);
+        any_looks = true;
+      }
+    if (any_looks)
+      dealii::Utilities::MPI::min(dealii::make_array_view(std::as_const(room)),
+                                  parts.grid.communicator,
+                                  dealii::make_array_view(room));
+  }
+
+
+
   template <int dim>
   void
   ObstacleContact<dim>::find(const double time, const double step)
@@ -132,8 +173,11 @@ namespace limber
                         ObstaclePlace<dim>(rigid[o], time + step)});
       }
     clear_sums();
-    for (unsigned int b = 0; b < parts.bodies.size(); ++b)
-      find_points(b, ways, step);
+    if (n_obstacles() == 0)
+      find_points_at_sides(ways, step);
+    else
+      for (unsigned int b = 0; b < parts.bodies.size(); ++b)
+        find_points(b, ways, step);
     add_nodes(ways, step);
     if (!sides_that_meet.empty())
       for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
@@ -150,6 +194,17 @@ namespace limber
     if (cut_cells && cut_cells->any())
       return impulses.finish_adding({}, passes_of_surfaces);
     impulses.finish_adding();
+  }
+
+
+
+  // Twice, as what bounds the way is the speed at one end of a step.
+  template <int dim>
+  void
+  ObstacleContact<dim>::approach(const double way)
+  {
+    for (double &of_body : room)
+      of_body -= 2 * way;
   }
 
 
@@ -226,11 +281,12 @@ namespace limber
 
 
 
-  // Only points in cells that are as near as their material reaches and a
-  // point are asked; twice as far, as the distance from what a formula tells
+  // Returns how far the others are from touching a side at least, m. Only
+  // points in cells that are as near as their material reaches and a point are
+  // asked; twice as far, as the distance from what a formula tells
   // is of first order.
   template <int dim>
-  void
+  double
   ObstacleContact<dim>::find_points(const unsigned int      body,
                                     const std::vector<Way> &ways,
                                     const double            step)
@@ -242,15 +298,27 @@ namespace limber
       parts.problem.meets_sides(parts.bodies[body]->description.nodal_field) ?
         rigid.size() :
         n_obstacles();
-    std::vector<unsigned int> asked; // obstacles
+    double nearest = std::numeric_limits<double>::max(); // to a side
+    std::vector<unsigned int> asked;                     // obstacles
     for_each_batch(points, [&](const CellBatch &batch) {
       double                   reach;
       const dealii::Point<dim> middle = middle_of(points, batch, reach);
       asked.clear();
-      for (unsigned int o = 0; o < n_met; ++o)
+      for (unsigned int o = 0; o < n_obstacles(); ++o)
         if (!is_beyond(
               2 * (reach + edge[body]), o, ways[o].before, middle, batch.cell))
           asked.push_back(o);
+      for (unsigned int o = n_obstacles(); o < n_met; ++o)
+        {
+          const double between =
+            distance_from_side(parts.problem.grid,
+                               sides_that_meet[o - n_obstacles()],
+                               middle) -
+            (reach + 2 * edge[body]);
+          nearest = std::min(nearest, between);
+          if (between <= 0)
+            asked.push_back(o);
+        }
       if (asked.empty())
         return;
 
@@ -291,6 +359,7 @@ namespace limber
             }
         }
     });
+    return nearest;
   }
 
 

@@ -20,6 +20,11 @@ namespace limber
     constexpr double put_back_limit = 0.01, put_back_place = 1e-6,
                      round_off = 1e-9;
 
+    // The same of a body that feels a side at its surface: the material of a
+    // point may be thinner than it is pressed in for some steps. What goes less
+    // far than the last is nothing to tell.
+    constexpr double limit_at_surface = 0.5, usual_at_surface = 0.01;
+
 
 
     /** Whether material cannot pass a side, which stays where it is. */
@@ -32,36 +37,46 @@ namespace limber
 
 
 
-    /** The place inside the box of a point that is hardly beyond closed sides
-     * of it; others keep theirs. @p beyond: how far it was, cells. */
+    /** Where points of a body are put that are hardly beyond closed sides. */
     template <int dim>
-    std::array<double, dim>
+    struct PlaceInside
+    {
+      std::array<double, dim> x;
+      // How far beyond them a point was, cells; 0: not worth telling
+      double beyond = 0;
+    };
+
+    template <int dim>
+    PlaceInside<dim>
     place_inside(const Problem<dim>   &problem,
+                 const Body<dim>      &body,
                  const PointView<dim> &points,
-                 const std::size_t     p,
-                 double               &beyond)
+                 const std::size_t     p)
     {
       const GridDescription<dim> &box = problem.grid;
-      std::array<double, dim>     x;
-      beyond = 0;
-      for (int d = 0; d < dim; ++d)
+      PlaceInside<dim>            result;
+      for (unsigned int side = 0; side < 2 * dim; ++side)
         {
-          x[d]              = points.position[d][p];
-          const double edge = box.edge(d), allowed = put_back_limit * edge;
-          if (holds_material(problem.sides[2 * d]) && x[d] < box.lower[d] &&
-              x[d] > box.lower[d] - allowed)
-            {
-              beyond = std::max(beyond, (box.lower[d] - x[d]) / edge);
-              x[d]   = box.lower[d] + put_back_place * edge;
-            }
-          if (holds_material(problem.sides[2 * d + 1]) &&
-              x[d] >= box.upper[d] && x[d] < box.upper[d] + allowed)
-            {
-              beyond = std::max(beyond, (x[d] - box.upper[d]) / edge);
-              x[d]   = box.upper[d] - put_back_place * edge;
-            }
+          const unsigned int d    = side / 2;
+          const bool         low  = side % 2 == 0;
+          const double       edge = box.edge(d);
+          double            &x    = result.x[d];
+          if (low)
+            x = points.position[d][p];
+          const double beyond =
+            (low ? box.lower[d] - x : x - box.upper[d]) / edge;
+          const Side<dim> &wall = problem.sides[side];
+          const bool       at_surface =
+            wall.meets_surfaces && problem.meets_sides(body.nodal_field);
+          if (!holds_material(wall) || beyond < 0 || (low && beyond == 0) ||
+              beyond >= (at_surface ? limit_at_surface : put_back_limit))
+            continue;
+          x = low ? box.lower[d] + put_back_place * edge :
+                    box.upper[d] - put_back_place * edge;
+          if (beyond > (at_surface ? usual_at_surface : round_off))
+            result.beyond = std::max(result.beyond, beyond);
         }
-      return x;
+      return result;
     }
 
 
@@ -113,19 +128,19 @@ namespace limber
           for (std::size_t p = 0; p < points.size; ++p)
             if (points.cell[p] == invalid_cell)
               {
-                double     beyond; // cells
-                const auto x = place_inside(parts.problem, points, p, beyond);
-                const std::uint32_t cell = grid.bins.cell_at(x);
+                const PlaceInside<dim> inside =
+                  place_inside(parts.problem, body->description, points, p);
+                const std::uint32_t cell = grid.bins.cell_at(inside.x);
                 if (cell == invalid_cell)
                   continue;
                 for (int d = 0; d < dim; ++d)
-                  points.position[d][p] = x[d];
+                  points.position[d][p] = inside.x[d];
                 points.cell[p] = cell;
                 enter_cell(grid, *body, points, p);
-                if (beyond > round_off)
+                if (inside.beyond > 0)
                   {
                     parts.ledger.put_back += 1;
-                    parts.ledger.put_back_way += beyond;
+                    parts.ledger.put_back_way += inside.beyond;
                   }
               }
         }

@@ -30,6 +30,12 @@ namespace limber
 
 
 
+  /** Whether a formula asks for the time t. */
+  bool
+  asks_for_time(const std::string &formula);
+
+
+
   /**
    * A formula of place and time from the scene: components separated by ';',
    * written in x, y (, z), t, pi and named constants, in the language of

@@ -45,6 +45,7 @@ namespace limber
     bool         is_plastic      = false; // may flow plastically
     bool         keeps_surface   = true;  // see Body
     bool         is_split        = false; // where it is stretched
+    bool         stays_in_cells  = false; // 'Frame = initial'
     unsigned int points_per_edge = 2;     // the smallest of all directions
     KernelKind   kernel          = KernelKind::linear;
 

@@ -184,6 +184,14 @@ namespace limber
   void
   choose_frames_and_kernel(const Section &root, Problem<dim> &problem);
 
+  /**
+   * Notes for the log on what frame and kernel of solids do badly: bending
+   * across the cells, torsion, rotation (source/problem/solid_motion.cc).
+   */
+  template <int dim>
+  void
+  warn_of_solid_motion(Problem<dim> &problem);
+
   /** Needs grid, sides and gravity; chooses the kernel with the frames. */
   template <int dim>
   void
@@ -209,18 +217,24 @@ namespace limber
   bool
   is_upright(const Shape<dim> &shape);
 
+  /** What the surfaces of bodies may meet in a scene. */
+  struct Meetings
+  {
+    bool obstacles = false;
+    bool bodies    = false; // each other, in pairs
+    bool sides     = false; // which are felt like obstacles
+  };
+
   /**
-   * How many points a body has, and where; its shape and kernel are known.
-   * @p touches: there are obstacles or bodies that touch each other;
-   * @p beside_obstacles: there are obstacles.
+   * How many points a body has, and where; its shape and kernel are known, and
+   * what it @p meets.
    */
   template <int dim>
   void
-  read_placement(const Section &section,
-                 bool           touches,
-                 bool           beside_obstacles,
-                 Body<dim>     &body,
-                 Problem<dim>  &problem);
+  read_placement(const Section  &section,
+                 const Meetings &meets,
+                 Body<dim>      &body,
+                 Problem<dim>   &problem);
 
   // Contact of bodies (source/problem/read_contact.cc)
 

@@ -37,6 +37,9 @@ namespace limber
     // friction coefficient times J_n against the motion (Coulomb).
     bool   one_sided = false;
     double friction  = 0;
+    // Something may come to it and leave it again: it is one-sided, or slips
+    // and no body lies at it at the start, while one may move there
+    bool may_be_hit = false;
     // Felt by bodies with 'meets_sides' where their material ends, as a
     // half-space would be (ObstacleContact), instead of by their nodes
     bool         meets_surfaces = false;

@@ -4,14 +4,31 @@
 
 #include <limber/problem/problem.h>
 
+#include <string>
+
 /** @file Sides of the box with friction that solids feel where they end. */
 namespace limber
 {
   /**
-   * Let solids feel one-sided sides with friction where their material ends
-   * (Body::meets_sides, Side::meets_surfaces); says in the log of which it is
-   * the nodes that feel them, and why. Method, bodies and their nodal fields
-   * are known.
+   * Whether something may come to a side and leave it again: it is one-sided,
+   * or it slips and no body lies at it with a face at the start, while one may
+   * move there. @p face_loads: the scene has some.
+   */
+  template <int dim>
+  bool
+  may_be_hit(unsigned int side, bool face_loads, const Problem<dim> &problem);
+
+  /** Why the nodes of a body feel sides that may be hit, and not its surface;
+   * empty if that does. */
+  template <int dim>
+  std::string
+  why_at_nodes(const Body<dim> &body, const Problem<dim> &problem);
+
+  /**
+   * Let solids feel the sides that they may hit (Side::may_be_hit) where their
+   * material ends (Body::meets_sides, Side::meets_surfaces); says in the log of
+   * which it is the nodes that feel them, and why. Method, bodies, their nodal
+   * fields and loads are known.
    */
   template <int dim>
   void

@@ -12,7 +12,8 @@ namespace limber
    * where it touched it at the start. Throws ComputationError where a point
    * has passed a side that is not free. What was next to that side at the start
    * may bulge by half a cell, with a warning; or go where it wants if the side
-   * moves, which takes it along.
+   * moves, which takes it along. A body that feels the side at its surface
+   * must not be pressed through it by half a cell.
    * Collective, a pass over the points of such bodies.
    */
   template <int dim>

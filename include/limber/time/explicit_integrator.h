@@ -209,6 +209,8 @@ namespace limber
     leapfrogs() const;
     void
     find_speeds();
+    double
+    longest_way() const;
     bool
     spread_points(double now);
     void

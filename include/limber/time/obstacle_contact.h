@@ -76,6 +76,11 @@ namespace limber
     void
     find(double time, double step);
 
+    /** No point has gone farther in the step than @p way, about, m; the same on
+     * all ranks. */
+    void
+    approach(double way);
+
     /** Whether anything presses or may do so; of this rank. */
     bool
     any() const
@@ -281,6 +286,8 @@ namespace limber
               const dealii::Point<dim> &middle,
               std::uint32_t             cell);
     void
+    find_points_at_sides(const std::vector<Way> &ways, double step);
+    double
     find_points(unsigned int body, const std::vector<Way> &ways, double step);
     void
     add_surface(unsigned int body,
@@ -334,9 +341,12 @@ namespace limber
     std::vector<SurfacePlace> surface_places;
     std::vector<HeldNode>     nodes_held;
     std::vector<Wall>         walls; // of the point that is put out
-    // From the middles of what is in cells when they asked, m, 0 where nobody
-    // has; and where these were in the frame of the obstacle then
+    // Of an obstacle, from the middles of what is in cells when they asked, m,
+    // 0 where nobody has; and where these were in its frame then
     std::vector<LazyArray<double>> cell_distance;
+    // Of bodies, where there are sides alone: how far they still are from
+    // touching one, m
+    std::vector<double> room;
     // Where the nodes are, in scenes with liquids, if they are vertices
     std::vector<dealii::Point<dim>> vertices;
     // Of obstacles at rest, then by node: whether it is in them (2) or not (1)

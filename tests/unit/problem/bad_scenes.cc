@@ -571,6 +571,9 @@ namespace
 
 
   const std::vector<BadScene> bad_formulas = {
+    {"InitialVelocityInTime",
+     {"Body beam/Initial velocity=sin(t); 0"},
+     {"'sin(t); 0'", "time t", "'Initial velocity'"}},
     {"FormulaComponents",
      {"Body beam/Initial velocity=1"},
      {"'1'", "1 components", "'0; 0'"}},

@@ -605,3 +605,45 @@ TEST(Choices, SlowTorsionIsNoted)
               "1.4, 1; 0, 0, 2; 2.1, 2.1, 2; 1.4, 2.8, 2; 0, 1.4, 2",
               "Grid/Cells=20, 12, 12"}));
 }
+
+
+
+// Tension is not given by cohesion alone: the log says how much could be borne.
+TEST(Choices, CohesionWithoutTensionIsTold)
+{
+  const auto told = [](std::vector<std::string> changes) {
+    changes.emplace_back("Body block/Material=drucker prager");
+    changes.emplace_back("Body block/Drucker prager/Friction angle=45");
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("'Tensile strength' gives it some, at most 500 Pa") !=
+             std::string::npos;
+    });
+  };
+  const std::string law = "Body block/Drucker prager/";
+  EXPECT_TRUE(told({law + "Cohesion=500"}));
+  EXPECT_FALSE(told({law + "Cohesion=500", law + "Tensile strength=100"}));
+  EXPECT_FALSE(told({}));
+}
+
+
+
+// A solid that turns through cells loses its spin with FLIP.
+TEST(Choices, RotationInTheCurrentFrameIsTold)
+{
+  const auto told = [](std::vector<std::string> changes) {
+    changes.emplace_back("End time=1");
+    changes.emplace_back("Method/Kernel=quadratic");
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("makes 0.5 turns") != std::string::npos &&
+             note.find("'Method/Transfer = aflip'") != std::string::npos;
+    });
+  };
+  const std::string spin    = "Body block/Initial velocity=7 - pi*y; pi*x",
+                    current = "Body block/Frame=current";
+  EXPECT_TRUE(told({spin, current}));
+  EXPECT_FALSE(told({spin, current, "Method/Transfer=aflip"}));
+  EXPECT_FALSE(told({spin, "Body block/Frame=initial"}));
+  EXPECT_FALSE(told({"Body block/Initial velocity=pi*x; -pi*y", current}));
+}

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <limber/base/text.h>
+#include <limber/problem/body_at_sides.h>
+#include <limber/problem/read_parts.h>
+#include <limber/problem/words.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+/** @file Notes on motions of solids that frame and kernel do badly. */
+namespace limber
+{
+  namespace
+  {
+    // A bar n cells thick vibrates in torsion slower by this over n^2
+    // (doc/theory/initial_frame.md).
+    constexpr double torsion_of_linear = 1.5, torsion_of_splines = 3.3;
+
+    // In which FLIP loses what is worth telling of the spin.
+    constexpr double fewest_turns = 0.1;
+
+
+
+    /**
+     * What bends with linear functions and does not creep is right only if
+     * it bends along the axes of the cells: else they have no field of
+     * constant curvature.
+     */
+    template <int dim>
+    void
+    warn_of_bending_across_cells(Problem<dim> &problem)
+    {
+      if (problem.grid.kernel != KernelKind::linear)
+        return;
+      const bool is_newton = is_solved_by_newton(problem.method.integration);
+      for (const auto &body : problem.bodies)
+        if (!body.is_liquid && !body.is_plastic && !is_upright(*body.shape) &&
+            (body.frame == Frame::initial || is_newton))
+          problem.notes.push_back(
+            "Body " + in_quotes(body.name) +
+            ": where it bends across the cells, linear functions store too "
+            "little energy, 20 % two cells deep, 6 % four, 2 % eight. Set " +
+            (body.frame == Frame::current ||
+                 !problem.grid.against_splines.empty() ?
+               "more" :
+               "'Method/Kernel = quadratic', or more") +
+            " 'Grid/Cells', if it is thin.");
+    }
+    /** Of the initial velocity of a body: its mean spin, about, 1/s. From
+     * places on a lattice. */
+    template <int dim>
+    double
+    spin(const Body<dim> &body)
+    {
+      if (body.initial_velocity.empty())
+        return 0;
+      constexpr unsigned int              n   = dim == 2 ? 24 : 10;
+      const Corners<dim>                  box = body.shape->bounding_box();
+      std::vector<dealii::Point<dim>>     places;
+      std::vector<dealii::Tensor<1, dim>> velocities;
+      dealii::Tensor<1, dim>              place_sum, velocity_sum;
+      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim); ++i)
+        {
+          dealii::Point<dim> place;
+          for (unsigned int d = 0, rest = i; d < dim; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (!body.shape->contains(place))
+            continue;
+          places.push_back(place);
+          velocities.push_back(body.initial_velocity.vector(place, 0));
+          place_sum += place;
+          velocity_sum += velocities.back();
+        }
+      std::array<double, 3> momentum{};
+      double                squares = 0; // of the distance from the centre
+      for (std::size_t i = 0; i < places.size(); ++i)
+        {
+          const dealii::Tensor<1, dim> x = places[i] -
+                                           place_sum / double(places.size()),
+                                       v = velocities[i] -
+                                           velocity_sum / double(places.size());
+          squares += x * x;
+          for (unsigned int a = 0; a < dim; ++a)
+            for (unsigned int b = a + 1; b < dim; ++b)
+              momentum[a + b - 1] += x[a] * v[b] - x[b] * v[a];
+        }
+      double norm = 0;
+      for (const double component : momentum)
+        norm += component * component;
+      // in space the moment of a ball
+      return squares > 0 ? std::sqrt(norm) / (2. / dim * squares) : 0;
+    }
+
+
+
+    /**
+     * FLIP gives rows of points that turn through the cells the mean of the
+     * velocity next to them, and what is lost of the spin becomes vibration
+     * (doc/theory/transfers.md).
+     */
+    template <int dim>
+    void
+    warn_of_rotation(Problem<dim> &problem)
+    {
+      if (problem.method.transfer != Transfer::flip ||
+          !is_spline(problem.grid.kernel))
+        return;
+      for (const Body<dim> &body : problem.bodies)
+        {
+          if (body.is_liquid || body.frame == Frame::initial)
+            continue;
+          const double turns =
+            spin(body) * problem.end_time / (2 * dealii::numbers::PI);
+          if (turns > fewest_turns)
+            problem.notes.push_back(
+              "Body " + in_quotes(body.name) + " makes " + brief(turns) +
+              " turns, if nothing stops it: with the transfer 'flip' and few "
+              "cells over its width it falls behind, and its spin becomes "
+              "noise. 'Method/Transfer = aflip' keeps it.");
+        }
+    }
+
+
+
+    /**
+     * Variances of the places inside a shape along its principal axes, the
+     * largest first, m^2: L^2 / 12 of an edge L. From places on a lattice.
+     */
+    std::array<double, 3>
+    principal_variances(const Shape<3> &shape)
+    {
+      constexpr unsigned int        n   = 24;
+      const Corners<3>              box = shape.bounding_box();
+      dealii::Tensor<1, 3>          sum;
+      dealii::SymmetricTensor<2, 3> squares;
+      double                        count = 0;
+      for (unsigned int i = 0; i < n * n * n; ++i)
+        {
+          dealii::Point<3> place;
+          for (unsigned int d = 0, rest = i; d < 3; ++d, rest /= n)
+            place[d] = box.first[d] +
+                       (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
+          if (!shape.contains(place))
+            continue;
+          const dealii::Tensor<1, 3> x = place - box.first;
+          sum += x;
+          squares += symmetrize(outer_product(x, x));
+          ++count;
+        }
+      if (count == 0)
+        return {};
+      return eigenvalues(squares / count -
+                         symmetrize(outer_product(sum, sum)) / (count * count));
+    }
+
+
+
+    /**
+     * Nodes carry the mass of points h^2/6 further out (mean square, with
+     * linear functions; h^2/4 with splines), which slows what turns: in torsion
+     * a bar that is n cells thick by about twice that share of its polar moment
+     * (doc/theory/initial_frame.md).
+     */
+    template <int dim>
+    void
+    warn_of_torsion(Problem<dim> &problem)
+    {
+      if constexpr (dim == 3)
+        {
+          const bool linear = problem.grid.kernel == KernelKind::linear;
+          if (problem.method.integration == TimeIntegration::quasi_static ||
+              !(linear || problem.grid.kernel == KernelKind::quadratic))
+            return;
+          double edge = 0; // mean square
+          for (unsigned int d = 0; d < dim; ++d)
+            edge += problem.grid.edge(d) * problem.grid.edge(d) / dim;
+          edge = std::sqrt(edge) / (1 << problem.grid.levels);
+          for (const auto &body : problem.bodies)
+            {
+              if (body.is_liquid || !is_held(body, problem))
+                continue;
+              const auto   spread = principal_variances(*body.shape);
+              const double across = spread[1] + spread[2];
+              // of a square section; bars alone, twice as long as thick
+              const double n = std::sqrt(6 * across) / edge;
+              const double slowness =
+                (linear ? torsion_of_linear : torsion_of_splines) / (n * n);
+              if (spread[0] > 2 * across && slowness > 0.05)
+                problem.notes.push_back(
+                  "Body " + in_quotes(body.name) + ": about " +
+                  brief(std::round(10 * n) / 10) +
+                  " cells across, it vibrates in torsion some " +
+                  std::to_string(std::lround(100 * slowness)) +
+                  " % too slowly, as nodes carry the mass further out than "
+                  "points. If it twists, set more 'Grid/Cells'; the error "
+                  "falls with their square.");
+            }
+        }
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  warn_of_solid_motion(Problem<dim> &problem)
+  {
+    warn_of_bending_across_cells(problem);
+    warn_of_torsion(problem);
+    warn_of_rotation(problem);
+  }
+
+
+
+  template void
+  warn_of_solid_motion(Problem<2> &);
+  template void
+  warn_of_solid_motion(Problem<3> &);
+} // namespace limber
