@@ -51,6 +51,9 @@ namespace limber
                "'Method/Kernel = quadratic', or more") +
             " 'Grid/Cells', if it is thin.");
     }
+
+
+
     /** Of the initial velocity of a body: its mean spin, about, 1/s. From
      * places on a lattice. */
     template <int dim>
