@@ -12,17 +12,6 @@ namespace limber
 {
   namespace
   {
-    std::string
-    lower_case(std::string text)
-    {
-      std::transform(text.begin(), text.end(), text.begin(), [](const char c) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      });
-      return text;
-    }
-
-
-
     /**
      * Damerau and Levenshtein's distance: how many letters have to be
      * changed, added, removed or swapped with their neighbour.
@@ -48,6 +37,17 @@ namespace limber
       return d[a.size()][b.size()];
     }
   } // namespace
+
+
+
+  std::string
+  lower_case(std::string text)
+  {
+    std::transform(text.begin(), text.end(), text.begin(), [](const char c) {
+      return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    });
+    return text;
+  }
 
 
 

@@ -124,7 +124,9 @@ namespace limber
   // points bring against that is lost, as in an impact. With points that it
   // keeps, the stress works with the mean velocity of the step, and so does the
   // side; where it accelerates, its points do so from a velocity of their own.
-  // Friction works with the mean velocity where the node goes on sliding.
+  // Friction works with the mean velocity where the node goes on sliding; what
+  // it brings to rest is lost, as in an impact. Where several sides hold a
+  // component, the last one bears the loss.
   template <int dim>
   typename BoundaryConditions<dim>::Action
   BoundaryConditions<dim>::action(const unsigned int side,
@@ -132,6 +134,7 @@ namespace limber
                                   const Velocity    &former_change,
                                   const Velocity    &velocity,
                                   const Velocity    &increment,
+                                  const LastSides   &last_sides,
                                   const double       mass,
                                   const double       flip_share) const
   {
@@ -148,12 +151,11 @@ namespace limber
         else if (is_friction && velocity[d] != 0)
           result.friction -=
             mass * change[d] * (velocity[d] - 0.5 * increment[d]);
-        else if (is_friction && change[d] != 0)
-          result.friction += 0.5 * mass * increment[d] * increment[d];
         else if (change[d] != 0)
           {
             result.work += mass * change[d] * velocity[d];
-            result.loss += 0.5 * mass * increment[d] * increment[d];
+            if (last_sides[d] == side)
+              result.loss += 0.5 * mass * increment[d] * increment[d];
           }
         result.transfer_work +=
           mass * (1 - flip_share) * former_change[d] * velocity[d];
@@ -217,11 +219,15 @@ namespace limber
         Velocity                      velocity = free_velocity;
         Velocity                      former   = brought;
         std::array<Velocity, 2 * dim> change, former_change;
+        LastSides                     last_sides{};
         for (auto c = first; c != last; ++c)
           {
             const Velocity before = velocity;
             act(*c, velocity);
             change[c->side] += velocity - before;
+            for (int d = 0; d < dim; ++d)
+              if (velocity[d] != before[d])
+                last_sides[d] = c->side;
             if (step.keeps_points && !c->one_sided)
               {
                 const double value = former_values[&*c - list];
@@ -243,6 +249,7 @@ namespace limber
                            former_change[side],
                            velocity,
                            increment,
+                           last_sides,
                            mass,
                            step.flip_share));
             if (sides[side].friction > 0)

@@ -39,8 +39,8 @@ namespace limber
       if (kind == std::end(element_kinds))
         words.refuse("The kind of element " + in_quotes(found) +
                        " is not known",
-                     "Usually the mesh has elements of higher order. Save "
-                     "quadrilaterals or hexahedra of order 1.");
+                     "Usually it is of higher order, a polygon, a pixel or a "
+                     "voxel. Save quadrilaterals or hexahedra of order 1.");
       return *kind;
     }
 
@@ -308,6 +308,10 @@ namespace limber
       read_vtk(words, mesh);
     else if (ending == ".inp")
       {
+        if (!text.empty() && text.front() == '*')
+          words.refuse("The file begins with '*', as those of Abaqus do",
+                       "Of files 'inp' those of UCD (AVS) are read. Save it as "
+                       "vtk or msh.");
         skip_remarks(text, words);
         read_ucd(words, mesh);
       }

@@ -97,7 +97,7 @@ namespace limber
       {
         while (next_line())
           {
-            if (words[0] == "solid" || words[0] == "endsolid")
+            if (begins_with("solid") || begins_with("endsolid"))
               continue;
             expect("facet");
             const std::size_t line = lines.number;
@@ -128,6 +128,13 @@ namespace limber
         return false;
       }
 
+      /** Some programs write them in capitals. */
+      bool
+      begins_with(const std::string &word) const
+      {
+        return lower_case(std::string(words[0])) == word;
+      }
+
       void
       next_of_facet(const std::string &word)
       {
@@ -144,7 +151,7 @@ namespace limber
       void
       expect(const std::string &word) const
       {
-        if (words[0] != word)
+        if (!begins_with(word))
           throw InputError("Line " + std::to_string(lines.number) +
                            " of the STL file " + file.name() + " begins with " +
                            in_quotes(std::string(words[0])) + " instead of " +
@@ -185,12 +192,14 @@ namespace limber
           bytes.size() ==
             header + std::size_t(number_at(file, header - 4)) * facet_size)
         return read_binary(file);
-      const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-      if (first != std::string::npos && bytes.compare(first, 5, "solid") == 0)
+      const std::size_t first   = bytes.find_first_not_of(" \t\r\n");
+      const bool        is_text = bytes.find('\0') == std::string::npos;
+      if (first != std::string::npos && is_text &&
+          lower_case(bytes.substr(first, 5)) == "solid")
         return AsciiReader(file).read();
       throw InputError(
-        "The file " + file.name() + " is no STL: it does not begin with " +
-        "'solid', and its " + std::to_string(bytes.size()) +
+        "The file " + file.name() + " is no STL: it is no text that begins " +
+        "with 'solid', and its " + std::to_string(bytes.size()) +
         " bytes are not those of " +
         (bytes.size() >= header ?
            std::to_string(number_at(file, header - 4)) + " binary facets" :

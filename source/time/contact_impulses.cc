@@ -527,8 +527,10 @@ namespace limber
          held :
          -place.mass * (place.sticks ? velocity : (velocity * normal) * normal);
     const double all    = place.increase * holds - place.impulse * velocity;
-    const double across = (place.increase * normal) * (holds * normal) -
-                          (place.impulse * normal) * (velocity * normal);
+    const double across = place.sticks ?
+                            all :
+                            (place.increase * normal) * (holds * normal) -
+                              (place.impulse * normal) * (velocity * normal);
     loss.across += share * across;
     loss.along += share * (all - across);
   }

@@ -349,9 +349,10 @@ namespace limber
         part.cell  = cell;
         part.field = field;
         part.shares.assign(functions.n, 0.);
+        part.sizes.assign(functions.n, 0.);
       }
     functions.go_to(of_body, candidate.point);
-    functions.add_at_end_of(arm, weight, part.shares.data());
+    functions.add_at_end_of(arm, weight, part.shares.data(), part.sizes.data());
   }
 
 
@@ -365,7 +366,8 @@ namespace limber
       return;
     impulses.add_shares(part.field,
                         CellFunctions<dim, degree>::nodes_of(grid, part.cell),
-                        part.shares.data());
+                        part.shares.data(),
+                        part.sizes.data());
     part.cell = Part::no_cell;
   }
 

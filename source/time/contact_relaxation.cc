@@ -28,7 +28,7 @@ namespace limber
       for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
         {
           const Place  &place   = places[p];
-          const double  mass    = free_share(place, shares.all[k]) * place.mass;
+          const double  mass    = free_share(place, k) * place.mass;
           double *const of_node = &bears[shares.all[k].node * Borne::stride];
           of_node[Borne::all] += mass;
           for (int d = 0; d < dim; ++d) // what rubs acts along all of them
@@ -63,7 +63,7 @@ namespace limber
             // node no mass.
             if (inverse_mass[share.node] == 0)
               share.value = 0;
-            sum += free_share(places[p], share) *
+            sum += free_share(places[p], k) *
                    borne_along(places[p], share.node) *
                    inverse_mass[share.node];
           }
@@ -134,19 +134,20 @@ namespace limber
   template <int dim>
   double
   ContactImpulses<dim>::free_share(const Place      &place,
-                                   const PlaceShare &share) const
+                                   const std::size_t share) const
   {
-    const double value = std::abs(share.value);
-    if (held_components.empty() || held_components[share.node] == 0)
-      return value;
+    const double        size = share_sizes[share];
+    const std::uint32_t node = shares.all[share].node;
+    if (held_components.empty() || held_components[node] == 0)
+      return size;
     Vector free = place.normal;
     for (int d = 0; d < dim; ++d)
-      if (held_components[share.node] >> d & 1)
+      if (held_components[node] >> d & 1)
         free[d] = 0;
     const double norm = free.norm();
     if (norm < least_free)
       return 0;
-    return value * (place.friction > 0 ? 1 : norm);
+    return size * (place.friction > 0 ? 1 : norm);
   }
 
 

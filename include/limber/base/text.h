@@ -15,6 +15,9 @@ namespace limber
   std::string
   trimmed(const std::string &text);
 
+  std::string
+  lower_case(std::string text);
+
   /** The trimmed parts of @p text; an empty text has no parts. */
   std::vector<std::string>
   split(const std::string &text, const char separator);

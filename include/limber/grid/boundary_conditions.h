@@ -146,6 +146,8 @@ namespace limber
 
   private:
     using Velocity = dealii::Tensor<1, dim>;
+    // That changed each component of the velocity of a node
+    using LastSides = std::array<unsigned int, dim>;
 
     /** Which of the constraints act on the selected field. */
     unsigned int
@@ -173,13 +175,14 @@ namespace limber
                  Velocity        impulse,
                  const Velocity &velocity);
     Action
-    action(unsigned int    side,
-           const Velocity &change,
-           const Velocity &former_change,
-           const Velocity &velocity,
-           const Velocity &increment,
-           double          mass,
-           double          flip_share) const;
+    action(unsigned int     side,
+           const Velocity  &change,
+           const Velocity  &former_change,
+           const Velocity  &velocity,
+           const Velocity  &increment,
+           const LastSides &last_sides,
+           double           mass,
+           double           flip_share) const;
 
     /** The impulse of friction on an owned node that goes on sliding. */
     struct Rubbing

@@ -24,7 +24,7 @@ namespace limber
   /** What points lose where they touch something, J. */
   struct ContactLoss
   {
-    double across = 0; // the surface: that of the impact
+    double across = 0; // the surface: that of the impact; all, where they stick
     double along  = 0; // it: heat of friction
   };
 

@@ -7,6 +7,7 @@
 #include <limber/interpolation/spline_factors.h>
 #include <limber/points/point_view.h>
 
+#include <cmath>
 #include <type_traits>
 
 namespace limber
@@ -92,12 +93,14 @@ namespace limber
 
     /**
      * Add to each node k weight (N_k + arm . grad N_k): what its value has of
-     * that at the end of the arm, to first order.
+     * that at the end of the arm, to first order; and to the sizes how much
+     * this is.
      */
     void
     add_at_end_of(const dealii::Tensor<1, dim> &arm,
                   const double                  weight,
-                  double *const                 shares) const
+                  double *const                 shares,
+                  double *const                 sizes) const
     {
       Factors changes;
       for (int d = 0; d < dim; ++d)
@@ -114,8 +117,12 @@ namespace limber
               others *= values[2][j];
             }
           for (int i = 0; i < along; ++i)
-            shares[k + i] +=
-              values[0][i] * (others + change) + changes[0][i] * others;
+            {
+              const double share =
+                values[0][i] * (others + change) + changes[0][i] * others;
+              shares[k + i] += share;
+              sizes[k + i] += std::abs(share);
+            }
         }
     }
 

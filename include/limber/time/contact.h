@@ -321,7 +321,7 @@ namespace limber
 
       std::uint32_t       cell = no_cell;
       unsigned int        field;
-      std::vector<double> shares; // of the nodes of the cell
+      std::vector<double> shares, sizes; // of the nodes of the cell
     };
 
     const RunParts<dim> parts;

@@ -7,6 +7,7 @@
 #include <limber/state/ledger.h>
 #include <limber/transfer/place_sums.h>
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -108,41 +109,49 @@ namespace limber
     /**
      * Of the last place: nodes that it sees, by the offsets of their records in
      * the grid, with a_pi. A place has one share of a node, however often it is
-     * told.
+     * told. The sizes are sums of |a_pi| over the points that it comes from: of
+     * the share itself they would depend on how ranks have divided these.
      */
     template <class Offsets>
     void
     add_shares(const unsigned int  field,
                const Offsets      &offsets,
-               const double *const values)
+               const double *const values,
+               const double *const sizes)
     {
       if (!hanging.empty())
         {
           for (std::size_t k = 0; k < offsets.size(); ++k)
-            if (values[k] != 0)
-              add_share(field, offsets[k] / Layout::stride, values[k]);
+            if (sizes[k] != 0)
+              add_share(field,
+                        offsets[k] / Layout::stride,
+                        values[k],
+                        sizes[k]);
           return;
         }
       // The same as add_share_of_master(), without growing one by one.
       std::size_t end = shares.begin.back();
-      if (shares.all.size() < end + offsets.size())
-        shares.all.resize(2 * (end + offsets.size()));
+      grow(end + offsets.size());
       PlaceShare *const    all     = shares.all.data();
       std::uint32_t *const numbers = seen_as[field].data();
       for (std::size_t k = 0; k < offsets.size(); ++k)
         {
-          if (values[k] == 0)
+          if (sizes[k] == 0)
             continue;
           const std::uint32_t node = offsets[k] / Layout::stride;
           const std::uint32_t as =
             numbers[node] != 0 ? numbers[node] - 1 : see(field, node);
           std::uint32_t &after = after_share[as];
           if (after > first_share)
-            all[after - 1].value += values[k];
+            {
+              all[after - 1].value += values[k];
+              share_sizes[after - 1] += sizes[k];
+            }
           else
             {
-              all[end] = {as, values[k]};
-              after    = static_cast<std::uint32_t>(++end);
+              all[end]         = {as, values[k]};
+              share_sizes[end] = sizes[k];
+              after            = static_cast<std::uint32_t>(++end);
             }
         }
       shares.begin.back() = end;
@@ -153,13 +162,7 @@ namespace limber
               const std::uint32_t node,
               const double        value)
     {
-      if (hanging.empty() || hanging[node] == 0)
-        add_share_of_master(field, node, value);
-      else
-        for_each_master(node,
-                        [&](const std::uint32_t master, const double weight) {
-                          add_share_of_master(field, master, weight * value);
-                        });
+      add_share(field, node, value, std::abs(value));
     }
 
     /**
@@ -335,20 +338,49 @@ namespace limber
     }
 
     void
+    add_share(const unsigned int  field,
+              const std::uint32_t node,
+              const double        value,
+              const double        size)
+    {
+      if (hanging.empty() || hanging[node] == 0)
+        add_share_of_master(field, node, value, size);
+      else
+        for_each_master(
+          node, [&](const std::uint32_t master, const double weight) {
+            add_share_of_master(field, master, weight * value, weight * size);
+          });
+    }
+
+    /** Room for that many shares. */
+    void
+    grow(const std::size_t n)
+    {
+      if (shares.all.size() < n)
+        shares.all.resize(2 * n);
+      if (share_sizes.size() < n)
+        share_sizes.resize(2 * n);
+    }
+
+    void
     add_share_of_master(const unsigned int  field,
                         const std::uint32_t node,
-                        const double        value)
+                        const double        value,
+                        const double        size)
     {
       const std::uint32_t as    = see(field, node);
       std::uint32_t      &after = after_share[as];
       if (after > first_share)
-        shares.all[after - 1].value += value;
+        {
+          shares.all[after - 1].value += value;
+          share_sizes[after - 1] += size;
+        }
       else
         {
           const std::size_t end = shares.begin.back();
-          if (shares.all.size() == end)
-            shares.all.resize(2 * end + 16);
+          grow(end + 1);
           shares.all[end]     = {as, value};
+          share_sizes[end]    = size;
           shares.begin.back() = end + 1;
           after               = static_cast<std::uint32_t>(end + 1);
         }
@@ -400,7 +432,7 @@ namespace limber
     double
     borne_along(const Place &place, std::uint32_t node) const;
     double
-    free_share(const Place &place, const PlaceShare &share) const;
+    free_share(const Place &place, std::size_t share) const;
     void
     find_relaxation();
     void
@@ -432,6 +464,7 @@ namespace limber
     const bool                 leapfrogs;
     std::vector<Place>         places;
     PlaceShares                shares;
+    std::vector<double>        share_sizes; // of each share
     std::vector<Node>          seen;
     std::vector<std::uint32_t> after_share;        // 1 + the last of each, or 0
     std::size_t                first_share = 0;    // of the last place

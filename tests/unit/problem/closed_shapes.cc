@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <random>
 #include <sstream>
 
@@ -216,6 +218,18 @@ TEST(ClosedPolygon, SaysWhichLineIsWrong)
 
 
 
+TEST(ClosedSurface, WordsOfAnStlFileMayBeInCapitals)
+{
+  const TestFacets facets = icosphere(1, 0.8, Point<3>(1, 2, 3));
+  std::string      text   = ascii_stl(facets);
+  std::transform(text.begin(), text.end(), text.begin(), [](const char c) {
+    return static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  });
+  EXPECT_EQ(stl(text).facets, stl(ascii_stl(facets)).facets);
+}
+
+
+
 // 1280 triangles: volume as that of the facets, and within 2 % of the ball.
 TEST(ClosedSurface, OfASphereHasTheVolumeOfItsFacets)
 {
@@ -356,6 +370,8 @@ TEST(ClosedSurface, SaysWhichFacetIsWrong)
   expect_message(said(whole.substr(0, whole.find("outer", 1000))),
                  {"ends within facet"});
   expect_message(said("x" + binary.substr(1, 999)),
+                 {"no STL", "1000 bytes", "80 binary facets"});
+  expect_message(said("solid" + binary.substr(5, 995)),
                  {"no STL", "1000 bytes", "80 binary facets"});
   expect_message(said("solid nothing\nendsolid\n"), {"no facet"});
   expect_message(said("solid a\n facet normal 0 0 1\n  outer loop\n   vertex 0 "

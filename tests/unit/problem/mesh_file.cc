@@ -174,6 +174,7 @@ namespace
      replaced(ucd, "6 3 0 0 0", "6 99999999999 0 0 0"),
      {"99999999999", "elements"},
      ".inp"},
+    {"OfAbaqus", "*HEADING\n*NODE\n", {"Abaqus", "UCD"}, ".inp"},
     {"NoCount",
      replaced(vtk, "CELLS 2", "CELLS two"),
      {"'two'", "line 12"},
