@@ -3,31 +3,46 @@
 
 namespace limber
 {
+  namespace
+  {
+    /** Give cells and their points to ranks anew; the grid is not complete. */
+    template <int dim>
+    void
+    redistribute(BackgroundGrid<dim>                             &grid,
+                 std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
+    {
+      for (auto &body : bodies)
+        body->points.prepare_mesh_change();
+
+      // A cell without points takes memory but no time.
+      using Cell        = typename BackgroundGrid<dim>::Cell;
+      using Status      = typename dealii::Triangulation<dim>::CellStatus;
+      const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
+        unsigned int n = 0;
+        if (cell->is_active() && cell->is_locally_owned())
+          for (const auto &body : bodies)
+            n += body->points.n_in_cell(cell);
+        return 1 + 100 * n;
+      };
+      const auto connection = grid.triangulation.signals.weight.connect(weight);
+      grid.triangulation.repartition();
+      connection.disconnect();
+
+      grid.rebuild_cells();
+      for (auto &body : bodies)
+        body->points.finish_mesh_change();
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   balance(BackgroundGrid<dim>                             &grid,
           std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
   {
-    for (auto &body : bodies)
-      body->points.prepare_mesh_change();
-
-    // A cell without points takes memory but no time.
-    using Cell        = typename BackgroundGrid<dim>::Cell;
-    using Status      = typename dealii::Triangulation<dim>::CellStatus;
-    const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
-      unsigned int n = 0;
-      if (cell->is_active() && cell->is_locally_owned())
-        for (const auto &body : bodies)
-          n += body->points.n_in_cell(cell);
-      return 1 + 100 * n;
-    };
-    const auto connection = grid.triangulation.signals.weight.connect(weight);
-    grid.triangulation.repartition();
-    connection.disconnect();
-
-    grid.rebuild();
-    for (auto &body : bodies)
-      body->points.finish_mesh_change();
+    redistribute(grid, bodies);
+    grid.complete();
   }
 
 
@@ -51,21 +66,23 @@ namespace limber
           done = !grid.mark_towards(mesh);
         }
       grid.clear_marks();
-      grid.rebuild();
+      grid.rebuild_cells();
       for (auto &body : bodies)
         body->points.find_cells();
       return done;
     };
-    if (take_passes())
-      return true;
-
-    // Siblings are on several ranks if they were no siblings when cells were
-    // last given to ranks; that puts them together.
-    balance(grid, bodies);
-    grid.mark_towards(mesh);
-    AssertThrow(take_passes(),
-                dealii::ExcMessage("The mesh cannot become what it is wanted "
-                                   "to be."));
+    if (!take_passes())
+      {
+        // Parted siblings cannot be joined.
+        redistribute(grid, bodies);
+        grid.mark_towards(mesh);
+        AssertThrow(take_passes(),
+                    dealii::ExcMessage("The mesh cannot become what it is "
+                                       "wanted to be."));
+      }
+    if (grid.has_parted_siblings())
+      redistribute(grid, bodies);
+    grid.complete();
     return true;
   }
 

@@ -117,6 +117,16 @@ namespace limber
   void
   BackgroundGrid<dim>::rebuild()
   {
+    rebuild_cells();
+    complete();
+  }
+
+
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::rebuild_cells()
+  {
     {
       const Numbering numbering(*this);
       cells_owned      = numbering.cell_records.locally_owned_size();
@@ -128,6 +138,14 @@ namespace limber
       build_hanging_nodes(numbering);
     }
     build_bins();
+  }
+
+
+
+  template <int dim>
+  void
+  BackgroundGrid<dim>::complete()
+  {
     complete_boundary();
     if (description.kernel == KernelKind::quadratic)
       {
@@ -385,6 +403,32 @@ namespace limber
 
 
 
+  // All siblings of a cell meet it in a node, so they are known.
+  template <int dim>
+  bool
+  BackgroundGrid<dim>::has_parted_siblings() const
+  {
+    unsigned int any = 0;
+    for (const auto &cell : triangulation.active_cell_iterators())
+      if (cell->is_locally_owned() && level_of(cell) > 0)
+        {
+          unsigned int   n_active = 0, n_own = 0;
+          constexpr auto n = dealii::GeometryInfo<dim>::max_children_per_cell;
+          for (unsigned int child = 0; child < n; ++child)
+            if (const auto sibling = cell->parent()->child(child);
+                sibling->is_active())
+              {
+                ++n_active;
+                n_own += sibling->is_locally_owned() ? 1 : 0;
+              }
+          if (n_active == n && n_own < n)
+            any = 1;
+        }
+    return dealii::Utilities::MPI::max(any, communicator) > 0;
+  }
+
+
+
   template <int dim>
   void
   BackgroundGrid<dim>::build_hanging_nodes(const Numbering &numbering)
@@ -424,7 +468,8 @@ namespace limber
   // tells on which sides it lies, and where; nor the hanging nodes of a master
   // on the far side of a ghost cell. And a ghost cell could have a hanging node
   // on its far side that only its owner sees to be one; in a mesh that
-  // RefinedCells::grade() has made this cannot be.
+  // RefinedCells::grade() has made this cannot be, where siblings are on one
+  // rank.
   template <int dim>
   void
   BackgroundGrid<dim>::complete_boundary()

@@ -64,13 +64,18 @@ namespace limber
     : facets(facets)
     , box(box)
   {
-    // About as many bins on the surface as there are facets
-    const int wanted = std::clamp(int(std::sqrt(facets.size() / 6.)), 1, 128);
+    // About as many bins on the surface of the box as there are facets, nearly
+    // cubes: shells of flat ones are narrow
+    const Tensor<1, 3> extent = box.second - box.first;
+    const double area   = 2 * (extent[0] * extent[1] + extent[1] * extent[2] +
+                             extent[2] * extent[0]);
+    const double wanted = std::sqrt(area / facets.size());
     for (unsigned int d = 0; d < 3; ++d)
       {
-        const double extent = box.second[d] - box.first[d];
-        n[d]                = extent > 0 ? wanted : 1;
-        edge[d]             = extent > 0 ? extent / wanted : 1;
+        n[d]    = extent[d] > 0 && wanted > 0 ?
+                    static_cast<int>(std::clamp(extent[d] / wanted, 1., 128.)) :
+                    1;
+        edge[d] = extent[d] > 0 ? extent[d] / n[d] : 1;
       }
     begins.assign(std::size_t(n[0]) * n[1] * n[2] + 1, 0);
     for (const Facet &facet : facets)
@@ -95,6 +100,31 @@ namespace limber
 
 
 
+  std::size_t
+  NearestFacet::number_of_bin(const std::array<int, 3> &at) const
+  {
+    return (std::size_t(at[2]) * n[1] + at[1]) * n[0] + at[0];
+  }
+
+
+
+  double
+  NearestFacet::distance_square_of_bin(const Point<3>           &place,
+                                       const std::array<int, 3> &at) const
+  {
+    double result = 0;
+    for (unsigned int d = 0; d < 3; ++d)
+      {
+        const double lower = box.first[d] + at[d] * edge[d];
+        const double beyond =
+          std::max({lower - place[d], place[d] - lower - edge[d], 0.});
+        result += beyond * beyond;
+      }
+    return result;
+  }
+
+
+
   // Those that the box around it meets.
   template <class Work>
   void
@@ -109,7 +139,7 @@ namespace limber
     for (int k = first[2]; k <= last[2]; ++k)
       for (int j = first[1]; j <= last[1]; ++j)
         for (int i = first[0]; i <= last[0]; ++i)
-          work((std::size_t(k) * n[1] + j) * n[0] + i);
+          work(number_of_bin({{i, j, k}}));
   }
 
 
@@ -134,7 +164,7 @@ namespace limber
                                 std::abs(j - centre[1]) == distance;
           for (int i = first[0]; i <= last[0]; ++i)
             if (in_shell || std::abs(i - centre[0]) == distance)
-              work((std::size_t(k) * n[1] + j) * n[0] + i);
+              work({{i, j, k}});
         }
   }
 
@@ -164,7 +194,10 @@ namespace limber
         const double width = std::max(0, shell - 1) * least_edge;
         if (least < outside + width * width)
           break;
-        for_each_in_shell(centre, shell, [&](const std::size_t bin) {
+        for_each_in_shell(centre, shell, [&](const std::array<int, 3> &at) {
+          if (distance_square_of_bin(place, at) > least)
+            return;
+          const std::size_t bin = number_of_bin(at);
           for (std::size_t i = begins[bin]; i < begins[bin + 1]; ++i)
             {
               const Point<3> one =

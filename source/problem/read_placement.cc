@@ -242,9 +242,10 @@ namespace limber
     // fills the cells unevenly: what is under stress is not at rest, and
     // softer. Cut, none but those at the surface are; but linear functions take
     // the edges of points for where bodies touch, and thin parts then touch
-    // from afar. So are round bodies with splines that nothing touches: a ball
+    // from afar. So are other shapes with splines that nothing touches: a ball
     // of ten cells has its mass instead of 1.4 % more, and when it bounces off
-    // a side, a tenth of the error of its energy. Where the body stays in its
+    // a side, a tenth of the error of its energy; thin parts of an STL file may
+    // miss a fifth of theirs. Where the body stays in its
     // initial frame and meets nothing, points take the places of Gauss and
     // Legendre in what they fill of cells: rows at the middle of parts have
     // less of a second moment, and bend too easily. But cells with a splinter
@@ -308,7 +309,7 @@ namespace limber
         return choose(Placement::gauss,
                       "gauss",
                       "points in the initial frame keep their places in cells");
-      if (is_round && !touches &&
+      if (has_faces_of_its_own(*body.shape) && !touches &&
           (body.frame == Frame::initial || is_spline(problem.grid.kernel)))
         choose(Placement::cut, "cut", "its surface runs across the cells");
       if (block == nullptr)

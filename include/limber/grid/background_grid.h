@@ -45,6 +45,27 @@ namespace limber
     void
     rebuild();
 
+    /**
+     * The first part of that: what points need to find their cells and to go
+     * with them to other ranks. For a mesh on its way to the wanted one, which
+     * need not be graded.
+     */
+    void
+    rebuild_cells();
+
+    /** The second part: what a step needs. The mesh has to be graded, and no
+     * siblings parted. */
+    void
+    complete();
+
+    /**
+     * Whether any cells that make up a larger one are on several ranks: the
+     * mesh has become coarser there since it was last given to ranks, which
+     * keeps such cells together. Collective.
+     */
+    bool
+    has_parted_siblings() const;
+
     /** Local number of a locally owned or ghost cell. */
     std::uint32_t
     cell_number(const typename dealii::Triangulation<dim>::active_cell_iterator

@@ -35,6 +35,14 @@ namespace limber
     int
     bin_of(unsigned int direction, double x) const;
 
+    std::size_t
+    number_of_bin(const std::array<int, 3> &at) const;
+
+    /** From a place, in square metres; zero within the bin. */
+    double
+    distance_square_of_bin(const dealii::Point<3>   &place,
+                           const std::array<int, 3> &at) const;
+
     template <class Work>
     void
     for_each_bin(const Facet &facet, const Work &work) const;
