@@ -25,8 +25,10 @@ namespace limber
     }
 
     // What formulas of the time and fields want may change while points rest,
-    // and points are stretched by others that move.
+    // and points are stretched by others that move. Steps of the finest cells:
+    // while there are only coarse ones, steps are longer.
     constexpr std::uint64_t steps_at_rest = 50;
+
   } // namespace
 
 
@@ -42,9 +44,21 @@ namespace limber
   {
     if (!problem.adapts())
       return;
-    memory.mesh = memory.wanted = grid.divided_cells().numbers();
+    set_mesh(grid.divided_cells());
+    memory.wanted = memory.mesh;
     for (const auto &body : bodies)
       memory.next_id.push_back(body->points.n_global());
+  }
+
+
+
+  template <int dim>
+  void
+  Adaptation<dim>::set_mesh(const RefinedCells<dim> &mesh)
+  {
+    memory.mesh       = mesh.numbers();
+    fine_steps_in_one = std::uint64_t(1)
+                        << (mesh.levels() - mesh.finest_level());
   }
 
 
@@ -60,7 +74,7 @@ namespace limber
     if (grid.description.adapt_every > 0)
       return memory.steps >= grid.description.adapt_every;
     return memory.way + displacement > longest_way ||
-           (memory.steps >= steps_at_rest &&
+           (memory.steps * fine_steps_in_one >= steps_at_rest &&
             (grid.description.may_change_at_rest() ||
              problem.splits_stretched_points()));
   }
@@ -111,7 +125,7 @@ namespace limber
     const bool changed = change_mesh(grid, bodies, mesh);
     if (changed)
       {
-        memory.mesh = mesh.numbers();
+        set_mesh(mesh);
         ++memory.mesh_changes;
       }
     return split || changed;
@@ -294,6 +308,7 @@ namespace limber
       return;
     RefinedCells<dim> mesh = grid.no_divided_cells();
     mesh.set(former.mesh);
+    set_mesh(mesh);
     for (auto &body : bodies)
       body->points.clear();
     change_mesh(grid, bodies, mesh);

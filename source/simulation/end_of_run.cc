@@ -248,7 +248,8 @@ namespace limber
                               {"mesh changes", double(adapted.mesh_changes)},
                               {"points split", double(adapted.points_split)},
                               {"seconds",
-                               sum(adaptation.seconds(), communicator)}};
+                               dealii::Utilities::MPI::max(adaptation.seconds(),
+                                                           communicator)}};
         if (problem.grid.joins_points)
           summary.adaptation.insert(summary.adaptation.end() - 1,
                                     {"points joined",

@@ -75,6 +75,7 @@ namespace limber
       ghost.find(nodes, moduli_of_penalty());
     else
       ghost.clear();
+    begin_of_jumps.assign(size(), 0.);
     solver.reset();
     tangent->reinit(ghost);
     total_forces.assign(size(), 0.);
@@ -84,6 +85,18 @@ namespace limber
     noise = 1e-14 * largest_modulus() *
             std::pow(parts.grid.smallest_edge, dim - 1) *
             std::sqrt(double(size()));
+  }
+
+
+
+  template <int dim>
+  double
+  NewtonEquations<dim>::round_off(const std::vector<double> &displacement) const
+  {
+    double largest = 0;
+    for (const double way : displacement)
+      largest = std::max(largest, std::abs(way));
+    return noise * (1 + largest / parts.grid.smallest_edge);
   }
 
 
@@ -280,7 +293,14 @@ namespace limber
         if (nodes.is_parallel())
           volumes->unite_ranks(parts.grid.communicator);
       }
-    energy_of_jumps = ghost.add_forces(displacement, total_forces);
+    energy_of_jumps = 0;
+    if (has_ghost_penalty())
+      {
+        since_jumps = displacement;
+        for (std::size_t k = 0; k < size(); ++k)
+          since_jumps[k] -= begin_of_jumps[k];
+        energy_of_jumps = ghost.add_forces(since_jumps, total_forces);
+      }
     total_energy += energy_of_jumps;
     if (inertia == nullptr)
       return true;

@@ -20,6 +20,14 @@ namespace limber
     // Where a body flies freely, inertia is a difference of numbers that are
     // alike, and below this share of them nothing but round-off.
     constexpr double known_share = 1e-6;
+    // The ghost penalty begins anew so often within a step, each time from what
+    // is out of balance by less than this share. A beam that has been bent by
+    // its length and let go stays bent by 1.4 % without, by 0.04 % with one, by
+    // 1e-5 with two, which cost half an iteration.
+    constexpr unsigned int most_renewals = 2;
+    constexpr double       nearly_found  = 0.1;
+    // As a share of the strain energy: too little to matter
+    constexpr double known_ghost_energy = 1e-5;
 
 
 
@@ -114,9 +122,9 @@ namespace limber
                                    norm(equations.forces()),
                                    std::sqrt(of_inertia),
                                    known_share * std::sqrt(of_momentum),
-                                   question.largest_former_force,
-                                   equations.round_off()});
-    return norm(left) / scale;
+                                   question.largest_former_force});
+    const double rest  = norm(left);
+    return rest <= equations.round_off(displacement) ? 0 : rest / scale;
   }
 
 
@@ -149,9 +157,11 @@ namespace limber
                            const bool          search,
                            Values             &displacement)
   {
-    Values left, correction, former, of_held(equations.size());
-    n_iterations = 0;
-    rest         = unbalance(question, displacement, left);
+    Values       left, correction, former, of_held(equations.size());
+    unsigned int renewals = 0;
+    n_iterations          = 0;
+    equations.count_jumps_from(Values(equations.size(), 0.));
+    rest = unbalance(question, displacement, left);
     while (true)
       {
         double remaining = 0; // of the way of held components
@@ -161,6 +171,16 @@ namespace limber
               of_held[k] = question.held[k] - displacement[k];
               remaining  = std::max(remaining, std::abs(of_held[k]));
             }
+        // What has nearly been found need not be resisted: nodes that hardly
+        // anything holds are where they are going to be.
+        if (remaining == 0 && rest <= nearly_found && n_iterations > 0 &&
+            renewals < most_renewals &&
+            equations.ghost_energy() > known_ghost_energy * equations.energy())
+          {
+            ++renewals;
+            equations.count_jumps_from(displacement);
+            rest = unbalance(question, displacement, left);
+          }
         if (remaining == 0 && rest <= tolerance)
           return true;
         if (n_iterations == most_newton_iterations)

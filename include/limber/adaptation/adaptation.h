@@ -97,6 +97,10 @@ namespace limber
     report() const;
 
   private:
+    /** Keep on record what the mesh is. */
+    void
+    set_mesh(const RefinedCells<dim> &mesh);
+
     bool
     adapt_mesh(double time, const KeptPoints &kept);
 
@@ -125,8 +129,10 @@ namespace limber
     Bodies              &bodies;
     const double         longest_way; // between adaptations, in fine cells
     AdaptationState      memory;
-    double               seconds_spent = 0;
-    double               removed       = 0;
+    // Steps of the finest cells that there may be, in one on this mesh
+    std::uint64_t fine_steps_in_one = 1;
+    double        seconds_spent     = 0;
+    double        removed           = 0;
   };
 } // namespace limber
 

@@ -72,6 +72,16 @@ namespace limber
       return of_level.size();
     }
 
+    /** That of the smallest cells: how many levels hold divided ones. */
+    unsigned int
+    finest_level() const
+    {
+      unsigned int result = of_level.size();
+      while (result > 0 && of_level[result - 1].empty())
+        --result;
+      return result;
+    }
+
     /** Give up what the other does not divide as well; both are in order. */
     void
     keep_common(const RefinedCells &other);

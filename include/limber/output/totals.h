@@ -131,7 +131,7 @@ namespace limber
 
   private:
     double
-    energy_of_round_off(unsigned long steps) const;
+    energy_of_round_off(const State<dim> &state) const;
     void
     balance_energy(const Ledger<dim> &ledger,
                    const State<dim>  &state,

@@ -121,6 +121,21 @@ namespace limber
       return total_energy;
     }
 
+    /** Whether jumps of the strain are resisted in this step. */
+    bool
+    has_ghost_penalty() const
+    {
+      return !ghost.faces().empty();
+    }
+
+    /** Jumps are resisted from these displacements on; at the beginning of a
+     * step, from none. */
+    void
+    count_jumps_from(const std::vector<double> &displacement)
+    {
+      begin_of_jumps = displacement;
+    }
+
     /** Of it, what is against jumps of the strain, J. */
     double
     ghost_energy() const
@@ -128,12 +143,10 @@ namespace limber
       return energy_of_jumps;
     }
 
-    /** Forces this small are noise: stresses know a strain to its last bits. */
+    /** Forces this small are noise after these displacements: stresses know a
+     * strain to the last bits of these. */
     double
-    round_off() const
-    {
-      return noise;
-    }
+    round_off(const std::vector<double> &displacement) const;
 
     const std::vector<double> &
     forces() const
@@ -249,6 +262,7 @@ namespace limber
     NumberedNodes<dim>                                   nodes;
     std::vector<unsigned char>      held, side_of; // by equation
     GhostPenalty<dim>               ghost;
+    std::vector<double>             begin_of_jumps, since_jumps;
     std::vector<dealii::Point<dim>> places; // of nodes, as the step begins
     std::vector<double>             displacement_of_tangent; // m
     std::vector<double>             by_node, former_by_node; // displacements, m

@@ -378,6 +378,44 @@ TEST(NewtonSteps, WhatIsUnloadedComesBackAndStays)
 
 
 
+// Forces are round-off: nothing is to be solved. A side that carries the body
+// along leaves more of it.
+TEST(NewtonSteps, NothingLoadsABodyYet)
+{
+  const std::vector<std::string> carried = {
+    "Boundaries/left=velocity", "Boundaries/Side left/Velocity=0.01; 0.02"};
+  for (const std::string kind : {"implicit", "quasi-static"})
+    for (const std::string frame : {"current", "initial"})
+      for (const bool is_carried : {false, true})
+        {
+          if (is_carried && kind == "implicit")
+            continue; // its inertia is a load
+          SCOPED_TRACE(kind + " " + frame + (is_carried ? " carried" : ""));
+          std::vector<std::string> variant = {"Method/Time integration=" + kind,
+                                              "Body strip/Frame=" + frame,
+                                              "End time=1",
+                                              "Loads/Gravity=0, 0"};
+          if (kind == "implicit")
+            variant.push_back("Method/Time step=0.25");
+          if (is_carried)
+            variant.insert(variant.end(), carried.begin(), carried.end());
+          SceneRun<2> run(held_strip, variant);
+          const auto  before = run.positions();
+          run.advance(0.25, 4);
+          const auto        after  = run.positions();
+          const std::string effort = run.integrator.effort();
+          EXPECT_NE(effort.find("steps halved: 0"), std::string::npos)
+            << effort;
+          const dealii::Tensor<1, 2> way =
+            is_carried ? dealii::Point<2>(0.01, 0.02) : dealii::Point<2>();
+          for (std::size_t p = 0; p < before.size(); ++p)
+            EXPECT_LT((after[p] - before[p] - way).norm(), 1e-12);
+          EXPECT_NEAR(run.totals().energy_drift, 0, 0.05);
+        }
+}
+
+
+
 // A body that nothing holds has no place of equilibrium, and nothing has moved.
 // Two bars in a row, the first one stiffer by a factor, are pulled: where they
 // meet the strain jumps, which costs next to nothing.
