@@ -57,6 +57,7 @@ namespace limber
   Adaptation<dim>::set_mesh(const RefinedCells<dim> &mesh)
   {
     memory.mesh       = mesh.numbers();
+    finest_level      = std::max(finest_level, mesh.finest_level());
     fine_steps_in_one = std::uint64_t(1)
                         << (mesh.levels() - mesh.finest_level());
   }
@@ -71,6 +72,8 @@ namespace limber
       return false;
     memory.way += displacement;
     ++memory.steps;
+    if (memory.times_asked == 0 && looks_ahead())
+      return true;
     if (grid.description.adapt_every > 0)
       return memory.steps >= grid.description.adapt_every;
     return memory.way + displacement > longest_way ||
@@ -216,14 +219,54 @@ namespace limber
 
 
 
+  // Moving refinements have a rim around them.
+  template <int dim>
+  bool
+  Adaptation<dim>::looks_ahead() const
+  {
+    const auto &refinements = grid.description.refinements;
+    return grid.has_levels() &&
+           std::none_of(refinements.begin(),
+                        refinements.end(),
+                        [](const auto &one) { return one.is_moving(); });
+  }
+
+
+
+  // The fastest point may go that far into fine cells before criteria are asked
+  // again.
+  template <int dim>
+  double
+  Adaptation<dim>::seconds_to_look_ahead() const
+  {
+    if (!looks_ahead())
+      return 0;
+    const GridDescription<dim> &box     = grid.description;
+    double                      fastest = 0; // in fine cells, 1/s
+    for (const auto &body : bodies)
+      {
+        const PointView<dim> view = body->points.view();
+        for (int d = 0; d < dim; ++d)
+          for (std::size_t p = 0; p < view.size; ++p)
+            fastest =
+              std::max(fastest,
+                       std::abs(view.velocity[d][p]) / box.finest_edge(d));
+      }
+    fastest = dealii::Utilities::MPI::max(fastest, grid.communicator);
+    return fastest > 0 ? longest_way / fastest : 0;
+  }
+
+
+
   template <int dim>
   bool
   Adaptation<dim>::split_points(const RefinedCells<dim> &mesh,
                                 const KeptPoints        &kept,
                                 const double             time)
   {
-    const GridDescription<dim> &box = grid.description;
-    bool                        any = false;
+    const GridDescription<dim> &box   = grid.description;
+    const double                ahead = seconds_to_look_ahead();
+    bool                        any   = false;
     for (std::size_t b = 0; b < bodies.size(); ++b)
       {
         MaterialPoints<dim>    &points = bodies[b]->points;
@@ -238,11 +281,15 @@ namespace limber
             const PointView<dim>                    view = points.view();
             for (std::size_t p = 0; p < view.size; ++p)
               {
-                const unsigned int      size = points.size_class(p);
-                std::array<double, dim> x;
-                for (int d = 0; d < dim; ++d)
-                  x[d] = view.position[d][p];
-                if (mesh.is_divided(size, grid.place_at(x, size)))
+                const unsigned int size       = points.size_class(p);
+                const auto         is_to_part = [&](const double way) {
+                  std::array<double, dim> x;
+                  for (int d = 0; d < dim; ++d)
+                    x[d] = view.position[d][p] + way * view.velocity[d][p];
+                  return mesh.is_divided(size, grid.place_at(x, size));
+                };
+                if (is_to_part(0) || (ahead > 0 && (is_to_part(0.5 * ahead) ||
+                                                    is_to_part(ahead))))
                   large[kept[b].count(points.id(p))].push_back(p);
               }
             bool any_here = false;
@@ -338,6 +385,9 @@ namespace limber
       text << "  level " << level << ": " << brief(cells[level]) << " cells of "
            << brief(grid.description.edge(0) / (1u << level)) << " m, "
            << brief(points[level]) << " points\n";
+    if (finest_level < grid.description.levels)
+      text << "  levels above " << finest_level
+           << ": never used, no 'Grid/Refine' has asked for them\n";
     return text.str();
   }
 

@@ -3,6 +3,7 @@
 #include <limber/grid/spline_nodes.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace limber
 {
@@ -505,6 +506,33 @@ namespace limber
             for (unsigned int k = 1; k < Layout::stride; ++k)
               to[k] += weight * record(master)[k];
         }
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::lend_mass_to_hanging()
+  {
+    for (const HangingNode &hanging : table.hanging)
+      if (is_active[hanging.node])
+        {
+          double least = std::numeric_limits<double>::infinity();
+          for (const auto &[master, weight] : hanging.masters)
+            least = std::min(least, record(master)[Layout::mass]);
+          record(hanging.node)[Layout::mass] = least;
+        }
+  }
+
+
+
+  template <int dim>
+  void
+  NodalFields<dim>::take_mass_from_hanging()
+  {
+    for (const HangingNode &hanging : table.hanging)
+      if (is_active[hanging.node])
+        record(hanging.node)[Layout::mass] = 0;
   }
 
 

@@ -79,8 +79,9 @@ namespace limber
   namespace
   {
     // When a run is resumed it may end at another time and write other files,
-    // but not become another run. A file may be at another place by then, but
-    // not hold something else.
+    // but not become another run: not with other loads, where these grow until
+    // it ends. A file may be at another place by then, but not hold something
+    // else.
     template <int dim>
     std::vector<std::string>
     fixed_entries(const Parameters &parameters, const Problem<dim> &problem)
@@ -106,7 +107,11 @@ namespace limber
             name.rfind("Checkpoint/", 0) != 0 &&
             name.rfind("Reference/", 0) != 0 &&
             name.rfind("Exact solution/", 0) != 0)
-          result.push_back(name + " = " + value);
+          result.push_back(
+            name + " = " +
+            (name == "Loads/Load factor" && problem.loads_grow_until_the_end() ?
+               problem.factor_until_the_end() :
+               value));
       return result;
     }
   } // namespace

@@ -317,9 +317,12 @@ namespace limber
     if (std::none_of(problem.bodies.begin(),
                      problem.bodies.end(),
                      [](const auto &body) { return body.implicit_pressure; }))
-      refuse(where("Time integration") +
-               ", as there is no liquid and no elastic solid with 'cell'",
-             "'newtonian fluid' or 'Locking treatment = cell'");
+      refuse(
+        "this scene, in which no body has an implicit pressure: no liquid, "
+        "and no elastic solid with the treatment 'cell' and full history "
+        "in the current frame",
+        "'Frame = current', 'Locking treatment = cell' and 'History = "
+        "keep', where all bodies are elastic");
     if (problem.grid.kernel != KernelKind::linear)
       refuse("the kernel " + where("Kernel"), "'Kernel = linear'");
     if (problem.method.order != StressUpdateOrder::automatic &&

@@ -130,6 +130,9 @@ namespace limber
     text << "To extend this run: --resume --set \"End "
          << (by_time ? "time=" : "step=")
          << (by_time ? 2 * problem.end_time : 2. * problem.end_step) << '"';
+    if (by_time && problem.loads_grow_until_the_end())
+      text << " --set \"Loads/Load factor=" << problem.factor_until_the_end()
+           << '"';
     console.say(text.str());
   }
 

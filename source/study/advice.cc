@@ -209,16 +209,21 @@ namespace limber
       const double interval = problem.output.time_interval;
       if (interval <= 0 || interval >= 2 * first_step)
         return;
-      const std::string setting =
-        "Output/Time interval=" + brief(problem.end_time / 50);
+      // Steps end where a picture is due.
+      const double shortened = interval / std::ceil(interval / first_step);
+      const double enough =
+        std::min(problem.end_time,
+                 std::max(problem.end_time / 50, 10 * first_step));
+      if (enough <= interval || !(shortened < 0.9 * first_step))
+        return;
       Advice found;
       found.what = "Output";
       found.text = "Pictures every " + brief(interval) +
-                   " s are finer than a step, " + brief(first_step) +
-                   " s, and shorten it to that; fifty are often enough";
+                   " s shorten the steps from " + brief(first_step) + " to " +
+                   brief(shortened) + " s; one in ten steps is often enough";
       found.changes  = "nothing but the length of the steps";
-      found.settings = {setting};
-      found.factor   = std::max(1., 2 * first_step / interval);
+      found.settings = {"Output/Time interval=" + brief(enough)};
+      found.factor   = first_step / shortened;
       found.ground   = "the length of steps; no run needed";
       advice.push_back(found);
     }

@@ -72,7 +72,7 @@ namespace limber
     Ledger<dim> &ledger = parts.ledger;
     ledger.load_work +=
       std::inner_product(given.begin(), given.end(), displacement.begin(), 0.);
-    ledger.viscous += equations.ghost_energy();
+    ledger.viscous += equations.ghost_work();
     const double factor        = load_factor(time + step);
     double       between_steps = 0;
     for (std::size_t k = 0; k < equations.size(); ++k)

@@ -293,13 +293,21 @@ namespace limber
         if (nodes.is_parallel())
           volumes->unite_ranks(parts.grid.communicator);
       }
-    energy_of_jumps = 0;
-    if (has_ghost_penalty())
+    energy_of_jumps = work_on_jumps = 0;
+    if (!ghost.faces().empty())
       {
+        const auto work_of_forces = [&]() {
+          return 0.5 * std::inner_product(total_forces.begin(),
+                                          total_forces.end(),
+                                          displacement.begin(),
+                                          0.);
+        };
         since_jumps = displacement;
         for (std::size_t k = 0; k < size(); ++k)
           since_jumps[k] -= begin_of_jumps[k];
-        energy_of_jumps = ghost.add_forces(since_jumps, total_forces);
+        const double without = work_of_forces();
+        energy_of_jumps      = ghost.add_forces(since_jumps, total_forces);
+        work_on_jumps        = work_of_forces() - without;
       }
     total_energy += energy_of_jumps;
     if (inertia == nullptr)

@@ -136,10 +136,17 @@ namespace limber
   void
   ExplicitIntegrator<dim>::take(TakeFromGrid what)
   {
-    what.affine        = is_affine(parts.problem.method.transfer);
-    what.flip_share    = flip_share();
-    what.light_density = light_share(); // times that of a body
+    what.affine              = is_affine(parts.problem.method.transfer);
+    what.flip_share          = flip_share();
+    what.light_density       = light_share();          // times that of a body
+    const bool asks_for_mass = what.light_density > 0; // of all nodes
+    if (asks_for_mass)
+      parts.nodes.for_each_field(
+        [this]() { parts.nodes.lend_mass_to_hanging(); });
     sweeps.grid_to_points(what, extremes);
+    if (asks_for_mass)
+      parts.nodes.for_each_field(
+        [this]() { parts.nodes.take_mass_from_hanging(); });
     lap(Verb::grid_to_points);
   }
 

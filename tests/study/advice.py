@@ -178,7 +178,7 @@ class Advice(unittest.TestCase):
     def test_pictures_finer_than_steps(self):
         found = self.advise("cantilever.prm", "Output/Time interval=1e-4",
                             "End time=1")
-        self.assertIn("finer than a step", found["Output"].line)
+        self.assertIn("shorten the steps from", found["Output"].line)
         self.assertGreater(found["Output"].factor, 2)
         self.assertNotIn("Output", self.advise("cantilever.prm", "End time=1",
                                                "Output/Time interval=0.5"))

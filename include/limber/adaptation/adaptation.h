@@ -116,6 +116,16 @@ namespace limber
                          const std::vector<std::size_t> &which,
                          double                          time) const;
 
+    /** Whether points are split before they come into fine cells: where no
+     * refinement moves. */
+    bool
+    looks_ahead() const;
+
+    /** In which points may come into fine cells that lie before them, s; zero
+     * where there is a rim around these. Collective. */
+    double
+    seconds_to_look_ahead() const;
+
     bool
     split_points(const RefinedCells<dim> &mesh,
                  const KeptPoints        &kept,
@@ -131,6 +141,7 @@ namespace limber
     AdaptationState      memory;
     // Steps of the finest cells that there may be, in one on this mesh
     std::uint64_t fine_steps_in_one = 1;
+    unsigned int  finest_level      = 0; // that there has been in this run
     double        seconds_spent     = 0;
     double        removed           = 0;
   };

@@ -166,6 +166,13 @@ namespace limber
     void
     interpolate_hanging();
 
+    /** Let hanging nodes show the mass of their lightest master, as what is
+     * light moves as it likes, until it is taken from them again. */
+    void
+    lend_mass_to_hanging();
+    void
+    take_mass_from_hanging();
+
     /** Active nodes, owned and ghost, by local number. */
     const std::vector<std::uint32_t> &
     active_nodes() const

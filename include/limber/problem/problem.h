@@ -6,6 +6,7 @@
 #include <deal.II/base/tensor.h>
 
 #include <limber/base/functions.h>
+#include <limber/base/text.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/kernel.h>
 #include <limber/materials/treatment.h>
@@ -481,6 +482,21 @@ namespace limber
              std::any_of(sides.begin(), sides.end(), [](const auto &side) {
                return side.meets_surfaces;
              });
+    }
+
+    /** Whether loads grow in proportion to the time, and act as they are when
+     * the run ends; and by what formula they do, "t/2". */
+    bool
+    loads_grow_until_the_end() const
+    {
+      return method.integration == TimeIntegration::quasi_static &&
+             loads.factor.empty();
+    }
+
+    std::string
+    factor_until_the_end() const
+    {
+      return "t/" + to_text(end_time);
     }
 
     /** Whether points of any body become two where they are stretched. */

@@ -121,11 +121,12 @@ namespace limber
       return total_energy;
     }
 
-    /** Whether jumps of the strain are resisted in this step. */
-    bool
-    has_ghost_penalty() const
+    /** Of the mean of the forces against these jumps at the beginning of the
+     * step, where there are none, and now, on the way of the step, J. */
+    double
+    ghost_work() const
     {
-      return !ghost.faces().empty();
+      return work_on_jumps;
     }
 
     /** Jumps are resisted from these displacements on; at the beginning of a
@@ -268,7 +269,7 @@ namespace limber
     std::vector<double>             by_node, former_by_node; // displacements, m
     std::vector<double>             total_forces, forces_of_followers;
     FollowerLoads<dim>             *followers = nullptr; // or none
-    double total_energy = 0, energy_of_jumps = 0, noise = 0;
+    double total_energy = 0, energy_of_jumps = 0, work_on_jumps = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;
     const std::unique_ptr<AveragedVolumes<dim>> volumes;

@@ -34,7 +34,8 @@ namespace limber
     /** None. */
     LightNodes() = default;
 
-    /** Of a cell, with @p least_mass = m_c (kg). */
+    /** Of a cell, with @p least_mass = m_c (kg). Hanging nodes have been lent
+     * the mass of their lightest master. */
     LightNodes(const CellGeometry<dim> &cell,
                const double *const      nodes,
                const double             least_mass)
@@ -43,8 +44,7 @@ namespace limber
       for (unsigned int i = 0; i < n_nodes; ++i)
         {
           const double mass = nodes[cell.node[i] + NodeLayout<dim>::mass];
-          // A hanging node has given its mass away, and moves with its masters.
-          left_out[i] = mass > 0 ? std::max(0., 1 - mass / least_mass) : 0.;
+          left_out[i]       = std::max(0., 1 - mass / least_mass);
           are_there |= left_out[i] > 0;
         }
       if (!are_there)

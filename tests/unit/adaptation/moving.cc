@@ -458,6 +458,56 @@ TEST(Adapting, FollowsARegionThatMoves)
 
 
 
+// Points go into cells that are fine from the start, as parts.
+TEST(Adapting, SplitsWhatIsGoingToEnterFineCells)
+{
+  SceneRun<2>                     run(block<2>("set Where = x - 2.6"),
+                  {"Body block/Initial velocity=0.5; 0.1",
+                                       "Body block/Locking treatment=none"});
+  Adaptation<2>                   adaptation(run.problem, run.grid, run.bodies);
+  const Adaptation<2>::KeptPoints kept(1);
+  constexpr double                step = 0.01, edge = 0.25;
+  for (unsigned int k = 0; k < 150; ++k)
+    {
+      run.advance(step);
+      if (adaptation.is_due(0.5 * step / edge) &&
+          adaptation.adapt(run.time, kept))
+        run.integrator.reinit();
+      const PointView<2> points = run.points();
+      for (std::size_t p = 0; p < points.size; ++p)
+        ASSERT_GE(run.bodies[0]->points.size_class(p),
+                  run.grid.level_of(points.cell[p]));
+    }
+  EXPECT_GT(adaptation.state().points_split, 20u);
+  EXPECT_EQ(run.ledger.lost_points, 0u);
+}
+
+
+
+// Steps of coarse cells are long, so a region that appears is looked for after
+// fewer of them: 50 of the finest ones.
+TEST(Adapting, LooksForRegionsThatAppear)
+{
+  SceneRun<2>   run(block<2>("set Where = if(t < 1, -1, 1 - x)"),
+                  {"Grid/Levels=2", "Body block/Locking treatment=none"});
+  Adaptation<2> adaptation(run.problem, run.grid, run.bodies);
+  const Adaptation<2>::KeptPoints kept(1);
+  const auto                      steps_until_due = [&]() {
+    for (unsigned int n = 1;; ++n)
+      if (adaptation.is_due(0))
+        return n;
+  };
+  EXPECT_EQ(steps_until_due(), 13u);
+  adaptation.adapt(0.5, kept);
+  EXPECT_EQ(steps_until_due(), 13u);
+  adaptation.adapt(1.5, kept);
+  EXPECT_EQ(steps_until_due(), 25u);
+  adaptation.adapt(1.5, kept);
+  EXPECT_EQ(steps_until_due(), 50u);
+}
+
+
+
 // One that is observed becomes nine and stays the one in the middle.
 TEST(Adapting, LeavesAnObservedPointWhereItIs)
 {
