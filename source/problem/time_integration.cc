@@ -317,12 +317,9 @@ namespace limber
     if (std::none_of(problem.bodies.begin(),
                      problem.bodies.end(),
                      [](const auto &body) { return body.implicit_pressure; }))
-      refuse(
-        "this scene, in which no body has an implicit pressure: no liquid, "
-        "and no elastic solid with the treatment 'cell' and full history "
-        "in the current frame",
-        "'Frame = current', 'Locking treatment = cell' and 'History = "
-        "keep', where all bodies are elastic");
+      refuse("this scene: it has no liquid, and not all bodies are elastic "
+             "solids with 'cell', full history and the current frame",
+             "'Frame = current' and 'Locking treatment = cell'");
     if (problem.grid.kernel != KernelKind::linear)
       refuse("the kernel " + where("Kernel"), "'Kernel = linear'");
     if (problem.method.order != StressUpdateOrder::automatic &&
