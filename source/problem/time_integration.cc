@@ -317,9 +317,10 @@ namespace limber
     if (std::none_of(problem.bodies.begin(),
                      problem.bodies.end(),
                      [](const auto &body) { return body.implicit_pressure; }))
-      refuse("this scene: it has no liquid, and not all bodies are elastic "
-             "solids with 'cell', full history and the current frame",
-             "'Frame = current' and 'Locking treatment = cell'");
+      refuse("this scene: no liquid and no elastic solid with 'cell' in the "
+             "current frame",
+             "'newtonian fluid', or 'Frame = current' and 'Locking treatment = "
+             "cell'");
     if (problem.grid.kernel != KernelKind::linear)
       refuse("the kernel " + where("Kernel"), "'Kernel = linear'");
     if (problem.method.order != StressUpdateOrder::automatic &&
