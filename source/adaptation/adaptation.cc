@@ -28,7 +28,6 @@ namespace limber
     // and points are stretched by others that move. Steps of the finest cells:
     // while there are only coarse ones, steps are longer.
     constexpr std::uint64_t steps_at_rest = 50;
-
   } // namespace
 
 

@@ -537,67 +537,6 @@ namespace limber
 
 
 
-  template <int dim>
-  CellFields<dim>::CellFields(const BackgroundGrid<dim> &grid,
-                              const unsigned int         stride)
-    : stride(stride)
-    , grid(grid)
-  {
-    reinit();
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::reinit()
-  {
-    const std::size_t size = std::size_t(grid.n_cells()) * stride;
-    now.reinit(size);
-    next.reinit(size);
-    turn_of.reinit(grid.n_cells());
-    turn = 1;
-  }
-
-
-
-  template <int dim>
-  CellSums<dim>
-  CellFields<dim>::view()
-  {
-    return {now.data(), next.data(), turn_of.data(), turn, stride};
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::start_completion(const ExchangePlan &plan)
-  {
-    // Ranks add to each other's sums whether they have gathered any or not.
-    const CellSums<dim> sums = view();
-    for (const auto &neighbour : plan.neighbours)
-      for (const auto *const cells : {&neighbour.send, &neighbour.receive})
-        for (const std::uint32_t cell : *cells)
-          sums.open(cell);
-    exchange.start(plan, next.data(), 0, stride);
-  }
-
-
-
-  template <int dim>
-  void
-  CellFields<dim>::finish_completion()
-  {
-    exchange.finish(next.data());
-    std::swap(now, next);
-    ++turn;
-  }
-
-
-
   template class NodalFields<2>;
   template class NodalFields<3>;
-  template class CellFields<2>;
-  template class CellFields<3>;
 } // namespace limber

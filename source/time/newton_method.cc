@@ -23,7 +23,7 @@ namespace limber
     // The ghost penalty begins anew so often within a step, each time from what
     // is out of balance by less than this share. A beam that has been bent by
     // its length and let go stays bent by 1.4 % without, by 0.04 % with one, by
-    // 1e-5 with two, which cost half an iteration.
+    // 1e-5 with two, which cost less than one iteration.
     constexpr unsigned int most_renewals = 2;
     constexpr double       nearly_found  = 0.1;
     // As a share of the strain energy: too little to matter. Cook's membrane

@@ -2,6 +2,7 @@
 #ifndef limber_state_material_body_h
 #define limber_state_material_body_h
 
+#include <limber/grid/cell_fields.h>
 #include <limber/grid/nodal_fields.h>
 #include <limber/grid/nodal_projection.h>
 #include <limber/points/material_points.h>

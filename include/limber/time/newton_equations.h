@@ -121,6 +121,13 @@ namespace limber
       return total_energy;
     }
 
+    /** Of it, what is against jumps of the strain, J. */
+    double
+    ghost_energy() const
+    {
+      return energy_of_jumps;
+    }
+
     /** Of the mean of the forces against these jumps at the beginning of the
      * step, where there are none, and now, on the way of the step, J. */
     double
@@ -135,13 +142,6 @@ namespace limber
     count_jumps_from(const std::vector<double> &displacement)
     {
       begin_of_jumps = displacement;
-    }
-
-    /** Of it, what is against jumps of the strain, J. */
-    double
-    ghost_energy() const
-    {
-      return energy_of_jumps;
     }
 
     /** Forces this small are noise after these displacements: stresses know a
