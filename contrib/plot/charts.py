@@ -67,7 +67,7 @@ ALONE = {
     "cpGIMP": ("#17807e", "^", "-."), "CPDI2": ("#7a0177", "d", "-."),
     "DDMP": ("#b2443a", "H", "--"),
     "initial frame": ("#E69F00", "*", ":"),
-    "quasi-static": ("#08519c", "h", "-"),
+    "quasi-static": ("#08519c", "h", "-"), "implicit": ("#08519c", "8", "-"),
     "FEM Q1": ("#b15928", "P", "-"), "FEM Q1-P0-P0": ("#000000", "X", "-"),
     "FEM Q2": ("#8c5a2b", "p", "--"), "FEM Q2-P1-P1": ("#000000", "h", "--"),
     "USL": ("#D55E00", "^", "-"), "USF": ("#009E73", "v", "-"),
@@ -94,7 +94,7 @@ KERNELS = {
     "cpGIMP": ("^", "-."), "CPDI": ("D", "-."), "CPDI2": ("d", "-."),
     "DDMP": ("H", "--"),
     "initial": ("*", ":"), "initial frame": ("*", ":"),
-    "quasi-static": ("h", "-")}
+    "quasi-static": ("h", "-"), "implicit": ("8", "-")}
 
 # What a method differs in from the one it is named after, 'cell with APIC'. With
 # a kernel beside it, marker and line are the kernel's.
@@ -107,7 +107,8 @@ CHANGES = {
     "soft water": ("#a6761d", "X"), "chi 0.3": ("#6a51a3", "d"),
     "Blend time": ("#a6761d", "X"), "control": ("#d01c8b", "d"),
     "bending": ("#6a3d9a", "D"), "replaced": ("#8a8d00", "p"),
-    "semi-implicit": ("#08519c", "*")}
+    "semi-implicit": ("#08519c", "*"), "implicit": ("#08519c", "8"),
+    "quasi-static": ("#08519c", "h")}
 
 SPARE = ("#1f78b4", "#b2443a", "#33a02c", "#6a51a3", "#b15928", "#a6761d",
          "#17807e", "#d01c8b")
@@ -138,7 +139,8 @@ def style_of(method):
     known = kernel_and_treatment(method)
     if method in ALONE:
         colour, marker, line = ALONE[method]
-        if method in KERNELS and method not in ("initial frame", "quasi-static"):
+        if method in KERNELS and method not in ("initial frame", "quasi-static",
+                                                "implicit"):
             filling = "none"
     elif known:
         kernel, treatment = known
@@ -158,6 +160,8 @@ def style_of(method):
         marker, line = KERNELS.get(kernel, ("o", "-"))
         if change and not kernel:
             marker, line = CHANGES[change][1], "--"
+        elif change in ("implicit", "quasi-static"):
+            marker = CHANGES[change][1]
         if change:
             colour = CHANGES[change][0]
         elif treatment:
