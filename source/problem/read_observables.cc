@@ -349,10 +349,14 @@ namespace limber
 
 
 
-    /** A frequency is that of another observable, not of a frequency. */
+    /**
+     * A frequency is that of another observable, not of a frequency. Says so
+     * where rows may be too rare for its zeros: implicit steps are no longer
+     * than motions need, explicit ones are a hundred times shorter.
+     */
     template <int dim>
     void
-    check_frequencies(const Section &root, const Problem<dim> &problem)
+    check_frequencies(const Section &root, Problem<dim> &problem)
     {
       const std::vector<std::string> names = root.list("Observables");
       for (const Observable<dim> &observable : problem.observables)
@@ -374,6 +378,17 @@ namespace limber
                              ". Only a quantity that swings has one. Name "
                              "another observable, for instance a "
                              "displacement.");
+
+          const unsigned int interval = problem.output.statistics_interval;
+          if (problem.method.integration != TimeIntegration::explicit_steps &&
+              interval > 1)
+            problem.notes.push_back(
+              "Observable " + in_quotes(observable.name) +
+              " is taken from one row in " + std::to_string(interval) +
+              " steps; implicit steps are long, and swings shorter than " +
+              std::to_string(4 * interval) +
+              " of them give a wrong frequency. Usually set "
+              "'Output/Statistics interval = 1'.");
         }
     }
   } // namespace

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/lac/full_matrix.h>
+
 #include <limber/time/free_motions.h>
 
 #include <algorithm>
@@ -26,52 +28,164 @@ namespace limber
 
 
 
-  // A motion is free where what it does to held components is a combination of
-  // what motions before it do: with as much of these it does not move them.
-  template <int dim>
-  std::string
-  free_rigid_motion(const std::vector<dealii::Point<dim>>    &places,
-                    const std::vector<std::array<bool, dim>> &held)
+  namespace
   {
-    constexpr double   negligible = 1e-6;
-    dealii::Point<dim> centre;
-    for (const auto &place : places)
-      centre += place / double(places.size());
-    double size = 1e-300; // of the body, so that rotations compare with shifts
-    for (const auto &place : places)
-      size = std::max(size, place.distance(centre));
-
-    std::vector<std::vector<double>> kept;
-    for (unsigned int m = 0; m < n_rigid_motions<dim>; ++m)
+    /** What rigid motions of a part do at places, rotations over its size. */
+    template <int dim>
+    class MotionsOfPart
+    {
+    public:
+      MotionsOfPart(const std::vector<dealii::Point<dim>> &places,
+                    const std::vector<std::uint32_t>      &of_part)
+        : lower(places[of_part.front()])
+        , upper(lower)
       {
-        std::vector<double> motion;
-        for (std::size_t i = 0; i < places.size(); ++i)
-          for (unsigned int d = 0; d < dim; ++d)
-            if (held[i][d])
-              motion.push_back(rigid_motion<dim>(m, d, places[i], centre) /
-                               (m < dim ? 1 : size));
-        for (const auto &other : kept)
+        for (const std::uint32_t i : of_part)
           {
-            double product = 0;
-            for (std::size_t k = 0; k < motion.size(); ++k)
-              product += motion[k] * other[k];
-            for (std::size_t k = 0; k < motion.size(); ++k)
-              motion[k] -= product * other[k];
+            centre += places[i] / double(of_part.size());
+            for (int d = 0; d < dim; ++d)
+              {
+                lower[d] = std::min(lower[d], places[i][d]);
+                upper[d] = std::max(upper[d], places[i][d]);
+              }
           }
-        double square = 0;
-        for (const double value : motion)
-          square += value * value;
-        if (!(std::sqrt(square) > negligible))
-          return (m < dim ? "the translation along " : "the rotation about ") +
-                 std::string(1,
-                             "xyz"[m < dim  ? m :
-                                   dim == 2 ? 2 :
-                                              m - dim]);
-        for (double &value : motion)
-          value /= std::sqrt(square);
-        kept.push_back(motion);
+        size = std::max(lower.distance(upper), 1e-300);
       }
-    return "";
+
+      double
+      at(const dealii::Point<dim> &place,
+         const unsigned int        motion,
+         const unsigned int        component) const
+      {
+        return rigid_motion<dim>(motion, component, place, centre) /
+               (motion < dim ? 1 : size);
+      }
+
+      dealii::Point<dim> lower, upper;
+
+    private:
+      dealii::Point<dim> centre;
+      double             size;
+    };
+
+
+
+    /** The sum of the squares of rows, by motions of parts. */
+    template <int dim>
+    class SumOfSquares
+    {
+    public:
+      explicit SumOfSquares(const std::vector<MotionsOfPart<dim>> &parts)
+        : parts(parts)
+        , matrix(parts.size() * n_rigid_motions<dim>)
+      {}
+
+      /** The row of a component at a place: of some parts, with a sign. */
+      struct InRow
+      {
+        std::uint32_t part;
+        double        sign;
+      };
+      void
+      add(const std::vector<InRow> &row,
+          const dealii::Point<dim> &place,
+          const unsigned int        component)
+      {
+        constexpr unsigned int n = n_rigid_motions<dim>;
+        for (const InRow &a : row)
+          for (const InRow &b : row)
+            for (unsigned int i = 0; i < n; ++i)
+              for (unsigned int j = 0; j < n; ++j)
+                matrix(a.part * n + i, b.part * n + j) +=
+                  a.sign * parts[a.part].at(place, i, component) * b.sign *
+                  parts[b.part].at(place, j, component);
+      }
+
+      /** The first that vanishes as they are eliminated (Cholesky). */
+      std::optional<unsigned int>
+      vanishing_pivot()
+      {
+        constexpr double negligible = 1e-12; // beside the number of rows
+        for (unsigned int k = 0; k < matrix.m(); ++k)
+          {
+            double pivot = matrix(k, k);
+            for (unsigned int j = 0; j < k; ++j)
+              pivot -= matrix(k, j) * matrix(k, j);
+            if (!(pivot > negligible * (1 + matrix(k, k))))
+              return k;
+            matrix(k, k) = std::sqrt(pivot);
+            for (unsigned int i = k + 1; i < matrix.m(); ++i)
+              {
+                for (unsigned int j = 0; j < k; ++j)
+                  matrix(i, k) -= matrix(i, j) * matrix(k, j);
+                matrix(i, k) /= matrix(k, k);
+              }
+          }
+        return std::nullopt;
+      }
+
+    private:
+      const std::vector<MotionsOfPart<dim>> &parts;
+      dealii::FullMatrix<double>             matrix;
+    };
+
+
+
+    template <int dim>
+    std::string
+    name_of(const unsigned int motion)
+    {
+      return (motion < dim ? "the translation along " : "the rotation about ") +
+             std::string(1,
+                         "xyz"[motion < dim ? motion :
+                               dim == 2     ? 2 :
+                                              motion - dim]);
+    }
+  } // namespace
+
+
+
+  // A held component, and one that a place has from two parts, are a row each,
+  // which is zero for motions that are possible. Of the sum of the squares of
+  // all rows a pivot vanishes where the motion, with some of those before it,
+  // is free.
+  template <int dim>
+  std::optional<FreeMotion<dim>>
+  free_rigid_motion(const std::vector<dealii::Point<dim>>         &places,
+                    const std::vector<std::array<bool, dim>>      &held,
+                    const std::vector<std::vector<std::uint32_t>> &parts)
+  {
+    constexpr std::size_t most_parts = 200;
+    if (parts.size() > most_parts)
+      return std::nullopt;
+
+    std::vector<MotionsOfPart<dim>>         motions;
+    std::vector<std::vector<std::uint32_t>> parts_at(places.size());
+    for (std::uint32_t part = 0; part < parts.size(); ++part)
+      {
+        motions.emplace_back(places, parts[part]);
+        for (const std::uint32_t i : parts[part])
+          parts_at[i].push_back(part);
+      }
+
+    SumOfSquares<dim> squares(motions);
+    for (std::uint32_t i = 0; i < places.size(); ++i)
+      for (int d = 0; d < dim; ++d)
+        for (std::size_t k = 0; k < parts_at[i].size(); ++k)
+          if (held[i][d])
+            squares.add({{parts_at[i][k], 1}}, places[i], d);
+          else if (k > 0)
+            squares.add({{parts_at[i][0], 1}, {parts_at[i][k], -1}},
+                        places[i],
+                        d);
+
+    const auto pivot = squares.vanishing_pivot();
+    if (!pivot)
+      return std::nullopt;
+    const auto &part = motions[*pivot / n_rigid_motions<dim>];
+    return FreeMotion<dim>{name_of<dim>(*pivot % n_rigid_motions<dim>),
+                           part.lower,
+                           part.upper};
   }
 
 
@@ -81,15 +195,17 @@ namespace limber
                   unsigned int,
                   const dealii::Point<2> &,
                   const dealii::Point<2> &);
-  template std::string
+  template std::optional<FreeMotion<2>>
   free_rigid_motion<2>(const std::vector<dealii::Point<2>> &,
-                       const std::vector<std::array<bool, 2>> &);
+                       const std::vector<std::array<bool, 2>> &,
+                       const std::vector<std::vector<std::uint32_t>> &);
   template double
   rigid_motion<3>(unsigned int,
                   unsigned int,
                   const dealii::Point<3> &,
                   const dealii::Point<3> &);
-  template std::string
+  template std::optional<FreeMotion<3>>
   free_rigid_motion<3>(const std::vector<dealii::Point<3>> &,
-                       const std::vector<std::array<bool, 3>> &);
+                       const std::vector<std::array<bool, 3>> &,
+                       const std::vector<std::vector<std::uint32_t>> &);
 } // namespace limber

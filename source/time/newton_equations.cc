@@ -2,7 +2,6 @@
 #include <limber/base/exceptions.h>
 #include <limber/points/cell_batch.h>
 #include <limber/time/averaged_volumes.h>
-#include <limber/time/free_motions.h>
 #include <limber/time/newton_equations.h>
 #include <limber/time/newton_tangent.h>
 
@@ -170,42 +169,60 @@ namespace limber
 
 
   template <int dim>
-  std::string
+  std::optional<FreeMotion<dim>>
   NewtonEquations<dim>::free_motion() const
   {
-    // Parts that hang together by cells
-    std::vector<std::uint32_t> root(nodes.size());
+    std::vector<std::uint32_t> root(nodes.n_cells());
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](std::uint32_t i) {
       while (root[i] != i)
         i = root[i] = root[root[i]];
       return i;
     };
-    for (std::size_t c = 0; c < nodes.n_cells(); ++c)
+    if (parts.problem.grid.kernel == KernelKind::linear)
       {
+        for (std::uint32_t c = 0; c < root.size(); ++c)
+          for (int d = 0; d < dim; ++d)
+            if (const auto next = nodes.neighbour(c, d, 1).cell)
+              root[find(*next)] = find(c);
+      }
+    else
+      {
+        std::vector<std::uint32_t> first_cell(nodes.size(), invalid_cell);
+        for (std::uint32_t c = 0; c < root.size(); ++c)
+          for (const std::uint32_t node : nodes.of_cell(c))
+            if (first_cell[node] == invalid_cell)
+              first_cell[node] = c;
+            else
+              root[find(c)] = find(first_cell[node]);
+      }
+
+    std::vector<std::vector<std::uint32_t>> of_parts;
+    std::vector<std::uint32_t>              part_of(root.size(), invalid_cell);
+    for (std::uint32_t c = 0; c < root.size(); ++c)
+      {
+        std::uint32_t &part = part_of[find(c)];
+        if (part == invalid_cell)
+          {
+            part = of_parts.size();
+            of_parts.emplace_back();
+          }
         const auto numbers = nodes.of_cell(c);
-        for (const std::uint32_t number : numbers)
-          root[find(number)] = find(numbers[0]);
+        of_parts[part].insert(of_parts[part].end(),
+                              numbers.begin(),
+                              numbers.end());
       }
-    for (std::uint32_t r = 0; r < nodes.size(); ++r)
+    for (auto &part : of_parts)
       {
-        if (find(r) != r)
-          continue;
-        std::vector<dealii::Point<dim>>    of_part;
-        std::vector<std::array<bool, dim>> held_there;
-        for (std::uint32_t i = 0; i < nodes.size(); ++i)
-          if (find(i) == r)
-            {
-              of_part.push_back(nodes.places()[i]);
-              held_there.emplace_back();
-              for (int d = 0; d < dim; ++d)
-                held_there.back()[d] = is_held(std::size_t(i) * dim + d);
-            }
-        const std::string motion = free_rigid_motion<dim>(of_part, held_there);
-        if (!motion.empty())
-          return motion;
+        std::sort(part.begin(), part.end());
+        part.erase(std::unique(part.begin(), part.end()), part.end());
       }
-    return "";
+
+    std::vector<std::array<bool, dim>> held_there(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      for (int d = 0; d < dim; ++d)
+        held_there[i][d] = is_held(i * dim + d);
+    return free_rigid_motion<dim>(nodes.places(), held_there, of_parts);
   }
 
 

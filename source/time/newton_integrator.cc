@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
 #include <limber/time/newton_integrator.h>
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/points_to_grid.h>
@@ -231,13 +232,14 @@ namespace limber
     equations.begin_step();
     if (!in_motion)
       {
-        const std::string motion = equations.free_motion();
-        if (!motion.empty())
+        if (const auto free = equations.free_motion())
           throw ComputationError(
-            "Nothing holds a body against " + motion +
+            "Nothing holds what lies between " + to_text(free->lower) +
+            " and " + to_text(free->upper) + " m against " + free->motion +
             ", so it has no place of equilibrium. Usually a side in "
-            "'Boundaries' is free or slip by mistake. Set one that the body "
-            "touches to 'no slip', or 'Method/Time integration = implicit'.");
+            "'Boundaries' is free or slip by mistake, or a hinge is left where "
+            "cells touch in a corner. Set a side that it touches to 'no slip', "
+            "or 'Method/Time integration = implicit'.");
       }
     gather_nodes();
     clock.lap(NewtonVerb::number_nodes);

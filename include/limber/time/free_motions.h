@@ -5,7 +5,8 @@
 #include <deal.II/base/point.h>
 
 #include <array>
-#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,15 +24,25 @@ namespace limber
                const dealii::Point<dim> &place,
                const dealii::Point<dim> &centre);
 
+  /** A rigid motion that nothing holds. */
+  template <int dim>
+  struct FreeMotion
+  {
+    std::string        motion;       // "the translation along x"
+    dealii::Point<dim> lower, upper; // of the places that have it, m
+  };
+
   /**
-   * A rigid motion that held components leave free: "the translation along x".
-   * Empty if there is none. @p held: of each place its held components; a
-   * motion of the whole of @p places is looked at.
+   * A rigid motion that held components leave to rigid parts, which may share
+   * places: parts that share one alone in the plane, or a row of them in space,
+   * are hinged. @p held: of each place its held components. @p parts: of each
+   * the numbers of its places. More than 200 parts are not looked at.
    */
   template <int dim>
-  std::string
-  free_rigid_motion(const std::vector<dealii::Point<dim>>    &places,
-                    const std::vector<std::array<bool, dim>> &held);
+  std::optional<FreeMotion<dim>>
+  free_rigid_motion(const std::vector<dealii::Point<dim>>         &places,
+                    const std::vector<std::array<bool, dim>>      &held,
+                    const std::vector<std::vector<std::uint32_t>> &parts);
 } // namespace limber
 
 #endif

@@ -6,6 +6,7 @@
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
 #include <limber/time/follower_loads.h>
+#include <limber/time/free_motions.h>
 #include <limber/time/ghost_penalty.h>
 
 #include <memory>
@@ -100,8 +101,11 @@ namespace limber
     std::vector<double>
     held_velocities(double time);
 
-    /** Empty if all that is connected is held; see free_rigid_motion(). */
-    std::string
+    /**
+     * Of what hangs together by faces of cells (with splines, which reach over
+     * cells, by nodes), if something of it is not held.
+     */
+    std::optional<FreeMotion<dim>>
     free_motion() const;
 
     /**

@@ -628,6 +628,31 @@ TEST(Choices, CohesionWithoutTensionIsTold)
 
 
 
+// Rows for explicit steps are too rare for implicit ones.
+TEST(Choices, RareRowsForAFrequencyAreTold)
+{
+  const auto told = [](std::vector<std::string> changes) {
+    for (const char *const change : {"Observables=height, swings",
+                                     "Observable height/Type=centre of mass",
+                                     "Observable height/Direction=y",
+                                     "Observable swings/Type=frequency",
+                                     "Observable swings/Observable=height"})
+      changes.emplace_back(change);
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("swings shorter than 40 of them") != std::string::npos;
+    });
+  };
+  const std::string rare     = "Output/Statistics interval=10",
+                    implicit = "Method/Time integration=implicit",
+                    step     = "Method/Time step=0.1";
+  EXPECT_TRUE(told({rare, implicit, step}));
+  EXPECT_FALSE(told({implicit, step}));
+  EXPECT_FALSE(told({rare}));
+}
+
+
+
 // A solid that turns through cells loses its spin with FLIP.
 TEST(Choices, RotationInTheCurrentFrameIsTold)
 {

@@ -442,7 +442,6 @@ TEST(NewtonSteps, NothingLoadsABodyYet)
 
 
 
-// A body that nothing holds has no place of equilibrium, and nothing has moved.
 // Two bars in a row, the first one stiffer by a factor, are pulled: where they
 // meet the strain jumps, which costs next to nothing.
 TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
@@ -507,6 +506,7 @@ TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
 
 
 
+// A body that nothing holds has no place of equilibrium, and nothing has moved.
 TEST(NewtonSteps, FreeMotionIsNamed)
 {
   struct Case
@@ -549,17 +549,42 @@ TEST(NewtonSteps, FreeMotionsOfPlaces)
                                                  {0, 0, 1}};
   const std::array<bool, 3>           all{{true, true, true}}, none{},
     z{{false, false, true}};
-  EXPECT_EQ(free_rigid_motion<3>(corners, Held{all, all, all, none}), "");
-  EXPECT_EQ(free_rigid_motion<3>(corners, Held{none, none, none, none}),
-            "the translation along x");
-  EXPECT_EQ(free_rigid_motion<3>(corners, Held{z, z, z, none}),
-            "the translation along x");
+  const auto motion = [&](const Held &held) {
+    const auto free = free_rigid_motion<3>(corners, held, {{0, 1, 2, 3}});
+    return free ? free->motion : "";
+  };
+  EXPECT_EQ(motion({all, all, all, none}), "");
+  EXPECT_EQ(motion({none, none, none, none}), "the translation along x");
+  EXPECT_EQ(motion({z, z, z, none}), "the translation along x");
   // a hinge along the first axis
-  EXPECT_EQ(free_rigid_motion<3>(corners, Held{all, all, none, none}),
-            "the rotation about x");
-  EXPECT_EQ(
-    free_rigid_motion<3>(corners, Held{all, none, none, none}).substr(0, 12),
-    "the rotation");
+  EXPECT_EQ(motion({all, all, none, none}), "the rotation about x");
+  EXPECT_EQ(motion({all, none, none, none}).substr(0, 12), "the rotation");
+}
+
+
+
+// Triangles between hinges: a rod on the floor, one that hangs on it, and the
+// arch of two rods, which holds itself.
+TEST(NewtonSteps, FreeMotionsOfHingedParts)
+{
+  using Held                                 = std::vector<std::array<bool, 2>>;
+  const std::vector<dealii::Point<2>> places = {
+    {0, 0}, {1, 1}, {0, 1}, {2, 0}, {2, 1}};
+  const std::array<bool, 2>                     all{{true, true}}, none{};
+  const std::vector<std::vector<std::uint32_t>> rods = {{0, 1, 2}, {1, 3, 4}};
+
+  const auto swings =
+    free_rigid_motion<2>(places, Held{all, none, all, none, none}, rods);
+  ASSERT_TRUE(swings.has_value());
+  EXPECT_EQ(swings->motion, "the rotation about z");
+  EXPECT_EQ(swings->lower, dealii::Point<2>(1, 0));
+  EXPECT_EQ(swings->upper, dealii::Point<2>(2, 1));
+  EXPECT_FALSE(
+    free_rigid_motion<2>(places, Held{all, none, none, all, none}, rods)
+      .has_value());
+  EXPECT_TRUE(
+    free_rigid_motion<2>(places, Held{all, none, none, none, none}, rods)
+      .has_value());
 }
 
 
