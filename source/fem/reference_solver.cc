@@ -164,10 +164,11 @@ namespace limber
     if (!(frequency > 0))
       throw ComputationError(
         "The finite element reference finds no stable step at time " +
-        std::to_string(state.time) +
-        " s: the body resists no motion, or an element is turned inside out. "
-        "Usually an earlier step was too long. Set 'Reference/Method = "
-        "implicit'.");
+          std::to_string(state.time) +
+          " s: the body resists no motion, or an element is turned inside out. "
+          "Usually an earlier step was too long. Set 'Reference/Method = "
+          "implicit'.",
+        FailureKind::growing_energy);
     return share_of_longest_step * 2 / frequency;
   }
 
@@ -197,9 +198,10 @@ namespace limber
       throw ComputationError(
         "An element of the explicit finite element reference is turned inside "
         "out or not finite at time " +
-        std::to_string(time) + " s with step " + std::to_string(step) +
-        " s. Usually the step is too long. Set 'Reference/Time step = 0', or "
-        "'Method = implicit'.");
+          std::to_string(time) + " s with step " + std::to_string(step) +
+          " s. Usually the step is too long. Set 'Reference/Time step = 0', or "
+          "'Method = implicit'.",
+        FailureKind::not_finite);
     NodalVector acceleration = model.make_vector();
     LumpedMass{model.nodal_masses()}.vmult(acceleration, unbalanced);
     model.held().replace(acceleration, state.acceleration);

@@ -477,6 +477,9 @@ namespace limber
           std::string(body.kernel != KernelKind::linear ?
                         "With 'linear' functions 'Particle shifting' keeps "
                         "the volume" :
+                      body.is_semi_implicit ?
+                        "Three points per cell edge or smaller cells keep it "
+                        "better" :
                       body.is_shifted ?
                         "Three points per cell edge, smaller cells or "
                         "'Time integration = semi-implicit' keep it better" :

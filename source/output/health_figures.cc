@@ -142,13 +142,14 @@ namespace limber
     for (const Body<dim> &body : start.problem.bodies)
       {
         BodyFigures figures;
-        figures.name          = body.name;
-        figures.is_liquid     = body.is_liquid;
-        figures.is_plastic    = body.is_plastic;
-        figures.keeps_surface = body.keeps_surface;
-        figures.is_split      = body.splits_stretched_points;
-        figures.is_shifted    = body.particle_shifting > 0;
-        figures.kernel        = start.problem.grid.kernel;
+        figures.name             = body.name;
+        figures.is_liquid        = body.is_liquid;
+        figures.is_plastic       = body.is_plastic;
+        figures.keeps_surface    = body.keeps_surface;
+        figures.is_split         = body.splits_stretched_points;
+        figures.is_shifted       = body.particle_shifting > 0;
+        figures.is_semi_implicit = body.implicit_pressure;
+        figures.kernel           = start.problem.grid.kernel;
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());

@@ -134,7 +134,7 @@ namespace limber
         const std::string checkpoint = describe_last_checkpoint();
         if (!checkpoint.empty())
           console.say(checkpoint);
-        finish("unstable",
+        finish(verdict_of(failure.kind),
                message + (checkpoint.empty() ? "" : " " + checkpoint),
                word_for(failure.kind),
                suspected.mode);

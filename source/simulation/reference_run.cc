@@ -157,7 +157,7 @@ namespace limber
           }
         catch (const ComputationError &failure)
           {
-            finish("unstable", failure.what());
+            finish(verdict_of(failure.kind), failure.what());
             throw;
           }
         const auto results = checks.results();

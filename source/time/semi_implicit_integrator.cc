@@ -148,15 +148,13 @@ namespace limber
 
 
 
-  // Whether nodes move by more than a cell. A step that the scene prescribes
-  // stands.
+  // Whether nodes move by more than a cell.
   template <int dim>
   bool
   SemiImplicitIntegrator<dim>::is_too_long()
   {
     const double cells = this->way_of_fastest_node();
-    if (!(cells > 1 && cells < 1e300) ||
-        this->parts.problem.method.time_step > 0)
+    if (!(cells > 1 && cells < 1e300))
       return false;
     too_far = cells;
     return true;

@@ -88,6 +88,13 @@ namespace limber
     return "failed";
   }
 
+  /** Of the run: "unstable", or "failed" where nothing has grown. */
+  inline const char *
+  verdict_of(const FailureKind kind)
+  {
+    return kind == FailureKind::other ? "failed" : "unstable";
+  }
+
 
 
   /** The run became unstable, not finite, or lost too many points. */

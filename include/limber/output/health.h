@@ -72,8 +72,9 @@ namespace limber
     unsigned long gaps            = 0; // empty cells between two of the body
     double        smallest_volume = 1, largest_volume = 1; // of all J
     // Of a liquid: volume of points in inner cells over that of these cells
-    double filling    = 1;
-    bool   is_shifted = false; // by 'Particle shifting'
+    double filling          = 1;
+    bool   is_shifted       = false; // by 'Particle shifting'
+    bool   is_semi_implicit = false;
   };
 
 

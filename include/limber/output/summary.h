@@ -14,10 +14,10 @@ namespace limber
   /** How a run ended and what it took, for scripts. */
   struct Summary
   {
-    // "finished", "check missed", "unstable", "stopped", "wall time"
+    // "finished", "check missed", "unstable", "failed", "stopped", "wall time"
     std::string verdict;
     std::string message; // why, where it did not finish
-    // of an unstable run, in a word or two: word_for(FailureKind)
+    // of an unstable or failed run, in a word or two: word_for(FailureKind)
     std::string failure;
     std::string suspected; // what it has most likely fallen into, see Diagnosis
     unsigned long steps             = 0;
