@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
+#include <limber/materials/linear_elastic.h>
 #include <limber/output/health_figures.h>
 #include <limber/points/shape_volume.h>
 #include <limber/points/single_point.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace limber
 {
@@ -63,6 +65,37 @@ namespace limber
       body.overlap       = volume / body.volume;
       body.overlaps_with = other.name;
       body.overlap_place = centre_of<dim>(moment, volume);
+    }
+
+
+
+    /**
+     * By which angle the points of a body have turned since the start, rms by
+     * mass: in the plane that of the polar decomposition of F, in space by
+     * tan = |axial(F)| / (tr F - 1), which is exact where they only turn.
+     */
+    template <int dim>
+    double
+    rotation_of(const PointView<dim> &points, const MPI_Comm ranks)
+    {
+      double squares = 0, mass = 0;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          double axial = 0, trace = 2 - dim;
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              trace += points.deformation[d * dim + d][p];
+              for (unsigned int e = 0; e < d; ++e)
+                axial = std::hypot(axial,
+                                   points.deformation[d * dim + e][p] -
+                                     points.deformation[e * dim + d][p]);
+            }
+          const double angle = std::atan2(axial, trace);
+          squares += points.mass[p] * angle * angle;
+          mass += points.mass[p];
+        }
+      mass = sum(mass, ranks);
+      return mass > 0 ? std::sqrt(sum(squares, ranks) / mass) : 0;
     }
   } // namespace
 
@@ -142,19 +175,20 @@ namespace limber
     for (const Body<dim> &body : start.problem.bodies)
       {
         BodyFigures figures;
-        figures.name             = body.name;
-        figures.is_liquid        = body.is_liquid;
-        figures.is_plastic       = body.is_plastic;
-        figures.keeps_surface    = body.keeps_surface;
-        figures.is_split         = body.splits_stretched_points;
-        figures.is_shifted       = body.particle_shifting > 0;
-        figures.is_semi_implicit = body.implicit_pressure;
-        figures.kernel           = start.problem.grid.kernel;
+        figures.name          = body.name;
+        figures.is_liquid     = body.is_liquid;
+        figures.is_plastic    = body.is_plastic;
+        figures.keeps_surface = body.keeps_surface;
+        figures.is_split      = body.splits_stretched_points;
+        figures.is_shifted    = body.particle_shifting > 0;
+        figures.kernel        = start.problem.grid.kernel;
         figures.points_per_edge =
           *std::min_element(body.points_per_cell_edge.begin(),
                             body.points_per_cell_edge.end());
         figures.stays_in_cells = body.frame == Frame::initial;
-        figures.is_cut         = body.placement == Placement::cut ||
+        figures.stays_upright =
+          figures.stays_in_cells && body.law == LinearElastic::name;
+        figures.is_cut = body.placement == Placement::cut ||
                          body.placement == Placement::fitted ||
                          body.placement == Placement::gauss;
         at_start.push_back(figures);
@@ -223,6 +257,10 @@ namespace limber
           max(summary.largest_volume, state.grid.communicator);
       }
     look_at_crossings(state, figures.bodies);
+    for (std::size_t b = 0; b < figures.bodies.size(); ++b)
+      if (figures.bodies[b].stays_upright)
+        figures.bodies[b].rotation =
+          rotation_of(state.bodies[b]->points.view(), state.grid.communicator);
     look_at_cells(state, figures.bodies);
     figures.obstacles = look_at_obstacles(state);
     figures.put_out   = totals.put_out;

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/materials/linear_elastic.h>
 #include <limber/materials/neo_hookean.h>
 #include <limber/problem/ball.h>
 #include <limber/problem/block.h>
@@ -19,6 +20,9 @@ namespace limber
   {
     // Of edges: beyond, a body may fold onto itself when it hits something.
     constexpr double slender = 4;
+
+    // Laws for small rotations take half the square of one for a strain.
+    constexpr double small_rotation = 0.1;
 
     // A disc whose fall has .13 times its Young's modulus as energy per volume
     // bounces in its initial frame, with 1.3 times its points invert.
@@ -374,6 +378,18 @@ namespace limber
 
 
 
+    /** Whether its law, with the gradient since the start, takes what the body
+     * turns for a strain. */
+    template <int dim>
+    bool
+    turns_too_far(const Body<dim> &body, const double end_time)
+    {
+      return body.law == LinearElastic::name &&
+             initial_rotation(body, end_time) > small_rotation;
+    }
+
+
+
     template <int dim>
     void
     choose_frame(const Section                  &root,
@@ -400,6 +416,8 @@ namespace limber
         if (meeting.empty())
           meeting = may_flow_far(part, problem.method.integration) ?
                       "it may flow far" :
+                    turns_too_far(part, problem.end_time) ?
+                      "its law is for small rotations, and it turns" :
                       what_it_may_meet(root, part, problem);
       const bool bounces = !meeting.empty() && may_bounce(root, body, problem);
       body.frame = !obstacle && (meeting.empty() || bounces) ? Frame::initial :

@@ -118,8 +118,8 @@ namespace limber
         {
           if (body.is_liquid || body.frame == Frame::initial)
             continue;
-          const double turns =
-            spin(body) * problem.end_time / (2 * dealii::numbers::PI);
+          const double turns = initial_rotation(body, problem.end_time) /
+                               (2 * dealii::numbers::PI);
           if (turns > fewest_turns)
             problem.notes.push_back(
               "Body " + in_quotes(body.name) + " makes " + brief(turns) +
@@ -211,6 +211,15 @@ namespace limber
 
 
   template <int dim>
+  double
+  initial_rotation(const Body<dim> &body, const double end_time)
+  {
+    return spin(body) * end_time;
+  }
+
+
+
+  template <int dim>
   void
   warn_of_solid_motion(Problem<dim> &problem)
   {
@@ -221,6 +230,10 @@ namespace limber
 
 
 
+  template double
+  initial_rotation(const Body<2> &, double);
+  template double
+  initial_rotation(const Body<3> &, double);
   template void
   warn_of_solid_motion(Problem<2> &);
   template void

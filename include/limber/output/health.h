@@ -72,9 +72,12 @@ namespace limber
     unsigned long gaps            = 0; // empty cells between two of the body
     double        smallest_volume = 1, largest_volume = 1; // of all J
     // Of a liquid: volume of points in inner cells over that of these cells
-    double filling          = 1;
-    bool   is_shifted       = false; // by 'Particle shifting'
-    bool   is_semi_implicit = false;
+    double filling    = 1;
+    bool   is_shifted = false; // by 'Particle shifting'
+    // Whether its law is for small rotations, in the initial frame; and the
+    // angle by which its points have turned since the start, rms
+    bool   stays_upright = false;
+    double rotation      = 0;
   };
 
 

@@ -192,6 +192,12 @@ namespace limber
   void
   warn_of_solid_motion(Problem<dim> &problem);
 
+  /** By which angle the initial velocity of a body turns it until the end of
+   * the run, if nothing stops it, about (source/problem/solid_motion.cc). */
+  template <int dim>
+  double
+  initial_rotation(const Body<dim> &body, double end_time);
+
   /** Needs grid, sides and gravity; chooses the kernel with the frames. */
   template <int dim>
   void

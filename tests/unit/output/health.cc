@@ -176,6 +176,20 @@ namespace limber::test
 
 
 
+  TEST(Health, RotationIsToldOfLawsThatCannotBearIt)
+  {
+    HealthFigures figures      = sound();
+    figures.bodies[0].rotation = 1;
+    for (const HealthLine &one : judge(figures))
+      EXPECT_NE(one.name, "rotation");
+    figures.bodies[0].stays_upright = true;
+    expect_bad("rotation", figures, "Body beam/Material");
+    figures.bodies[0].rotation = 0.05;
+    EXPECT_EQ(line("rotation", figures).verdict, Verdict::good);
+  }
+
+
+
   TEST(Health, CreepIsBadWhereTheBalanceMissesWhatItTakes)
   {
     HealthFigures figures                    = sound();
