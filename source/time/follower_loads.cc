@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/point_support.h>
+#include <limber/time/closed_surface.h>
 #include <limber/time/follower_loads.h>
 #include <limber/time/point_deformation.h>
 
@@ -82,7 +83,7 @@ namespace limber
               return result;
             };
             Piece piece;
-            piece.load            = &face.load;
+            piece.face            = &face;
             piece.edges           = former->edges;
             const Numbers numbers = numbers_of(at, points.cell[p]);
             piece.numbers.assign(numbers.begin(), numbers.begin() + at.n);
@@ -128,7 +129,8 @@ namespace limber
   FollowerLoads<dim>::pressure(const Piece          &piece,
                                const FacePiece<dim> &at) const
   {
-    return factor * piece.load->formula.value(dealii::Point<dim>(at.arm), time);
+    return factor *
+           piece.face->load.formula.value(dealii::Point<dim>(at.arm), time);
   }
 
 
@@ -138,16 +140,9 @@ namespace limber
   FollowerLoads<dim>::add_forces(const std::vector<double> &displacement,
                                  std::vector<double>       &forces) const
   {
-    for (const Piece &piece : pieces)
-      {
-        const FacePiece<dim>         now = moved(piece, displacement);
-        const dealii::Tensor<1, dim> force =
-          -pressure(piece, now) * now.area_vector();
-        for (std::size_t i = 0; i < piece.numbers.size(); ++i)
-          for (int d = 0; d < dim; ++d)
-            forces[std::size_t(piece.numbers[i]) * dim + d] +=
-              piece.weights[i] * force[d];
-      }
+    for (const LoadedFace<dim> &face : loads.loaded_faces())
+      if (face.load.is_pressure)
+        add_pressures(face, displacement, forces);
     for_each_point(displacement,
                    [&](const dealii::Point<dim> &place,
                        const double              mass,
@@ -161,6 +156,40 @@ namespace limber
                          forces[std::size_t(numbers[i]) * dim + d] +=
                            at.value[i] * force[d];
                    });
+  }
+
+
+
+  template <int dim>
+  void
+  FollowerLoads<dim>::add_pressures(const LoadedFace<dim>     &face,
+                                    const std::vector<double> &displacement,
+                                    std::vector<double>       &forces) const
+  {
+    std::vector<std::pair<const Piece *, FacePiece<dim>>> of_face;
+    for (const Piece &piece : pieces)
+      if (piece.face == &face)
+        of_face.emplace_back(&piece, moved(piece, displacement));
+
+    ClosedSurface<dim> surface(face.centre_at_start());
+    const bool         is_closed = face.is_closed();
+    if (is_closed)
+      {
+        for (const auto &[piece, now] : of_face)
+          surface.add(dealii::Point<dim>(now.arm), now.area_vector());
+        surface.finish(parts.grid.communicator);
+      }
+    for (const auto &[piece, now] : of_face)
+      {
+        dealii::Tensor<1, dim> area = now.area_vector();
+        if (is_closed)
+          area += surface.change(dealii::Point<dim>(now.arm), area);
+        const dealii::Tensor<1, dim> force = -pressure(*piece, now) * area;
+        for (std::size_t i = 0; i < piece->numbers.size(); ++i)
+          for (int d = 0; d < dim; ++d)
+            forces[std::size_t(piece->numbers[i]) * dim + d] +=
+              piece->weights[i] * force[d];
+      }
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/records_of_ranks.h>
+#include <limber/time/closed_surface.h>
 #include <limber/time/loaded_face.h>
 
 #include <algorithm>
@@ -50,6 +51,9 @@ namespace limber
     // have at least this share of the mass of the heaviest point near by, both
     // as if they had been made for cells of the same size.
     constexpr double least_share_of_piece = 0.25;
+
+    // What a closed surface may miss by round-off, over its area
+    constexpr double closed = 1e-6;
 
 
 
@@ -158,6 +162,17 @@ namespace limber
     auto all = pieces_at_start(load, body.description, grid.description);
     if (all.empty())
       throw InputError(nothing_loaded(load));
+    for (const FacePiece<dim> &piece : all)
+      centre += piece.arm / double(all.size());
+    if (load.is_pressure)
+      {
+        ClosedSurface<dim> surface(centre);
+        for (const FacePiece<dim> &piece : all)
+          surface.add(dealii::Point<dim>(piece.arm), piece.area_vector());
+        surface.finish(MPI_COMM_SELF);
+        if (surface.opening() < closed)
+          n_of_closed = all.size();
+      }
     if (!find_carriers(all).empty())
       throw InputError("'Face load " + load.name +
                        "' finds no point of body '" + load.body +
@@ -293,6 +308,17 @@ namespace limber
     for (const auto &of_rank : gather_records(leaving, grid.communicator))
       adopt(of_rank);
     order = 0;
+  }
+
+
+
+  template <int dim>
+  bool
+  LoadedFace<dim>::is_closed() const
+  {
+    return n_of_closed > 0 &&
+           dealii::Utilities::MPI::sum(pieces.size(), grid.communicator) ==
+             n_of_closed;
   }
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/point_support.h>
+#include <limber/time/closed_surface.h>
 #include <limber/time/contact.h>
 #include <limber/time/loads.h>
 #include <limber/time/point_deformation.h>
@@ -171,12 +172,23 @@ namespace limber
     const FaceLoad<dim> &load     = face.load;
     const PointView<dim> points   = face.body.points.view();
     LazyArray<double>   &of_nodes = forces[face.body.description.nodal_field];
+    ClosedSurface<dim>   surface(face.centre_at_start());
+    const bool           is_closed = face.is_closed();
+    if (is_closed)
+      {
+        for (const auto &[p, piece] : face.here())
+          surface.add(position(points, p) + piece->arm, piece->area_vector());
+        surface.finish(grid.communicator);
+      }
     for (const auto &[p, piece] : face.here())
       {
+        const dealii::Point<dim> place = position(points, p) + piece->arm;
+        dealii::Tensor<1, dim>   area  = piece->area_vector();
+        if (is_closed)
+          area += surface.change(place, area);
         const dealii::Tensor<1, dim> force =
           load.is_pressure ?
-            -load.formula.value(position(points, p) + piece->arm, time) *
-              piece->area_vector() :
+            -load.formula.value(place, time) * area :
             piece->area * load.formula.vector(piece->reference, time);
         const Support<dim> at = support_of_point<dim>(grid.view(), points, p);
         const dealii::Tensor<1, dim> arm = pull_back(points, p) * piece->arm;

@@ -61,7 +61,7 @@ namespace limber
     }
 
     /** Add the forces on nodes by the pieces of this rank, N; all by equation
-     * (NewtonEquations). */
+     * (NewtonEquations). Collective. */
     void
     add_forces(const std::vector<double> &displacement,
                std::vector<double>       &forces) const;
@@ -73,7 +73,7 @@ namespace limber
     /**
      * Minus the derivative of these forces, N/m, row by row of the nodes with
      * these numbers; or its symmetric part. That a pressure may change with
-     * the place is left out.
+     * the place is left out, and that of ClosedSurface.
      */
     void
     add_tangent(const std::vector<double> &displacement,
@@ -83,7 +83,7 @@ namespace limber
   private:
     struct Piece
     {
-      const FaceLoad<dim>       *load;
+      const LoadedFace<dim>     *face;
       std::vector<std::uint32_t> numbers; // of nodes
       std::vector<double>        weights; // w_i
       // a . grad N_i by edge
@@ -103,6 +103,10 @@ namespace limber
     moved(const Piece &piece, const std::vector<double> &displacement) const;
     double
     pressure(const Piece &piece, const FacePiece<dim> &at) const;
+    void
+    add_pressures(const LoadedFace<dim>     &face,
+                  const std::vector<double> &displacement,
+                  std::vector<double>       &forces) const;
     void
     add_tangent_of_pressures(const std::vector<double> &displacement,
                              bool                       symmetric,

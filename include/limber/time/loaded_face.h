@@ -58,6 +58,18 @@ namespace limber
     void
     restore(const std::vector<FacePiece<dim>> &all);
 
+    /** Whether it is a pressure on a whole surface, of which no piece is
+     * lost: see ClosedSurface. Collective. */
+    bool
+    is_closed() const;
+
+    /** The centre of its pieces at the start, m. */
+    const dealii::Point<dim> &
+    centre_at_start() const
+    {
+      return centre;
+    }
+
     const FaceLoad<dim>     &load;
     const MaterialBody<dim> &body;
 
@@ -72,7 +84,10 @@ namespace limber
     const BackgroundGrid<dim>  &grid;
     std::vector<FacePiece<dim>> pieces;
     std::vector<Here>           present;
-    unsigned long               order = 0; // of points, when `present` was made
+    dealii::Point<dim>          centre;
+    // Of a surface that is closed at the start, else 0
+    std::size_t   n_of_closed = 0;
+    unsigned long order       = 0; // of points, when `present` was made
   };
 } // namespace limber
 

@@ -337,3 +337,61 @@ TEST(SurfaceLoads, PressedBallShrinksEvenly)
       EXPECT_LT(fine, 0.4 * coarse) << treatment;
     }
 }
+
+
+
+// A free disc, off the lattice, under a pressure of a tenth of its stiffness:
+// pieces that follow one point each would push and turn it.
+TEST(SurfaceLoads, APressureAllAroundDoesNotPushNorTurnAFreeBody)
+{
+  const std::string disc = "set Shape = ball\nsubsection Ball\n"
+                           "set Centre = 1.13, 1.11\nset Radius = 0.7\nend\n";
+  const std::string rise = "set Pressure = 100*if(t < 0.1, t/0.1, 1)\n";
+  const std::vector<std::string> free = {"Boundaries/left=free",
+                                         "Boundaries/right=free",
+                                         "Boundaries/bottom=free",
+                                         "Boundaries/top=free"};
+  for (const std::vector<std::string> &way :
+       {std::vector<std::string>{"Body body/Frame=initial"},
+        {"Body body/Frame=current", "Method/Kernel=quadratic"},
+        {"Body body/Frame=initial", "Method/Time integration=implicit"}})
+    {
+      std::vector<std::string> changes = free;
+      changes.insert(changes.end(), way.begin(), way.end());
+      const bool explicit_steps = way.back().find("implicit") == way[0].npos;
+      if (!explicit_steps)
+        changes.emplace_back("Method/Time step=0.01");
+      SceneRun<2> run(scene<2>(disc, 16) + rise + end, changes);
+      const auto  start = run.positions();
+      if (explicit_steps)
+        run.advance_to(0.3);
+      else
+        for (int step = 0; step < 30; ++step)
+          run.advance(0.01);
+
+      const PointView<2> points = run.points();
+      double             mass = 0, spin = 0, inertia = 0, smallest = 1;
+      Tensor<1, 2>       way_of_centre;
+      Point<2>           centre;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          mass += points.mass[p];
+          centre += points.mass[p] * run.position(p);
+          way_of_centre +=
+            points.mass[p] *
+            (run.position(p) - start[run.bodies[0]->points.id(p)]);
+        }
+      centre /= mass;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          const Tensor<1, 2> arm  = run.position(p) - centre;
+          const Tensor<1, 2> from = start[run.bodies[0]->points.id(p)] - centre;
+          spin += points.mass[p] * (from[0] * arm[1] - from[1] * arm[0]);
+          inertia += points.mass[p] * arm.norm_square();
+          smallest = std::min(smallest, arm.norm() / from.norm());
+        }
+      EXPECT_LT(smallest, 0.97) << way[0]; // it is pressed
+      EXPECT_LT((way_of_centre / mass).norm(), 1e-5) << changes.back();
+      EXPECT_LT(std::abs(spin / inertia), 1e-4) << changes.back();
+    }
+}
