@@ -32,7 +32,9 @@ namespace limber
   serialize(Archive &archive, ZeroCrossings &crossings, const unsigned int)
   {
     archive &crossings.last_time &crossings.last_value &crossings
-      .sign &crossings.count &crossings.first &crossings.last;
+      .side &crossings.swing_sign &crossings.swing &crossings.count &crossings
+      .first &crossings.last &crossings.before &crossings.entered &crossings
+      .is_crossing;
   }
 
 
@@ -297,7 +299,7 @@ namespace limber
     if (state.time < 0 || state.step_size < 0 || state.next_pictures < 0)
       return "has negative times in 'run'";
     for (const ZeroCrossings &crossings : state.observables.crossings)
-      if (std::abs(crossings.sign) > 1)
+      if (std::abs(crossings.side) > 1 || std::abs(crossings.swing_sign) > 1)
         return "has a sign in 'run' that is none";
     if (!in_order(state.pictures, state.time))
       return "has pictures in 'run' that are not in order";

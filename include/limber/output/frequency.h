@@ -2,6 +2,8 @@
 #ifndef limber_output_frequency_h
 #define limber_output_frequency_h
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace limber
@@ -9,16 +11,26 @@ namespace limber
   /**
    * The frequency of a quantity that swings about zero, from the times at
    * which it changes its sign, interpolated linearly between rows: the mean
-   * over all half periods so far. Plain, for checkpoints.
+   * over all half periods so far. Noise may take a quantity over zero several
+   * times in a row: these count once, half way between the first and the last,
+   * and not at all if it stays on its side. Plain, for checkpoints.
    */
   struct ZeroCrossings
   {
-    double       last_time  = 0; // of the last row, s
-    double       last_value = 0;
-    int          sign       = 0; // the last that was not zero
-    unsigned int count      = 0;
-    double       first      = 0; // time of the first crossing, s
-    double       last       = 0; // and of the last
+    /** Of the largest value of a half swing: beyond, the next has begun. */
+    static constexpr double share_of_swing = 0.2;
+
+    double       last_time   = 0; // of the last row, s
+    double       last_value  = 0;
+    int          side        = 0; // sign of the last that was not zero
+    int          swing_sign  = 0; // of the half swing, which may have noise
+    double       swing       = 0; // the largest of its values
+    unsigned int count       = 0;
+    double       first       = 0; // time of the first crossing, s
+    double       last        = 0; // and of the last
+    double       before      = 0; // of the one before it
+    double       entered     = 0; // when it went over first, of several times
+    bool         is_crossing = false; // and has settled on neither side yet
 
     /** A further row; values that are not a number are passed over. */
     void
@@ -26,16 +38,26 @@ namespace limber
     {
       if (!(value == value))
         return;
-      const int new_sign = (value > 0) - (value < 0);
-      if (sign * new_sign < 0)
+      const int new_side = (value > 0) - (value < 0);
+      if (side * new_side < 0)
+        cross(new_side,
+              last_time +
+                last_value / (last_value - value) * (time - last_time));
+      if (new_side != 0)
+        side = new_side;
+      if (swing_sign == 0)
+        swing_sign = side;
+
+      const double size = std::abs(value);
+      if (size > share_of_swing * swing)
         {
-          const double share = last_value / (last_value - value);
-          last               = last_time + share * (time - last_time);
-          if (count++ == 0)
-            first = last;
+          if (side != swing_sign)
+            swing = 0;
+          swing_sign  = side;
+          is_crossing = false;
         }
-      if (new_sign != 0)
-        sign = new_sign;
+      if (side == swing_sign)
+        swing = std::max(swing, size);
       last_time  = time;
       last_value = value;
     }
@@ -46,6 +68,27 @@ namespace limber
     {
       return count < 2 ? std::numeric_limits<double>::quiet_NaN() :
                          0.5 * (count - 1) / (last - first);
+    }
+
+  private:
+    void
+    cross(const int new_side, const double time)
+    {
+      if (new_side == swing_sign)
+        {
+          --count;
+          last = before;
+          return;
+        }
+      if (!is_crossing)
+        {
+          entered     = time;
+          is_crossing = true;
+        }
+      before = last;
+      last   = 0.5 * (entered + time);
+      if (count++ == 0)
+        first = last;
     }
   };
 } // namespace limber

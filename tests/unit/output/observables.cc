@@ -60,6 +60,28 @@ namespace limber::test
 
 
 
+  // Noise of a seventh of the swing crosses zero several times on the way.
+  TEST(Frequency, NoiseAboutZeroIsNoSwing)
+  {
+    ZeroCrossings crossings;
+    const double  pi = dealii::numbers::PI;
+    for (unsigned int i = 0; i <= 4000; ++i)
+      crossings.add(i * 1e-3,
+                    std::sin(2 * pi * 1.3 * i * 1e-3 + 0.1) +
+                      0.15 * std::sin(2 * pi * 87.1 * i * 1e-3));
+    EXPECT_EQ(crossings.count, 10u);
+    EXPECT_NEAR(crossings.frequency(), 1.3, 0.01);
+
+    // once up and down is a half swing, a ripple of it is none
+    ZeroCrossings few;
+    for (const double value : {1., -0.1, 0.2, -0.1, 1., -1.})
+      few.add(few.last_time + 1, value);
+    EXPECT_EQ(few.count, 1u);
+    EXPECT_DOUBLE_EQ(few.first, few.last);
+  }
+
+
+
   TEST(Observables, FollowTheNearestPointWhereverItIsSorted)
   {
     SampleRun<2> run(false);
