@@ -21,7 +21,8 @@ namespace limber
     // Of edges: beyond, a body may fold onto itself when it hits something.
     constexpr double slender = 4;
 
-    // Laws for small rotations take half the square of one for a strain.
+    // What a body that turns by less does not feel of it, rad. Laws for small
+    // rotations take half of its square for a strain.
     constexpr double small_rotation = 0.1;
 
     // A disc whose fall has .13 times its Young's modulus as energy per volume
@@ -525,9 +526,14 @@ namespace limber
       // Linear functions bend along the axes alone: across the cells a strip
       // of two of them is a fifth too stiff, with splines right to 0.3 %. But
       // with splines the spin of a free body feeds vibrations.
+      const bool may_spin =
+        !root.subsection("Loads").list("Face loads").empty();
       for (const auto &body : problem.bodies)
         if (!body.is_liquid && !is_upright(*body.shape) &&
-            is_held(body, problem) && root.list("Obstacles").empty())
+            root.list("Obstacles").empty() &&
+            (is_held(body, problem) ||
+             (!may_spin && !is_compact(*body.shape) &&
+              initial_rotation(body, problem.end_time) < small_rotation)))
           {
             problem.grid.kernel = KernelKind::quadratic;
             return say("'quadratic', as linear functions are too stiff where "

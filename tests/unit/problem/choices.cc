@@ -299,6 +299,15 @@ TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
             KernelKind::linear);
   EXPECT_EQ(kernel_and_notes({block, tilted, "Boundaries/bottom=free"}).first,
             KernelKind::linear);
+  // but if it is slender and does not spin
+  const std::string strip =
+    "Body block/Block/Corners=0.5, 0.5; 1.3, 1.3; 1.2, 1.4; 0.4, 0.6";
+  const std::string spin = "Body block/Initial velocity=1 - y; x - 1";
+  EXPECT_EQ(kernel_and_notes({block, strip, "Boundaries/bottom=free"}).first,
+            KernelKind::quadratic);
+  EXPECT_EQ(
+    kernel_and_notes({block, strip, spin, "Boundaries/bottom=free"}).first,
+    KernelKind::linear);
   EXPECT_EQ(kernel_and_notes({block, tilted}).first, KernelKind::quadratic);
   EXPECT_EQ(kernel_and_notes({block, tilted}).second.find(warning),
             std::string::npos);
