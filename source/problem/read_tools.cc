@@ -159,6 +159,18 @@ namespace limber
 
 
 
+  template <int dim>
+  std::string
+  brief(const dealii::Point<dim> &point)
+  {
+    std::vector<std::string> parts;
+    for (unsigned int d = 0; d < dim; ++d)
+      parts.push_back(brief(point[d]));
+    return "(" + join(parts, ", ") + ")";
+  }
+
+
+
   void
   check_name(const std::string              &kind,
              const std::string              &name,
@@ -188,7 +200,8 @@ namespace limber
                                           const Constants &,        \
                                           const Corners<dim> &);    \
   template Corners<dim>       corners<dim>(const GridDescription<dim> &); \
-  template std::string        to_text<dim>(const dealii::Point<dim> &);
+  template std::string        to_text<dim>(const dealii::Point<dim> &);   \
+  template std::string        brief<dim>(const dealii::Point<dim> &);
 
   INSTANTIATE(2)
   INSTANTIATE(3)

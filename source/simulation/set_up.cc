@@ -333,6 +333,71 @@ namespace limber
       for (const auto &body : bodies)
         refuse_thin_body(grid, *body);
     }
+    /** Whether a place and those next to it lie in a shape. */
+    template <int dim>
+    bool
+    is_well_inside(const Shape<dim>         &shape,
+                   const dealii::Point<dim> &place,
+                   const double              margin)
+    {
+      for (int d = 0; d < dim; ++d)
+        for (const double way : {-margin, margin})
+          {
+            dealii::Point<dim> next = place;
+            next[d] += way;
+            if (!shape.contains(next))
+              return false;
+          }
+      return shape.contains(place);
+    }
+
+
+
+    /**
+     * What a contact would throw apart; points in a face that bodies share are
+     * in neither. Bodies that share their nodes may overlap a little: health
+     * tells how much.
+     */
+    template <int dim>
+    void
+    refuse_overlaps(const BackgroundGrid<dim> &grid, const Bodies<dim> &bodies)
+    {
+      const double margin = 1e-3 * grid.smallest_edge;
+      for (const auto &one : bodies)
+        for (const auto &other : bodies)
+          {
+            const Body<dim> &body   = one->description,
+                            &second = other->description;
+            if (body.nodal_field == second.nodal_field)
+              continue;
+            double               n = 0;
+            dealii::Point<dim>   places;
+            const PointView<dim> points = one->points.view();
+            for (std::size_t p = 0; p < points.size; ++p)
+              {
+                dealii::Point<dim> place;
+                for (int d = 0; d < dim; ++d)
+                  place[d] = points.position[d][p];
+                if (!is_well_inside<dim>(*second.shape, place, margin))
+                  continue;
+                n += 1;
+                places += place;
+              }
+            n = dealii::Utilities::MPI::sum(n, grid.communicator);
+            const dealii::Tensor<1, dim> sum =
+              dealii::Utilities::MPI::sum(dealii::Tensor<1, dim>(places),
+                                          grid.communicator);
+            if (n > 0)
+              throw InputError(
+                "Bodies " + in_quotes(body.name) + " and " +
+                in_quotes(second.name) + " overlap at the start: " + brief(n) +
+                " points of the first lie in the second, around " +
+                brief<dim>(dealii::Point<dim>(sum / n)) +
+                " m, and a contact would throw them apart. Usually one is "
+                "misplaced. Move 'Body " +
+                body.name + "' or 'Body " + second.name + "'.");
+          }
+    }
   } // namespace
 
 
@@ -345,6 +410,7 @@ namespace limber
     for (const Body<dim> &body : problem.bodies)
       bodies.push_back(make_body(problem, body, grid));
     seed_on_wanted_mesh(problem, grid, bodies);
+    refuse_overlaps(grid, bodies);
 
     if (dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
       balance(grid, bodies);

@@ -234,8 +234,8 @@ namespace limber
       {
         if (const auto free = equations.free_motion())
           throw ComputationError(
-            "Nothing holds what lies between " + to_text(free->lower) +
-            " and " + to_text(free->upper) + " m against " + free->motion +
+            "Nothing holds what lies between " + brief<dim>(free->lower) +
+            " and " + brief<dim>(free->upper) + " m against " + free->motion +
             ", so it has no place of equilibrium. Usually a side in "
             "'Boundaries' is free or slip by mistake, or a hinge is left where "
             "cells touch in a corner. Set a side that it touches to 'no slip', "

@@ -82,6 +82,11 @@ namespace limber
   std::string
   to_text(const dealii::Point<dim> &point);
 
+  /** The same with four significant digits, for messages. */
+  template <int dim>
+  std::string
+  brief(const dealii::Point<dim> &point);
+
   /** Throws with a hint, unless @p name is one of @p known. */
   void
   check_name(const std::string              &kind,
