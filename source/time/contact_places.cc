@@ -403,6 +403,9 @@ namespace limber
                            const Law                    &law,
                            const double                  step)
   {
+    const auto flows = [this](const Candidate &candidate) {
+      return parts.bodies[candidate.body]->description.is_plastic;
+    };
     for (const Candidate &p : acting)
       {
         if (p.rank != this_rank)
@@ -426,7 +429,7 @@ namespace limber
           }
         if (least_gap > spacing)
           continue;
-        double sum = 0, gap = 0, approach = 0;
+        double sum = 0, gap = 0, approach = 0, flowing = 0;
         Vector aside;
         for (Facing &q : facing)
           {
@@ -436,6 +439,8 @@ namespace limber
               q.weight = 0;
             sum += q.weight;
             gap += q.weight * q.gap;
+            if (flows(other[q.candidate]))
+              flowing += q.weight * other[q.candidate].reach;
             aside += q.weight * q.along;
             approach += q.weight *
                         ((p.velocity - other[q.candidate].velocity) * p.normal);
@@ -447,6 +452,13 @@ namespace limber
         approach = std::max(0., approach / sum);
         if (!may_press(gap, step * approach, p.reach))
           continue;
+        flowing /= sum;
+        if (flows(p))
+          flowing += p.reach;
+        const double left       = share_left(gap, flowing);
+        const auto   reach_left = [&](const Candidate &candidate) {
+          return (flows(candidate) ? left : 1) * candidate.reach;
+        };
         const auto place_number =
           static_cast<std::uint32_t>(impulses.all().size());
         auto &place    = impulses.add_place();
@@ -454,13 +466,13 @@ namespace limber
         place.least    = least_growth(gap, p.reach) / step;
         place.friction = law.friction;
         place.mass     = p.mass;
-        add_part<degree>(p, p.reach * p.normal, 1);
+        add_part<degree>(p, reach_left(p) * p.normal, 1);
         for (const Facing &q : facing)
           {
             const Candidate &other_point = other[q.candidate];
             if (!(q.weight > 0))
               continue;
-            const Vector arm    = -other_point.reach * p.normal - aside;
+            const Vector arm    = -reach_left(other_point) * p.normal - aside;
             const double weight = -q.weight / sum;
             if (other_point.rank == this_rank)
               add_part<degree>(other_point, arm, weight);

@@ -379,10 +379,13 @@ namespace limber
       against = way.velocity(near.x, step);
     for (int d = 0; d < dim; ++d)
       velocity[d] = points.velocity[d][near.point];
-    const double gap      = near.distance.value - near.reach;
+    double       gap      = near.distance.value - near.reach;
     const double approach = std::max(0., (against - velocity) * normal);
     if (!may_press(gap, step * approach, near.reach))
       return;
+    double reach = near.reach;
+    if (parts.bodies[body]->description.is_plastic)
+      reach *= share_left(gap, reach);
 
     Place &place           = impulses.add_place();
     place.normal           = normal;
@@ -400,10 +403,10 @@ namespace limber
           slope += direction[d] * support.gradient[k][d];
         impulses.add_share(parts.bodies[body]->description.nodal_field,
                            support.node[k],
-                           support.value[k] - near.reach * slope);
+                           support.value[k] - reach * slope);
       }
     touches.push_back(
-      {near.obstacle, near.x - near.reach * normal - way.before.centre()});
+      {near.obstacle, near.x - reach * normal - way.before.centre()});
   }
 
 

@@ -46,6 +46,25 @@ namespace limber
 
 
 
+  /**
+   * How far what flows goes from its points is not known well: others come
+   * between those of its surface, and all are sheared. Pushed out of what it
+   * touches it would gain energy, so where a @p gap (m) is negative, it ends
+   * there instead. How much is left of the way (m) that it goes from its
+   * points; the rest is no longer part of the gap.
+   */
+  inline double
+  share_left(double &gap, const double way)
+  {
+    if (gap >= 0 || !(way > 0))
+      return 1;
+    const double share = std::max(0., 1 + gap / way);
+    gap += (1 - share) * way;
+    return share;
+  }
+
+
+
   /** Of an impulse (kg m/s) at the end of an arm (m), kg m^2/s; in the plane
    * the last of three. */
   template <int dim>

@@ -312,8 +312,12 @@ namespace limber::test
     figures.contact              = 40;
     figures.bodies[0].is_plastic = true;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
-    figures.contact = -15; // but none may be given
+    figures.contact = -3; // but none may be given
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::bad);
+    figures.contact = -1;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::look);
+    figures.contact = -0.4; // that of scenes with a reference
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
     figures.bodies[0].is_plastic = false;
     figures.bodies[0].is_liquid  = true;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
