@@ -157,12 +157,14 @@ namespace limber
       shares.begin.back() = end;
     }
 
+    // A node with a share of zero would not be known on other ranks.
     void
     add_share(const unsigned int  field,
               const std::uint32_t node,
               const double        value)
     {
-      add_share(field, node, value, std::abs(value));
+      if (value != 0)
+        add_share(field, node, value, std::abs(value));
     }
 
     /**
