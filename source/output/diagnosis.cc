@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
 #include <limber/output/diagnosis.h>
+#include <limber/problem/filter_bound.h>
 
 #include <algorithm>
 #include <string>
@@ -22,7 +23,8 @@ namespace limber
      * USL needs C < sqrt(2 xi) where a cell at the rim of a body is filled to
      * xi; in full cells it holds to 0.7. Points that cross make every xi, so
      * what is seen now need not be what began it. It is sound that does it,
-     * which semi-implicit steps do not follow.
+     * which semi-implicit steps do not follow. With FMPM(k) it is C < sqrt(2 xi
+     * / k). Smooth functions are as small in such a cell as the forces in it.
      */
     template <int dim>
     Diagnosis
@@ -35,13 +37,21 @@ namespace limber
       if (method.order != StressUpdateOrder::usl || courant_number > 0.7 ||
           method.integration == TimeIntegration::semi_implicit)
         return {};
+      const bool filters = filters_velocity(method.transfer);
+      if (filters && problem.grid.kernel != KernelKind::linear)
+        return {};
+      const unsigned int order =
+        method.transfer == Transfer::fmpm ? method.transfer_order : 1;
       return {"small cut cell",
-              "with the stress update 'usl', Courant number " +
-                brief(courant_number) + " fails in cells filled to less than " +
-                brief(0.5 * courant_number * courant_number) +
+              std::string("with ") +
+                (filters ? "a transfer that filters the velocity" :
+                           "the stress update 'usl'") +
+                ", Courant number " + brief(courant_number) +
+                " fails in cells filled to less than " +
+                brief(0.5 * order * courant_number * courant_number) +
                 " edges (body '" + body.body +
                 "' now: " + brief(2 * body.filling) + "). Set " +
-                (!filters_velocity(method.transfer) ?
+                (!filters ?
                    "'Method/Stress update = auto'." :
                  problem.grid.against_splines.empty() ?
                    "'Method/Kernel = quadratic', or 'Transfer = flip'." :
@@ -82,6 +92,15 @@ namespace limber
           if (!found.mode.empty())
             return found;
         }
+      // Where the step has been set; one that follows from the Courant number
+      // is within this.
+      if (const double bound = courant_number_of_filter(problem);
+          symptoms.courant_number > bound * (1 + 1e-6))
+        return {"Courant number",
+                "the last step had Courant number " +
+                  brief(symptoms.courant_number) + ", and the transfer holds " +
+                  brief(bound) +
+                  ". Set 'Method/Time step = 0', or 'Transfer = flip'."};
       // MUSL and USF hold to 1.3 and more in the bulk; locked or not.
       if (symptoms.courant_number > 1)
         return {"Courant number",

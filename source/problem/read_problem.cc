@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/problem/filter_bound.h>
 #include <limber/problem/from_file.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/read_problem.h>
@@ -145,6 +146,7 @@ namespace limber
     read_obstacles(root, problem);
     choose_time_integration(root, problem);
     choose_stress_update(problem);
+    obey_filter(problem);
     read_contact(root, problem);
     check_obstacles(root, problem);
     choose_spread_of_points(root, problem);

@@ -169,6 +169,22 @@ namespace limber::test
     seen.bodies[0].filling = 0.01;
     problem.method.order   = StressUpdateOrder::usl;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "small cut cell");
+
+    // The filter makes the limit stricter, and smooth functions have none; what
+    // a step that was set exceeds is said of all.
+    problem.method.transfer     = Transfer::fmpm;
+    const std::string of_filter = diagnose(seen, problem, true).text;
+    EXPECT_NE(of_filter.find("less than 0.32 edges"), std::string::npos)
+      << of_filter;
+    EXPECT_NE(of_filter.find("Kernel = quadratic"), std::string::npos);
+    problem.grid.kernel = KernelKind::gimp;
+    seen.courant_number = 0.2;
+    EXPECT_EQ(diagnose(seen, problem, true).mode, "");
+    seen.courant_number = 0.4;
+    EXPECT_EQ(diagnose(seen, problem, true).mode, "Courant number");
+    problem.grid.kernel     = KernelKind::linear;
+    problem.method.transfer = Transfer::flip;
+
     problem.method.order = StressUpdateOrder::musl;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "");
     seen.courant_number = 2.5;

@@ -681,3 +681,40 @@ TEST(Choices, RotationInTheCurrentFrameIsTold)
   EXPECT_FALSE(told({spin, "Body block/Frame=initial"}));
   EXPECT_FALSE(told({"Body block/Initial velocity=pi*x; -pi*y", current}));
 }
+
+
+
+// The largest of blocks at any place, as computed, are 0.33 and 0.24 with GIMP
+// and 0.40 with splines (doc/theory/kernels.md).
+TEST(Choices, CourantNumberIsOneThatTheFilterHolds)
+{
+  const auto courant_number = [](std::vector<std::string> overrides,
+                                 const std::string       &transfer) {
+    overrides.push_back("Body block/Frame=current");
+    overrides.push_back("Method/Transfer=" + transfer);
+    const auto problem = read(overrides);
+    const bool said =
+      std::any_of(problem.notes.begin(),
+                  problem.notes.end(),
+                  [](const std::string &note) {
+                    return note.find("is lowered to") != std::string::npos;
+                  });
+    EXPECT_EQ(said, problem.method.courant_number != 0.4);
+    return problem.method.courant_number;
+  };
+  for (const std::string kernel : {"gimp", "cpgimp", "cpdi", "quadratic"})
+    EXPECT_EQ(courant_number({"Method/Kernel=" + kernel}, "flip"), 0.4);
+  EXPECT_EQ(courant_number({"Method/Kernel=quadratic"}, "xpic"), 0.4);
+  EXPECT_EQ(courant_number({"Method/Kernel=cubic"}, "fmpm"), 0.4);
+  EXPECT_EQ(courant_number({"Method/Kernel=linear"}, "fmpm"), 0.4);
+  EXPECT_EQ(courant_number({"Method/Kernel=gimp", "Method/Time step=1e-3"},
+                           "fmpm"),
+            0.4);
+  EXPECT_NEAR(courant_number({"Method/Kernel=quadratic"}, "fmpm"), 0.33, 0.01);
+  const std::string two = "Body block/Points per cell edge=2";
+  EXPECT_NEAR(courant_number({"Method/Kernel=gimp", two}, "fmpm"), 0.25, 0.01);
+  EXPECT_NEAR(courant_number(
+                {"Method/Kernel=gimp", two, "Method/Transfer order=8"}, "fmpm"),
+              0.19,
+              0.01);
+}

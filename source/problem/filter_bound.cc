@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/problem/filter_bound.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace limber
+{
+  namespace
+  {
+    /**
+     * C = a k^-b is nine tenths of the least C among blocks at any place in the
+     * grid, with two points or more per edge, plane strain and Poisson's
+     * ratios from 0 to 0.5, up to k = 16; with linear functions of full cells.
+     */
+    struct Bound
+    {
+      double a, b;
+      double shrinks; // with n points per edge as (2 / n)^shrinks
+    };
+
+
+
+    Bound
+    bound_of(const KernelKind kernel)
+    {
+      switch (kernel)
+        {
+          case KernelKind::quadratic:
+            return {0.58, 0.41, 0};
+          case KernelKind::cubic:
+            return {0.86, 0.355, 0};
+          case KernelKind::gimp:
+          case KernelKind::cpgimp:
+            return {0.46, 0.43, 0.4};
+          case KernelKind::cpdi:
+          case KernelKind::cpdi2:
+            return {0.54, 0.35, 0.4};
+          case KernelKind::automatic: // has been chosen long before
+          case KernelKind::linear:
+          case KernelKind::ddmp:
+            break;
+        }
+      return {0.64, 0.21, 0};
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  double
+  courant_number_of_filter(const Problem<dim> &problem)
+  {
+    const Method &method = problem.method;
+    if (!filters_velocity(method.transfer))
+      return std::numeric_limits<double>::infinity();
+    const auto [a, b, shrinks] = bound_of(problem.grid.kernel);
+    double       result        = method.transfer == Transfer::fmpm ?
+                                   a * std::pow(double(method.transfer_order), -b) :
+                                   a;
+    unsigned int most = 2, least = 2; // points per edge
+    for (const auto &body : problem.bodies)
+      for (const unsigned int n : body.points_per_cell_edge)
+        {
+          most  = std::max(most, n);
+          least = std::min(least, n);
+        }
+    result *= std::pow(2. / most, shrinks);
+    // One point per cell hardly tells the shortest waves apart.
+    return least == 1 ? 0.7 * result : result;
+  }
+
+
+
+  template <int dim>
+  void
+  obey_filter(Problem<dim> &problem)
+  {
+    Method      &method = problem.method;
+    const double bound  = courant_number_of_filter(problem);
+    if (method.integration != TimeIntegration::explicit_steps ||
+        method.time_step > 0 || method.courant_number <= bound)
+      return;
+    problem.notes.push_back(
+      "Courant number " + brief(method.courant_number) + " is lowered to " +
+      brief(bound) + ", up to which the transfer '" +
+      (method.transfer == Transfer::fmpm ?
+         "fmpm' of order " + std::to_string(method.transfer_order) :
+         "xpic'") +
+      " is stable with these functions.");
+    method.courant_number = bound;
+  }
+
+
+
+  template double
+  courant_number_of_filter(const Problem<2> &);
+  template double
+  courant_number_of_filter(const Problem<3> &);
+  template void
+  obey_filter(Problem<2> &);
+  template void
+  obey_filter(Problem<3> &);
+} // namespace limber
