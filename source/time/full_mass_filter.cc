@@ -38,7 +38,86 @@ namespace limber
       {
         each.records.reinit(std::size_t(table.n()) * Layout::stride);
         each.lumped.reinit(std::size_t(table.n()) * dim);
+        each.force.reinit(std::size_t(table.n()) * dim);
+        each.filtered.reinit(table.n());
       }
+  }
+
+
+
+  template <int dim>
+  double
+  FullMassFilter<dim>::note_forces(NodalFields<dim>             &nodes,
+                                   const dealii::Tensor<1, dim> &gravity)
+  {
+    const double before = step++;
+    double       result = 0;
+    for_each_field(nodes, [&]() {
+      for (const std::uint32_t node : nodes.active_nodes_of_field())
+        {
+          const double *const own  = nodes.record(node);
+          const double        mass = own[Layout::mass];
+          const double *const v    = record(node) + Layout::velocity;
+          // Not a node that points have hardly reached then: its velocity has
+          // been any, and the forces on it are no longer those of then.
+          const bool strained =
+            fields[field].filtered.data()[node] == before && mass > 0 &&
+            record(node)[Layout::mass] > 0.5 * mass && nodes.owns(node);
+          // What sides hold is not strained by what points bring. Those that
+          // let go have left no velocity to a component that they held.
+          const auto held = this->held(nodes, node);
+          const bool side = table.sides[node] != 0;
+          for (int d = 0; d < dim; ++d)
+            {
+              force(node)[d] = own[Layout::force + d] + mass * gravity[d];
+              if (strained && held[d] == 0 && !(side && v[d] == 0))
+                result +=
+                  force(node)[d] * (v[d] - own[Layout::momentum + d] / mass);
+            }
+        }
+    });
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  FullMassFilter<dim>::energy_of_step(NodalFields<dim> &nodes)
+  {
+    double result = 0;
+    for_each_field(nodes, [&]() {
+      for (const std::uint32_t node : nodes.active_nodes_of_field())
+        if (nodes.owns(node))
+          {
+            const double *const own = nodes.record(node);
+            for (int d = 0; d < dim; ++d)
+              result +=
+                own[Layout::mass] * own[Layout::increment + d] *
+                (own[Layout::velocity + d] - 0.5 * own[Layout::increment + d]);
+          }
+    });
+    return result;
+  }
+
+
+
+  template <int dim>
+  double
+  FullMassFilter<dim>::power(NodalFields<dim> &nodes)
+  {
+    double result = 0;
+    for_each_field(nodes, [&]() {
+      for (const std::uint32_t node : nodes.active_nodes_of_field())
+        {
+          const double *const own = nodes.record(node);
+          if (!nodes.owns(node) || !(own[Layout::mass] > 0))
+            continue;
+          for (int d = 0; d < dim; ++d)
+            result += force(node)[d] * own[Layout::velocity + d];
+        }
+    });
+    return result;
   }
 
 
@@ -129,14 +208,17 @@ namespace limber
   {
     for (const std::uint32_t node : nodes.active_nodes_of_field())
       {
-        double *const       own = nodes.record(node);
-        const double *const v   = record(node) + Layout::velocity;
+        double *const own = nodes.record(node);
+        double *const v   = record(node) + Layout::velocity;
         if (!(own[Layout::mass] > 0))
           continue;
         const auto held = this->held(nodes, node);
         for (int d = 0; d < dim; ++d)
           if (held[d] == 0)
             own[Layout::velocity + d] = v[d] + apart(own, d);
+        std::copy_n(own + Layout::velocity, dim, v);
+        record(node)[Layout::mass]          = own[Layout::mass];
+        fields[field].filtered.data()[node] = step;
       }
     nodes.interpolate_hanging();
   }

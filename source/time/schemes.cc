@@ -21,6 +21,8 @@ namespace limber
         case StressUpdateOrder::usf:
           return usf();
         case StressUpdateOrder::usl:
+          if (full_mass && steps_since_filter > 0)
+            return between_filters();
           return in_initial_frame ? usl_in_initial_frame() : usl();
         case StressUpdateOrder::musl:
           return in_initial_frame ? leapfrog(0) : musl();
@@ -55,9 +57,10 @@ namespace limber
   {
     p2g();
     control_density();
+    note_forces();
     accelerate_nodes();
     account_loads(Layout::velocity);
-    filter_velocity();
+    filter_and_account();
     g2p_update_stress_and_move();
   }
 
@@ -70,6 +73,7 @@ namespace limber
   {
     p2g();
     control_density();
+    note_forces();
     accelerate_nodes();
     g2p_and_remap();
     account_loads(Layout::strain_velocity);
@@ -137,11 +141,35 @@ namespace limber
     strain_and_give_force(unstrained);
     clear_momentum();
     p2g_momentum();
+    note_forces();
     accelerate_nodes();
     account_loads(Layout::velocity);
-    filter_velocity();
+    filter_and_account();
     g2p();
     strain_by_new_velocity();
+    unstrained = step;
+  }
+
+
+
+  // Steps with FLIP between two that filter the velocity. Strained by the new
+  // velocity, as these are, points would lose in each of them the work of the
+  // forces on what no point takes of it.
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::between_filters()
+  {
+    if (!in_initial_frame)
+      return musl();
+    strain_and_give_force(unstrained);
+    clear_momentum();
+    p2g_momentum();
+    clear_remapped();
+    note_forces();
+    accelerate_nodes();
+    g2p_and_remap();
+    account_loads(Layout::strain_velocity);
+    interpolate_hanging();
     unstrained = step;
   }
 
@@ -274,6 +302,8 @@ namespace limber
   ExplicitIntegrator<2>::square_of_strain() const;
   template double
   ExplicitIntegrator<2>::share_of_smoothing() const;
+  template void
+  ExplicitIntegrator<2>::between_filters();
   template bool
   ExplicitIntegrator<2>::leapfrogs() const;
   template bool
@@ -284,6 +314,8 @@ namespace limber
   ExplicitIntegrator<3>::square_of_strain() const;
   template double
   ExplicitIntegrator<3>::share_of_smoothing() const;
+  template void
+  ExplicitIntegrator<3>::between_filters();
   template bool
   ExplicitIntegrator<3>::leapfrogs() const;
   template bool

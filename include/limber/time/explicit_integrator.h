@@ -114,6 +114,8 @@ namespace limber
     void
     usl_in_initial_frame();
     void
+    between_filters();
+    void
     strain_at_start(double length);
     void
     p2g_before_strain();
@@ -202,7 +204,11 @@ namespace limber
     void
     move_as_strained();
     void
+    note_forces();
+    void
     filter_velocity();
+    void
+    filter_and_account();
 
     // Parts of these
     bool

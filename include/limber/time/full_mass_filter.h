@@ -69,6 +69,23 @@ namespace limber
     using Hold = std::function<void(unsigned int slot)>;
 
     /**
+     * Remember the forces of stress and gravity, before others join them, and
+     * return their power, W, on the velocity by which the step before has
+     * strained points, beyond that on what they bring of it.
+     */
+    double
+    note_forces(NodalFields<dim> &nodes, const dealii::Tensor<1, dim> &gravity);
+
+    /** What the nodes of this rank have gained of kinetic energy, J. */
+    double
+    energy_of_step(NodalFields<dim> &nodes);
+
+    /** The power of these forces, W, on the velocity of the nodes of this rank.
+     */
+    double
+    power(NodalFields<dim> &nodes);
+
+    /**
      * Put v(@p order) in the place of the new velocity of active nodes or,
      * with @p former_only, that of the velocity before the step plus the
      * increment of the step. Between bodies that touch, @p hold acts on every
@@ -122,6 +139,12 @@ namespace limber
       return fields[field].lumped.data() + std::size_t(node) * dim;
     }
 
+    double *
+    force(const std::uint32_t node)
+    {
+      return fields[field].force.data() + std::size_t(node) * dim;
+    }
+
     /** Call work() with each field selected, here and in the nodes. */
     template <class Work>
     void
@@ -172,7 +195,9 @@ namespace limber
     struct Field
     {
       LazyArray<double> records;
-      LazyArray<double> lumped; // D, by node and component, kg
+      LazyArray<double> lumped;   // D, by node and component, kg
+      LazyArray<double> force;    // that has been noted, the same way, N
+      LazyArray<double> filtered; // in which step a node was, last
     };
 
     const NodeTable<dim>            &table;
@@ -180,6 +205,7 @@ namespace limber
     bool                             former = false;
     std::vector<Field>               fields;
     unsigned int                     field = 0; // the selected one
+    double                           step  = 1; // whose forces are noted
     RecordExchange                   exchange{Layout::stride};
     std::vector<std::vector<double>> on_points; // velocities; refilled
   };
