@@ -340,6 +340,8 @@ namespace limber
                    const dealii::Point<dim> &place,
                    const double              margin)
     {
+      if (!shape.contains(place))
+        return false;
       for (int d = 0; d < dim; ++d)
         for (const double way : {-margin, margin})
           {
@@ -348,7 +350,7 @@ namespace limber
             if (!shape.contains(next))
               return false;
           }
-      return shape.contains(place);
+      return true;
     }
 
 

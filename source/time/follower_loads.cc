@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/point_support.h>
-#include <limber/time/closed_surface.h>
 #include <limber/time/follower_loads.h>
 #include <limber/time/point_deformation.h>
+#include <limber/time/surface_closure.h>
 
 #include <algorithm>
 
@@ -171,8 +171,8 @@ namespace limber
       if (piece.face == &face)
         of_face.emplace_back(&piece, moved(piece, displacement));
 
-    ClosedSurface<dim> surface(face.centre_at_start());
-    const bool         is_closed = face.is_closed();
+    SurfaceClosure<dim> surface(face.centre_at_start());
+    const bool          is_closed = face.is_closed();
     if (is_closed)
       {
         for (const auto &[piece, now] : of_face)

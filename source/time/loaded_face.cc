@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/records_of_ranks.h>
-#include <limber/time/closed_surface.h>
 #include <limber/time/loaded_face.h>
+#include <limber/time/surface_closure.h>
 
 #include <algorithm>
 #include <cmath>
@@ -166,7 +166,7 @@ namespace limber
       centre += piece.arm / double(all.size());
     if (load.is_pressure)
       {
-        ClosedSurface<dim> surface(centre);
+        SurfaceClosure<dim> surface(centre);
         for (const FacePiece<dim> &piece : all)
           surface.add(dealii::Point<dim>(piece.arm), piece.area_vector());
         surface.finish(MPI_COMM_SELF);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/point_support.h>
-#include <limber/time/closed_surface.h>
 #include <limber/time/contact.h>
 #include <limber/time/loads.h>
 #include <limber/time/point_deformation.h>
+#include <limber/time/surface_closure.h>
 
 namespace limber
 {
@@ -172,7 +172,7 @@ namespace limber
     const FaceLoad<dim> &load     = face.load;
     const PointView<dim> points   = face.body.points.view();
     LazyArray<double>   &of_nodes = forces[face.body.description.nodal_field];
-    ClosedSurface<dim>   surface(face.centre_at_start());
+    SurfaceClosure<dim>  surface(face.centre_at_start());
     const bool           is_closed = face.is_closed();
     if (is_closed)
       {

@@ -73,7 +73,7 @@ namespace limber
     /**
      * Minus the derivative of these forces, N/m, row by row of the nodes with
      * these numbers; or its symmetric part. That a pressure may change with
-     * the place is left out, and that of ClosedSurface.
+     * the place is left out, and that of SurfaceClosure.
      */
     void
     add_tangent(const std::vector<double> &displacement,

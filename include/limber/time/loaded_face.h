@@ -59,7 +59,7 @@ namespace limber
     restore(const std::vector<FacePiece<dim>> &all);
 
     /** Whether it is a pressure on a whole surface, of which no piece is
-     * lost: see ClosedSurface. Collective. */
+     * lost: see SurfaceClosure. Collective. */
     bool
     is_closed() const;
 

@@ -389,15 +389,21 @@ TEST(CutCells, OpenSharesAndAreasOfHalfSpacesAreExact)
               EXPECT_NEAR(surface.normal * normal, 1, 1e-12);
               area += surface.area;
               if (!is_beside_tip)
-                EXPECT_NEAR((surface.place - through) * normal, 0, 1e-12);
+                {
+                  EXPECT_NEAR((surface.place - through) * normal, 0, 1e-12);
+                }
             }
           if (!is_beside_tip)
-            EXPECT_NEAR(area, volume * expected[1], 1e-14);
+            {
+              EXPECT_NEAR(area, volume * expected[1], 1e-14);
+            }
           area_of_all += area;
           expected_of_all += volume * expected[1];
         }
       if (!is_tip_at_side)
-        EXPECT_NEAR(area_of_all, expected_of_all, 1e-12);
+        {
+          EXPECT_NEAR(area_of_all, expected_of_all, 1e-12);
+        }
       EXPECT_GT(n_cut, 50u);
     }
   EXPECT_GT(n_closed, 5u);

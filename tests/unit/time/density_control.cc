@@ -44,7 +44,7 @@ namespace
       {
         points.position[1][p] *= factor;
         points.cell[p] = run.nodes.view().bins.cell_at(
-          {points.position[0][p], points.position[1][p]});
+          {{points.position[0][p], points.position[1][p]}});
       }
     run.integrator.reinit();
   }

@@ -272,9 +272,8 @@ TEST(GeneralisedAlpha, DampingIsOnRecord)
   double former = 0;
   for (const double radius : {1., 0.8, 0.})
     {
-      SceneRun<2>  run(held_bar(32, "1e-3 * sin(7 * pi * x / 50)"),
+      SceneRun<2> run(held_bar(32, "1e-3 * sin(7 * pi * x / 50)"),
                       with_radius(radius, 0.25));
-      const double start = run.totals().all.total_energy();
       run.advance(0.25, 40);
       const auto totals = run.totals();
       EXPECT_LT(std::abs(totals.energy_drift), 1e-4);

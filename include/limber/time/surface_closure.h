@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_time_closed_surface_h
-#define limber_time_closed_surface_h
+#ifndef limber_time_surface_closure_h
+#define limber_time_surface_closure_h
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/point.h>
@@ -19,11 +19,11 @@ namespace limber
    * with the centre c of the surface.
    */
   template <int dim>
-  class ClosedSurface
+  class SurfaceClosure
   {
   public:
     /** Takes moments about @p origin, m, a place near by. */
-    explicit ClosedSurface(const dealii::Point<dim> &origin = {})
+    explicit SurfaceClosure(const dealii::Point<dim> &origin = {})
       : origin(origin)
     {}
 
@@ -40,7 +40,7 @@ namespace limber
     change(const dealii::Point<dim>     &place,
            const dealii::Tensor<1, dim> &area) const;
 
-    /** The largest change over the area, no unit. */
+    /** About the largest change over the area, no unit. */
     double
     opening() const;
 

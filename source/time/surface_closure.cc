@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/time/closed_surface.h>
+#include <limber/time/surface_closure.h>
 
 #include <cmath>
 
@@ -8,9 +8,9 @@ namespace limber
   using dealii::Tensor;
 
   template <int dim>
-  typename ClosedSurface<dim>::Axial
-  ClosedSurface<dim>::moment(const Tensor<1, dim> &arm,
-                             const Tensor<1, dim> &of)
+  typename SurfaceClosure<dim>::Axial
+  SurfaceClosure<dim>::moment(const Tensor<1, dim> &arm,
+                              const Tensor<1, dim> &of)
   {
     Axial result;
     if constexpr (dim == 2)
@@ -24,7 +24,7 @@ namespace limber
 
   template <int dim>
   Tensor<1, dim>
-  ClosedSurface<dim>::turned(const Axial &by, const Tensor<1, dim> &arm)
+  SurfaceClosure<dim>::turned(const Axial &by, const Tensor<1, dim> &arm)
   {
     Tensor<1, dim> result;
     if constexpr (dim == 2)
@@ -41,8 +41,8 @@ namespace limber
 
   template <int dim>
   void
-  ClosedSurface<dim>::add(const dealii::Point<dim> &place,
-                          const Tensor<1, dim>     &of_piece)
+  SurfaceClosure<dim>::add(const dealii::Point<dim> &place,
+                           const Tensor<1, dim>     &of_piece)
   {
     const Tensor<1, dim> arm  = place - origin;
     const double         size = of_piece.norm();
@@ -57,7 +57,7 @@ namespace limber
 
   template <int dim>
   void
-  ClosedSurface<dim>::finish(const MPI_Comm communicator)
+  SurfaceClosure<dim>::finish(const MPI_Comm communicator)
   {
     const auto over_ranks = [&](const auto &value) {
       return dealii::Utilities::MPI::sum(value, communicator);
@@ -89,8 +89,8 @@ namespace limber
 
   template <int dim>
   Tensor<1, dim>
-  ClosedSurface<dim>::change(const dealii::Point<dim> &place,
-                             const Tensor<1, dim>     &of_piece) const
+  SurfaceClosure<dim>::change(const dealii::Point<dim> &place,
+                              const Tensor<1, dim>     &of_piece) const
   {
     return -of_piece.norm() * (alpha + turned(beta, (place - origin) - centre));
   }
@@ -99,7 +99,7 @@ namespace limber
 
   template <int dim>
   double
-  ClosedSurface<dim>::opening() const
+  SurfaceClosure<dim>::opening() const
   {
     return area > 0 ?
              alpha.norm() +
@@ -110,6 +110,6 @@ namespace limber
 
 
 
-  template class ClosedSurface<2>;
-  template class ClosedSurface<3>;
+  template class SurfaceClosure<2>;
+  template class SurfaceClosure<3>;
 } // namespace limber
