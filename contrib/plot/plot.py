@@ -128,7 +128,8 @@ def observables_of(source):
 
 
 def columns_figure(sources, labels, names_in, wanted=None):
-    """One panel for each unit, a colour for each column, a line for each run."""
+    """One panel for each unit, a colour for each column, a line for each run;
+    a colour for each run where a panel has one column."""
     tables = []
     for source in sources:
         table, units = run_folder.statistics(source.folder)
@@ -155,13 +156,16 @@ def columns_figure(sources, labels, names_in, wanted=None):
                        for table, _ in tables for name in names
                        if name in table), default=0)
         factor, short = charts.scaled_unit(unit, largest)
+        by_run = len(names) == 1 and len(tables) > 1
         for k, name in enumerate(names):
             colour = ENERGY_COLOURS.get(name, f"C{k}")
             for i, (table, _) in enumerate(tables):
                 if name in table:
                     axis.plot(table["time"], table[name] / factor,
-                              LINES[i % len(LINES)], color=colour,
-                              linewidth=1.2, label=name if len(tables) == 1
+                              "-" if by_run else LINES[i % len(LINES)],
+                              color=f"C{i}" if by_run else colour,
+                              linewidth=1.2, label=labels[i] if by_run
+                              else name if len(tables) == 1
                               else f"{name}, {labels[i]}")
         name = names[0] if len(names) == 1 else (
             "energy" if unit == "J" else "")

@@ -3,7 +3,7 @@
 
 #include <limber/adaptation/cell_values.h>
 #include <limber/base/records_of_ranks.h>
-#include <limber/materials/law_list.h>
+#include <limber/materials/plastic_strain.h>
 
 #include <algorithm>
 #include <map>
@@ -241,17 +241,11 @@ namespace limber
                          const MaterialBody<dim>   &body,
                          std::vector<double>       &values)
     {
-      const auto variables =
-        variables_of(body.description.law, body.description.material);
-      const auto found = std::find_if(variables.begin(),
-                                      variables.end(),
-                                      [](const StateVariable &variable) {
-                                        return std::string(variable.name) ==
-                                               name_of_plastic_strain;
-                                      });
-      if (found == variables.end())
+      const auto variable =
+        plastic_strain_of(body.description.law, body.description.material);
+      if (!variable)
         return;
-      const double *const  strain  = body.variable(found - variables.begin());
+      const double *const  strain  = body.variable(*variable);
       const CellRecords<2> records = sums_over_points<2>(
         grid, body, [&](const auto &points, const std::size_t p, auto &record) {
           record[0] += points.mass[p];

@@ -254,13 +254,15 @@ namespace limber
 
 
 
-    /** What creep has come to, as a share of the strain. */
+    /** What creep has come to, as a share of the strain, plastic and elastic.
+     */
     double
     expected_creep(const BodyFigures &body)
     {
       return body.is_liquid ?
                0 :
-               creep_per_crossing(body) * body.crossings_under_strain;
+               creep_per_crossing(body) * body.crossings_under_strain *
+                 body.elastic_share;
     }
 
 

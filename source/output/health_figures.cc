@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/text.h>
 #include <limber/materials/linear_elastic.h>
+#include <limber/materials/plastic_strain.h>
 #include <limber/output/health_figures.h>
 #include <limber/points/shape_volume.h>
 #include <limber/points/single_point.h>
@@ -128,6 +129,44 @@ namespace limber
 
 
 
+  /**
+   * What part of the strain of each point is elastic, as creep takes of that
+   * alone: all, but for soil. There most of it is plastic in a flow.
+   */
+  template <int dim>
+  class ElasticShare
+  {
+  public:
+    explicit ElasticShare(const MaterialBody<dim> &body)
+      : body(body)
+    {
+      if (body.description.keeps_surface)
+        return;
+      if (const auto variable =
+            plastic_strain_of(body.description.law, body.description.material))
+        plastic_strain = body.variable(*variable);
+    }
+
+    /** Of point @p p with the strain @p energy: that of a wave would be half
+     * the mass times (c strain)^2. */
+    double
+    operator()(const std::size_t p, const double energy) const
+    {
+      if (plastic_strain == nullptr || !(plastic_strain[p] > 0))
+        return 1;
+      const PointView<dim> point   = only(body.points.view(), p);
+      const double         elastic = std::sqrt(
+        2 * energy / (point.mass[0] * body.stress->wave_speed_squared(point)));
+      return elastic / (elastic + plastic_strain[p]);
+    }
+
+  private:
+    const MaterialBody<dim> &body;
+    const double            *plastic_strain = nullptr;
+  };
+
+
+
   // Under strain: points that bear nothing, as the tip of a beam, may cross
   // what they like.
   template <int dim>
@@ -140,8 +179,10 @@ namespace limber
         const PointView<dim> points = own.points.view();
         if (points.crossings == nullptr)
           continue;
-        double                all = 0, most = 0;
-        std::array<double, 3> strained{}; // energy, by crossings, in tension
+        const ElasticShare<dim> elastic_share(own);
+        double                  all = 0, most = 0;
+        // energy, by crossings, by these and the elastic share, in tension
+        std::array<double, 4> strained{};
         for (std::size_t p = 0; p < points.size; ++p)
           {
             const double energy =
@@ -150,8 +191,11 @@ namespace limber
             most = std::max(most, points.crossings[p]);
             strained[0] += energy;
             strained[1] += energy * points.crossings[p];
+            if (points.crossings[p] > 0)
+              strained[2] +=
+                energy * points.crossings[p] * elastic_share(p, energy);
             if (own.description.is_plastic && points.pressure[p] < 0)
-              strained[2] += energy;
+              strained[3] += energy;
           }
         const MPI_Comm ranks  = state.grid.communicator;
         const double   n      = sum(double(points.size), ranks);
@@ -162,7 +206,9 @@ namespace limber
         const double weighted = sum(strained[1], ranks);
         body.crossings_under_strain =
           energy > 0 ? weighted / energy : body.crossings;
-        const double in_tension = sum(strained[2], ranks);
+        if (weighted > 0)
+          body.elastic_share = sum(strained[2], ranks) / weighted;
+        const double in_tension = sum(strained[3], ranks);
         body.share_in_tension   = energy > 0 ? in_tension / energy : 0;
       }
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
-#include <limber/materials/law_list.h>
+#include <limber/materials/plastic_strain.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -293,11 +293,7 @@ namespace limber
     bool
     has_plastic_strain(const Body<dim> &body)
     {
-      for (const StateVariable &variable :
-           variables_of(body.law, body.material))
-        if (std::string(variable.name) == "equivalent plastic strain")
-          return true;
-      return false;
+      return plastic_strain_of(body.law, body.material).has_value();
     }
 
 

@@ -99,7 +99,8 @@ namespace limber
   {
     archive &state.wave_speed &state.point_speed &state.displacement &state
       .largest_mass &state.steps_since_filter &state.step &state
-      .way_since_shifting &state.largest_force &state.face_pieces;
+      .way_since_shifting &state.largest_force &state.face_pieces &state
+      .filtered_nodes;
   }
 
 
@@ -182,6 +183,13 @@ namespace limber
       look_at(const FacePiece<dim> &value)
       {
         const_cast<FacePiece<dim> &>(value).serialize(*this, 0);
+      }
+
+      template <int dim>
+      void
+      look_at(const FilteredNode<dim> &value)
+      {
+        const_cast<FilteredNode<dim> &>(value).serialize(*this, 0);
       }
 
       template <class T>

@@ -317,7 +317,9 @@ namespace limber
             step,
             shifting.way_since(),
             loads.pieces(),
-            0};
+            0,
+            full_mass ? full_mass->filtered_nodes() :
+                        std::vector<FilteredNode<dim>>()};
   }
 
 
@@ -337,6 +339,8 @@ namespace limber
     stress_is_behind = false;
     loads.restore(former.face_pieces);
     reinit();
+    if (full_mass)
+      full_mass->restore(former.filtered_nodes);
   }
 
 

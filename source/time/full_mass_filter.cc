@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/base/records_of_ranks.h>
+#include <limber/grid/node_places.h>
 #include <limber/time/full_mass_filter.h>
 #include <limber/transfer/grid_to_points.h>
 
@@ -11,7 +13,8 @@ namespace limber
   FullMassFilter<dim>::FullMassFilter(const BackgroundGrid<dim>     &grid,
                                       const BoundaryConditions<dim> &boundaries,
                                       const unsigned int             n_fields)
-    : table(grid.nodes())
+    : grid(grid)
+    , table(grid.nodes())
     , boundaries(boundaries)
     , fields(n_fields)
     , on_points(dim)
@@ -40,6 +43,61 @@ namespace limber
         each.lumped.reinit(std::size_t(table.n()) * dim);
         each.force.reinit(std::size_t(table.n()) * dim);
         each.filtered.reinit(table.n());
+      }
+  }
+
+
+
+  template <int dim>
+  std::vector<FilteredNode<dim>>
+  FullMassFilter<dim>::filtered_nodes() const
+  {
+    const std::vector<std::uint64_t> places = places_of_nodes(grid);
+    std::vector<FilteredNode<dim>>   own, result;
+    for (unsigned int f = 0; f < fields.size(); ++f)
+      for (std::uint32_t node = 0; node < table.n_owned; ++node)
+        if (fields[f].filtered[node] == step)
+          {
+            const double *const record =
+              fields[f].records.data() + std::size_t(node) * Layout::stride;
+            FilteredNode<dim> known;
+            known.place = places[node];
+            known.field = f;
+            known.mass  = record[Layout::mass];
+            for (int d = 0; d < dim; ++d)
+              known.velocity[d] = record[Layout::velocity + d];
+            own.push_back(known);
+          }
+    for (const auto &of_rank : gather_records(own, grid.communicator, true))
+      result.insert(result.end(), of_rank.begin(), of_rank.end());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  FullMassFilter<dim>::restore(const std::vector<FilteredNode<dim>> &former)
+  {
+    if (former.empty())
+      return;
+    std::unordered_multimap<std::uint64_t, const FilteredNode<dim> *> known_at;
+    for (const FilteredNode<dim> &known : former)
+      known_at.emplace(known.place, &known);
+    const std::vector<std::uint64_t> places = places_of_nodes(grid);
+    for (std::uint32_t node = 0; node < places.size(); ++node)
+      {
+        const auto known = known_at.equal_range(places[node]);
+        for (auto it = known.first; it != known.second; ++it)
+          {
+            Field        &of = fields.at(it->second->field);
+            double *const record =
+              of.records.data() + std::size_t(node) * Layout::stride;
+            record[Layout::mass] = it->second->mass;
+            for (int d = 0; d < dim; ++d)
+              record[Layout::velocity + d] = it->second->velocity[d];
+            of.filtered[node] = step;
+          }
       }
   }
 

@@ -80,9 +80,6 @@ namespace limber
   cell_values(const Refinement<dim>                                 &refinement,
               const BackgroundGrid<dim>                             &grid,
               const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
-
-  /** By the name that a law gives to its equivalent plastic strain. */
-  inline constexpr char name_of_plastic_strain[] = "equivalent plastic strain";
 } // namespace limber
 
 #endif

@@ -65,6 +65,7 @@ namespace limber
     double crossings              = 0; // cells entered, mean over the points
     double crossings_under_strain = 0; // the mean by strain energy
     double most_crossings         = 0; // of one point
+    double elastic_share          = 1; // of the strain where they count
     double share_in_tension       = 0; // of its strain energy, if it is plastic
     unsigned long cells           = 0; // that hold points of it
     unsigned long inner_cells     = 0; // of them, amid others along all axes

@@ -4,6 +4,7 @@
 
 #include <limber/grid/boundary_conditions.h>
 #include <limber/state/material_body.h>
+#include <limber/time/filtered_node.h>
 
 #include <functional>
 #include <vector>
@@ -48,6 +49,15 @@ namespace limber
     /** Adopt a changed mesh. */
     void
     reinit();
+
+    /** What note_forces() of the next step needs to know of this one; of all
+     * ranks, on the first. Collective. */
+    std::vector<FilteredNode<dim>>
+    filtered_nodes() const;
+
+    /** Know it again; the ranks and their nodes may be others. */
+    void
+    restore(const std::vector<FilteredNode<dim>> &former);
 
     /** What sides do to owned nodes by holding them against the filter. */
     struct SideAction
@@ -200,6 +210,7 @@ namespace limber
       LazyArray<double> filtered; // in which step a node was, last
     };
 
+    const BackgroundGrid<dim>       &grid;
     const NodeTable<dim>            &table;
     const BoundaryConditions<dim>   &boundaries;
     bool                             former = false;

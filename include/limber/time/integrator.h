@@ -3,6 +3,7 @@
 #define limber_time_integrator_h
 
 #include <limber/state/material_body.h>
+#include <limber/time/filtered_node.h>
 #include <limber/time/loads.h>
 
 #include <memory>
@@ -39,6 +40,7 @@ namespace limber
     double                              way_since_shifting = 0; // cells
     typename ExternalLoads<dim>::Pieces face_pieces;
     double largest_force = 0; // so far, of steps in equilibrium, N
+    std::vector<FilteredNode<dim>> filtered_nodes;
   };
 
 

@@ -222,6 +222,9 @@ namespace limber::test
     EXPECT_LT(n_words(bad.text), 60u) << bad.text;
     body.keeps_surface = false; // a fluid with a yield stress
     EXPECT_EQ(line("crossings", figures).verdict, Verdict::look);
+    body.elastic_share = 1e-3; // that has flowed
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::good);
+    body.elastic_share   = 1;
     body.keeps_surface   = true;
     body.kernel          = KernelKind::quadratic;
     body.points_per_edge = 3;
