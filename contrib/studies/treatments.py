@@ -119,7 +119,7 @@ def cell_pressures(path, edge):
 
 def roughness(pressure):
     """Rms of the second differences between neighbouring cells over four times
-    the range of the pressure: 1/2 for a chequerboard, 0 for a linear field."""
+    the range of the pressure: 1/2 for a checkerboard, 0 for a linear field."""
     second = np.concatenate([
         (pressure[:-2] - 2 * pressure[1:-1] + pressure[2:]).ravel(),
         (pressure[:, :-2] - 2 * pressure[:, 1:-1] + pressure[:, 2:]).ravel()])
@@ -236,7 +236,7 @@ def main():
 
     if "--liquids" not in sys.argv:
         solids(runner, chosen, quick)
-    print("\n| liquid | chi | chequerboard control | Z(3) | H(3) | "
+    print("\n| liquid | chi | checkerboard control | Z(3) | H(3) | "
           "roughness at T = 1 / 2 / 3 (%) | jumps (%) | "
           "tank, kinetic energy | tank, pressure error (%) |")
     print("| --- " + "| --: " * 8 + "|")
@@ -246,20 +246,20 @@ def main():
             controls += [("0.1", "0"), ("0.2", "0")]
         if treatment == "cell":
             controls += [("0.2", "0.5")]
-        for chi, chequerboard in controls:
+        for chi, checkerboard in controls:
             control = [f"Body water/Hourglass control={chi}",
-                       f"Body water/Chequerboard control={chequerboard}"]
+                       f"Body water/Checkerboard control={checkerboard}"]
             row = dam_break(runner, treatment, control)
             row += tank(runner, treatment, control)
-            print("| " + " | ".join([treatment, chi, chequerboard, *row]) +
+            print("| " + " | ".join([treatment, chi, checkerboard, *row]) +
                   " |", flush=True)
     for treatment in (t for t in SPLINES if t in chosen):
-        for chequerboard in ("0", "0.5") if treatment == "cell" else ("0",):
+        for checkerboard in ("0", "0.5") if treatment == "cell" else ("0",):
             settings = ["Method/Kernel=quadratic",
-                        f"Body water/Chequerboard control={chequerboard}"]
+                        f"Body water/Checkerboard control={checkerboard}"]
             row = dam_break(runner, treatment, settings)
             row += tank(runner, treatment, settings)
-            print("| " + " | ".join([treatment + ", splines", "-", chequerboard,
+            print("| " + " | ".join([treatment + ", splines", "-", checkerboard,
                                      *row]) + " |", flush=True)
 
 

@@ -64,7 +64,7 @@ def tank(runner):
                        "cell, Blend time = 0.16 s"), (6, 4, 2.2, 0.8)))
     variants = {"none": ["Body water/Locking treatment=none"],
                 "cell without control": ["Body water/Hourglass control=0",
-                                         "Body water/Chequerboard control=0"],
+                                         "Body water/Checkerboard control=0"],
                 "cell": [],
                 "cell, Blend time = 0.16 s": ["Method/Blend time=0.16"]}
     figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4))

@@ -63,7 +63,7 @@ namespace limber
     /**
      * The affine part of the motion of a point has next to no inertia near the
      * edge of its cell, and no bound with AFLIP (doc/theory/transfers.md). What
-     * else is seen then, a chequerboard or a crushed point, follows from it.
+     * else is seen then, a checkerboard or a crushed point, follows from it.
      */
     template <int dim>
     Diagnosis
@@ -136,11 +136,11 @@ namespace limber
     /** Patterns are taken away, or the motion that makes them is. */
     template <int dim>
     std::string
-    remedy_for_chequerboard(const Body<dim> &body)
+    remedy_for_checkerboard(const Body<dim> &body)
     {
       if (averages_volume_in_cells(body.treatment) &&
-          body.chequerboard_control == 0)
-        return "Chequerboard control = 0.5";
+          body.checkerboard_control == 0)
+        return "Checkerboard control = 0.5";
       return "Hourglass control = " +
              brief(std::max(0.2, 2 * body.hourglass_control));
     }
@@ -172,12 +172,12 @@ namespace limber
                       brief(body.pressure_scatter) + " times its mean. Set '" +
                       start + "Locking treatment = " +
                       remedy_for_locking(problem.grid.kernel) + "'."};
-          if (averaged && body.chequerboard > 1)
-            return {"chequerboard",
+          if (averaged && body.checkerboard > 1)
+            return {"checkerboard",
                     "neighbouring cells of body '" + body.body +
-                      "' differ in pressure by " + brief(body.chequerboard) +
+                      "' differ in pressure by " + brief(body.checkerboard) +
                       " times its size. Set '" + start +
-                      remedy_for_chequerboard(problem.bodies[b]) + "'."};
+                      remedy_for_checkerboard(problem.bodies[b]) + "'."};
           if (body.isolated_cells > 0.05)
             return {"lost contact",
                     percent_of(body.isolated_cells) +

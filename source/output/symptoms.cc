@@ -277,7 +277,7 @@ namespace limber
         }
       symptoms.pressure_scatter =
         scatter > 0 ? std::sqrt(scatter / std::max(means, 1e-300)) : 0;
-      symptoms.chequerboard =
+      symptoms.checkerboard =
         n_kinks > 0 && squares > 0 ? std::sqrt(kinks / squares) : 0;
       symptoms.isolated_cells = cells.empty() ? 0 : isolated / cells.size();
     }

@@ -71,9 +71,9 @@ namespace limber
         return Hindrance{"leaves no motion of a cell without resistance, so "
                          "that 'Hourglass control' has nothing to do",
                          ", or 'Hourglass control = 0'"};
-      if (is_set(section, "Chequerboard control"))
-        return Hindrance{"has no chequerboard control",
-                         ", or 'Chequerboard control = 0'"};
+      if (is_set(section, "Checkerboard control"))
+        return Hindrance{"has no checkerboard control",
+                         ", or 'Checkerboard control = 0'"};
       for (const std::string history : {"History", "Deviatoric history"})
         if (read_word(section, history, history_words()) !=
             HistoryTreatment::keep)
@@ -177,10 +177,10 @@ namespace limber
         return Misfit{"Hourglass control",
                       "domains that reach over several cells resist",
                       "'Hourglass control = 0'"};
-      if (is_set(section, "Chequerboard control"))
-        return Misfit{"Chequerboard control",
+      if (is_set(section, "Checkerboard control"))
+        return Misfit{"Checkerboard control",
                       "it is for kernels whose points see one cell",
-                      "'Chequerboard control = 0'"};
+                      "'Checkerboard control = 0'"};
       if (read_word(section, "History", history_words()) !=
           HistoryTreatment::keep)
         return Misfit{"History",
@@ -204,10 +204,10 @@ namespace limber
         return Misfit{"Hourglass control",
                       "no motion of a cell is without resistance",
                       "'Hourglass control = 0'"};
-      if (is_set(section, "Chequerboard control"))
-        return Misfit{"Chequerboard control",
+      if (is_set(section, "Checkerboard control"))
+        return Misfit{"Checkerboard control",
                       "it is for kernels whose points see one cell",
-                      "'Chequerboard control = 0'"};
+                      "'Checkerboard control = 0'"};
       if (read_word(section, "History", history_words()) !=
           HistoryTreatment::keep)
         return Misfit{"History", "points keep their own", "'History = keep'"};

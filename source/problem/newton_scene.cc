@@ -109,14 +109,14 @@ namespace limber
                "whose points keep their histories",
                "'Deviatoric history = keep'");
       for (const std::string entry :
-           {"Hourglass control", "Chequerboard control"})
+           {"Hourglass control", "Checkerboard control"})
         if (section.text(entry) != "auto" && section.number(entry) > 0)
           refuse(section,
                  entry,
                  "which has no such control",
                  "'" + entry + " = 0'");
       body.hourglass_control    = 0;
-      body.chequerboard_control = 0;
+      body.checkerboard_control = 0;
       if (problem.method.integration == TimeIntegration::quasi_static &&
           body.initial_stress && problem.loads.factor.empty())
         refuse(section,

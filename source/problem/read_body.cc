@@ -79,14 +79,15 @@ namespace limber
         "speed) and that differs among neighbouring cells, as smooth motion "
         "does not; 'auto' is 0.2 where averages leave such motions without "
         "resistance, else 0.");
+      parameters.renamed("Chequerboard control", "Checkerboard control");
       parameters.declare(
-        "Chequerboard control",
+        "Checkerboard control",
         "auto",
         admissible::non_negative_number("0.5").or_word("auto"),
         "Dimensionless: rate, times h / c, at which a pressure per cell that "
-        "alternates from cell to cell (checkerboard), and so moves nothing, is evened out "
-        "without a change of volume; 'auto' is 0.5 for liquids with averages, "
-        "else 0. In semi-implicit steps the share of the compact Laplacian in "
+        "alternates from cell to cell (checkerboard), and so moves nothing, is "
+        "evened out without a change of volume; 'auto' is 0.5 for liquids "
+        "with averages, else 0. In semi-implicit steps the share of the compact Laplacian in "
         "the equations of the pressure; 'auto' is 0.1.");
       parameters.declare(
         "Particle shifting",
@@ -380,19 +381,19 @@ namespace limber
           " has nothing to control with the locking treatment 'none', which "
           "averages nothing. Set 'Hourglass control = 0', or another 'Locking "
           "treatment'.");
-      body.chequerboard_control =
-        section.text("Chequerboard control") != "auto" ?
-          section.number("Chequerboard control") :
+      body.checkerboard_control =
+        section.text("Checkerboard control") != "auto" ?
+          section.number("Checkerboard control") :
         fluid && averages_volume_in_cells(body.treatment) ? 0.5 :
                                                             0;
-      if (body.chequerboard_control > 0 &&
+      if (body.checkerboard_control > 0 &&
           !averages_volume_in_cells(body.treatment))
         throw InputError(
-          "The chequerboard control " + section.text("Chequerboard control") +
-          " in " + section.where("Chequerboard control") +
+          "The checkerboard control " + section.text("Checkerboard control") +
+          " in " + section.where("Checkerboard control") +
           " has nothing to control with the locking treatment " +
           in_quotes(section.text("Locking treatment")) +
-          ", which has no single pressure per cell. Set 'Chequerboard control "
+          ", which has no single pressure per cell. Set 'Checkerboard control "
           "= 0', or 'Locking treatment = cell'.");
       read_histories(section, fluid, body);
     }

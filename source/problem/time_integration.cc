@@ -339,8 +339,8 @@ namespace limber
               check_liquid(section, body);
               give_tension_to_system(body);
             }
-          if (section.text("Chequerboard control") == "auto")
-            body.chequerboard_control = compact_share;
+          if (section.text("Checkerboard control") == "auto")
+            body.checkerboard_control = compact_share;
         }
   }
 

@@ -135,7 +135,7 @@ namespace limber
               const BackgroundGrid<dim> &grid)
     {
       // A liquid shears its points' domains without end, and what controls its
-      // chequerboards is for linear functions.
+      // checkerboards is for linear functions.
       const KernelKind kernel =
         is_for_solids(problem.grid.kernel) && body.is_liquid ?
           KernelKind::linear :
@@ -437,7 +437,7 @@ namespace limber
           body->nodal_means.emplace(grid.vertices);
         if (body->description.implicit_pressure)
           body->implicit.emplace(grid.n_cells());
-        else if (body->description.chequerboard_control > 0 ||
+        else if (body->description.checkerboard_control > 0 ||
                  body->description.density_control > 0)
           body->cell_shift.reinit(grid.n_cells());
       }

@@ -115,8 +115,8 @@ namespace limber
   {
     const NodalFields<dim> &vertices = parts.nodes.vertices();
     const auto              sums     = body.cell_sums->view();
-    // by Stabilization::control_chequerboards()
-    const bool is_set = body.description.chequerboard_control > 0;
+    // by Stabilization::control_checkerboards()
+    const bool is_set = body.description.checkerboard_control > 0;
     for (const auto *const cells :
          {&vertices.owned_occupied_cells(), &vertices.ghost_occupied_cells()})
       for (const std::uint32_t cell : *cells)

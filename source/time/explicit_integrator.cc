@@ -163,7 +163,7 @@ namespace limber
     liquid_means.find();
     loads.look_at_cells(parts.nodes.vertices());
     lap(Verb::stabilize);
-    control_chequerboards();
+    control_checkerboards();
     do_scheme();
     relocation.end_step(extremes,
                         obstacles ? obstacles->put_out(time, step) : 0);

@@ -35,9 +35,9 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::control_chequerboards()
+  ExplicitIntegrator<dim>::control_checkerboards()
   {
-    stabilization.control_chequerboards(step, wave_speed);
+    stabilization.control_checkerboards(step, wave_speed);
     lap(Verb::stabilize);
   }
 
@@ -573,7 +573,7 @@ namespace limber
   template void
   ExplicitIntegrator<2>::clear();
   template void
-  ExplicitIntegrator<2>::control_chequerboards();
+  ExplicitIntegrator<2>::control_checkerboards();
   template void
   ExplicitIntegrator<2>::control_density();
   template void
@@ -625,7 +625,7 @@ namespace limber
   template void
   ExplicitIntegrator<3>::clear();
   template void
-  ExplicitIntegrator<3>::control_chequerboards();
+  ExplicitIntegrator<3>::control_checkerboards();
   template void
   ExplicitIntegrator<3>::control_density();
   template void

@@ -178,7 +178,7 @@ namespace limber
           any                 = &body;
           mass += of_body;
           of_cell[Record::volume] += volume;
-          controlled += body.description.chequerboard_control * volume;
+          controlled += body.description.checkerboard_control * volume;
         });
         if (any == nullptr)
           continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/stabilization.h>
-#include <limber/transfer/chequerboard.h>
+#include <limber/transfer/checkerboard.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,18 +32,18 @@ namespace limber
 
   template <int dim>
   void
-  Stabilization<dim>::control_chequerboards(const double step,
+  Stabilization<dim>::control_checkerboards(const double step,
                                             const double wave_speed)
   {
     NodalFields<dim> &vertices = parts.nodes.vertices();
     for (auto &body : parts.bodies)
       {
-        const double strength = body->description.chequerboard_control;
+        const double strength = body->description.checkerboard_control;
         if (!(strength > 0) || body->implicit)
           continue;
         if (vertices.n_fields() > 1)
           vertices.select(body->description.nodal_field);
-        gather_chequerboards<dim>(vertices.owned_occupied_cells(),
+        gather_checkerboards<dim>(vertices.owned_occupied_cells(),
                                   vertices.view(),
                                   body->cell_sums->view());
         // A node in the middle of an edge has not all cells around it.
@@ -51,14 +51,14 @@ namespace limber
           std::fill_n(vertices.record(hanging.node),
                       NodeLayout<dim>::stride,
                       0.);
-        vertices.start_sum(0, n_chequerboard_slots<dim>);
+        vertices.start_sum(0, n_checkerboard_slots<dim>);
         vertices.finish_sum();
         // The others of a change of size have cells that are not of one size.
         for (const std::uint32_t master : parts.grid.vertices.masters)
           std::fill_n(vertices.record(master), NodeLayout<dim>::stride, 0.);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
                                         &vertices.ghost_occupied_cells()})
-          find_chequerboard_shifts<dim>(*cells,
+          find_checkerboard_shifts<dim>(*cells,
                                         vertices.view(),
                                         body->cell_sums->view(),
                                         strength * wave_speed * step,

@@ -34,10 +34,10 @@ SITUATIONS = (
       WATER + "Initial velocity="
       "0.01*sin(29*x+13*y*y); 0.01*cos(31*x*y-9*y)"), ()),
     ("null space", "bouncing_ball.prm", (), ()),
-    ("chequerboard", "dam_break.prm",
+    ("checkerboard", "dam_break.prm",
      (WATER + "Points per cell edge=2", "Output/Time interval=0",
       WATER + "Newtonian fluid/Bulk modulus=auto",
-      WATER + "Chequerboard control=0", WATER + "Particle shifting=0",
+      WATER + "Checkerboard control=0", WATER + "Particle shifting=0",
       "Check front at T=3/Reference=4.4"), ()),
     ("lost contact", "pulled_strip.prm", (), ()),
     ("reference, step too long", "cantilever.prm",
@@ -96,8 +96,8 @@ def main():
         set_now = remedies(before.said)
         after = Run(arguments.limber, words, scene, (*settings, *set_now))
         named = what in (before.suspected, "reference, step too long")
-        # A chequerboard spoils the pressure and leaves the motion.
-        most = before.missed * (1.05 if what == "chequerboard" else 1)
+        # A checkerboard spoils the pressure and leaves the motion.
+        most = before.missed * (1.05 if what == "checkerboard" else 1)
         better = (before.code != 0 and after.code in (0, 4)
                   and after.suspected != what
                   and (after.code == 0 or after.missed < most))

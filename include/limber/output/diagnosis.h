@@ -23,8 +23,8 @@ namespace limber
     double pressure_scatter = 0;
     // Rms difference between the pressure of a cell and the mean of its two
     // neighbours along an axis, over the rms of the pressures: 0 for a linear
-    // field, 2 for a chequerboard
-    double chequerboard = 0;
+    // field, 2 for a checkerboard
+    double checkerboard = 0;
     // Share of the occupied cells that share no node with another one
     double isolated_cells = 0;
   };

@@ -176,7 +176,7 @@ namespace limber
     double            hourglass_control = 0; // chi, without dimension
     // Without dimension; where the pressure is implicit, the share gamma of
     // the compact Laplacian
-    double chequerboard_control = 0;
+    double checkerboard_control = 0;
     // C, without dimension, of liquids (ParticleShifting)
     double particle_shifting = 0;
     // Found together with the velocity at the end of the step

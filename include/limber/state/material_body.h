@@ -57,7 +57,7 @@ namespace limber
     // The same over cells, of points with domains
     std::optional<CellAverages> cell_averages = {};
     // Per cell, what the volumetric variable gets in this step against
-    // chequerboards; empty where they are not controlled
+    // checkerboards; empty where they are not controlled
     LazyArray<double> cell_shift = {};
     // Per cell, the dilation of this liquid over the mean divergence of the
     // cell (LiquidMeans), where the pressure is implicit without what the

@@ -154,7 +154,7 @@ namespace limber
     void
     clear();
     void
-    control_chequerboards();
+    control_checkerboards();
     void
     control_density();
     void

@@ -33,7 +33,7 @@ namespace limber
       static constexpr unsigned int number = 0; // of the unknown, from 1 on
       static constexpr unsigned int volume = 1; // V, without pressure, m^3
       static constexpr unsigned int moment = 2; // sum of V J p, J
-      // gamma V^2/m, m^6/kg, gamma being the mean chequerboard control
+      // gamma V^2/m, m^6/kg, gamma being the mean checkerboard control
       static constexpr unsigned int pattern = 3;
       static constexpr unsigned int rows    = 4; // B by nodes, m^2 or m
       static constexpr unsigned int stride  = rows + n_nodes * dim;

@@ -26,7 +26,7 @@ namespace limber
      * serve here. Collective.
      */
     void
-    control_chequerboards(double step, double wave_speed);
+    control_checkerboards(double step, double wave_speed);
 
     /**
      * Add viscous forces against hourglass motion to those of the nodes, and

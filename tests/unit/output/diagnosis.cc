@@ -69,14 +69,14 @@ namespace limber::test
 
 
 
-  TEST(Diagnosis, LinearPressureIsNoChequerboardAndDoesNotLock)
+  TEST(Diagnosis, LinearPressureIsNoCheckerboardAndDoesNotLock)
   {
     SampleRun<2> run(/*projected=*/false);
     set_pressure(run, [](double, double y) { return 10 * (1 - y); });
     const Symptoms seen = find_symptoms(run.state, 1.);
     if (!speaks())
       return;
-    EXPECT_NEAR(seen.bodies[0].chequerboard, 0, 1e-3);
+    EXPECT_NEAR(seen.bodies[0].checkerboard, 0, 1e-3);
     EXPECT_LT(seen.bodies[0].pressure_scatter, 0.2);
   }
 
@@ -105,7 +105,7 @@ namespace limber::test
 
 
 
-  TEST(Diagnosis, Chequerboard)
+  TEST(Diagnosis, Checkerboard)
   {
     SampleRun<2> run(/*projected=*/true);
     set_pressure(run, [](double x, double y) {
@@ -114,13 +114,13 @@ namespace limber::test
     const Symptoms seen = find_symptoms(run.state, 1.);
     if (!speaks())
       return;
-    EXPECT_NEAR(seen.bodies[0].chequerboard, 2, 1e-4);
+    EXPECT_NEAR(seen.bodies[0].checkerboard, 2, 1e-4);
     const Diagnosis found = diagnose(seen, run.problem, false);
-    EXPECT_EQ(found.mode, "chequerboard");
-    EXPECT_NE(found.text.find("/Chequerboard control = 0.5'"),
+    EXPECT_EQ(found.mode, "checkerboard");
+    EXPECT_NE(found.text.find("/Checkerboard control = 0.5'"),
               std::string::npos);
     // what is set already is no remedy
-    run.problem.bodies[0].chequerboard_control = 0.5;
+    run.problem.bodies[0].checkerboard_control = 0.5;
     run.problem.bodies[0].hourglass_control    = 0.1;
     EXPECT_NE(
       diagnose(seen, run.problem, false).text.find("/Hourglass control = 0.2'"),

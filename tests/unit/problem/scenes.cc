@@ -675,11 +675,11 @@ TEST(Scenes, AutomaticChoicesFollowTheMaterial)
   EXPECT_EQ(solid.method.order, StressUpdateOrder::usavg);
   EXPECT_EQ(solid.bodies[0].treatment, Treatment::assumed_strain);
   EXPECT_EQ(solid.bodies[0].hourglass_control, 0);
-  EXPECT_EQ(solid.bodies[0].chequerboard_control, 0);
+  EXPECT_EQ(solid.bodies[0].checkerboard_control, 0);
   EXPECT_EQ(liquid.method.order, StressUpdateOrder::musl);
   EXPECT_EQ(liquid.bodies[0].treatment, Treatment::cell);
   EXPECT_EQ(liquid.bodies[0].hourglass_control, 0.2);
-  EXPECT_EQ(liquid.bodies[0].chequerboard_control, 0.5);
+  EXPECT_EQ(liquid.bodies[0].checkerboard_control, 0.5);
   for (const auto *const problem : {&solid, &liquid})
     EXPECT_EQ(std::count_if(problem->notes.begin(),
                             problem->notes.end(),

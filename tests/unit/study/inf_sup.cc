@@ -30,7 +30,7 @@ TEST(InfSup, KnownValuesAndModes)
     {
       const InfSup cell = inf_sup({k.cells, PressureSpace::cell, 0, 1, 1});
       EXPECT_NEAR(cell.beta, k.cell, 1e-4);
-      EXPECT_EQ(cell.zero_modes, 2u); // constant and chequerboard
+      EXPECT_EQ(cell.zero_modes, 2u); // constant and checkerboard
       const InfSup node = inf_sup({k.cells, PressureSpace::node, 0, 1, 1});
       EXPECT_NEAR(node.beta, k.node, 1e-4);
       EXPECT_EQ(node.zero_modes, 8u);
@@ -50,7 +50,7 @@ TEST(InfSup, PointsOfFullCellsConvergeToGauss)
 
 
 
-// The constant and the chequerboard are no longer exact modes, but weak ones.
+// The constant and the checkerboard are no longer exact modes, but weak ones.
 TEST(InfSup, RandomFillMakesZeroModesWeakModes)
 {
   const InfSup some = inf_sup({8, PressureSpace::cell, 3, 0.5, 7});

@@ -272,7 +272,7 @@ TEST(Contact, WhatSticksAcrossFieldsIsOneField)
 
 
 
-// A liquid keeps its controls of hourglass motion and chequerboards in a field
+// A liquid keeps its controls of hourglass motion and checkerboards in a field
 // of its own: it moves as without the pair while the other body is far away.
 TEST(Contact, ControlsOfALiquidActInItsOwnField)
 {
@@ -329,8 +329,8 @@ TEST(Contact, ControlsOfALiquidActInItsOwnField)
       };
       const auto together = run_with("stick", {}), apart = run_with("slip", {}),
                  hourglass =
-                   run_with("slip", {"Body water/Chequerboard control=0"}),
-                 chequerboard =
+                   run_with("slip", {"Body water/Checkerboard control=0"}),
+                 checkerboard =
                    run_with("slip", {"Body water/Hourglass control=0"});
       EXPECT_EQ(apart->nodes.n_fields(), 2u);
       const unsigned int water    = bodies[0] == 'w' ? 0 : 1;
@@ -344,7 +344,7 @@ TEST(Contact, ControlsOfALiquidActInItsOwnField)
       EXPECT_LT(distance(*together, *apart), 1e-12);
       // and each of the controls does something
       EXPECT_GT(distance(*apart, *hourglass), 1e-6);
-      EXPECT_GT(distance(*apart, *chequerboard), 1e-6);
+      EXPECT_GT(distance(*apart, *checkerboard), 1e-6);
     }
 }
 

@@ -161,7 +161,7 @@ TEST(ImplicitPressure, AccountsForTheEnergyThatItTakes)
                       {"Body water/Box/Lower corner=1.1, 1.1",
                         "Body water/Box/Upper corner=2.9, 3.6",
                         "Body water/Newtonian fluid/Bulk modulus=1e5",
-                        "Body water/Chequerboard control=" + gamma,
+                        "Body water/Checkerboard control=" + gamma,
                         "Body water/Initial velocity=sin(2*x)*y; cos(3*y)*x"});
       const double before = kinetic_energy(run);
       run.advance(0.05);
@@ -173,7 +173,7 @@ TEST(ImplicitPressure, AccountsForTheEnergyThatItTakes)
 
 
 
-// The volume that the control of chequerboards moves between cells, and that
+// The volume that the control of checkerboards moves between cells, and that
 // which the motion takes, sum up to what crosses the surface: J of all points
 // together follows the divergence of the nodes.
 TEST(ImplicitPressure, ChangesVolumeAsMuchAsPressure)
@@ -215,7 +215,7 @@ TEST(ImplicitPressure, TendsToExplicitSteps)
                       "Body water/Box/Upper corner=2, 3",
                       "Body water/Newtonian fluid/Bulk modulus=1e6",
                       "Body water/Hourglass control=0",
-                      "Body water/Chequerboard control=0",
+                      "Body water/Checkerboard control=0",
                       "Body water/Particle shifting=0",
                       "Body water/Density control=0",
                       "Body water/Initial pressure=hydrostatic",

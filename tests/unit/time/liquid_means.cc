@@ -36,7 +36,7 @@ namespace
                 "\n end\n set Points per cell edge = 3\n"
                 " set Initial velocity = 0.3*sin(7*x+3*y); 0.2*cos(5*x)*y" +
                 (in_3d ? "; 0" : "") +
-                "\n set Chequerboard control = 0\n"
+                "\n set Checkerboard control = 0\n"
                 " set Material = newtonian fluid\n"
                 " subsection Newtonian fluid\n set Density = " +
                 digits(liquid.density) +

@@ -193,7 +193,7 @@ namespace
   expect_compact(const std::string &upper, const dealii::Point<dim> &centre)
   {
     const EquationsOfStep<dim> step(water_block<dim>(upper),
-                                    {"Body water/Chequerboard control=1"});
+                                    {"Body water/Checkerboard control=1"});
     const auto                 S     = step.matrix();
     const auto                &cells = step.water().cells;
     // dt^2 m / (rho h)^2, and C = V / K
@@ -213,7 +213,7 @@ namespace
   }
   /** Fine cells in one half, so that nodes hang between. */
   const std::vector<std::string> two_sizes = {
-    "Body water/Chequerboard control=0",
+    "Body water/Checkerboard control=0",
     "Grid/Levels=1",
     "Grid/Refine=part",
     "Grid/Refine part/Upper corner=3, 8"};
@@ -290,7 +290,7 @@ TEST(PressureSystem, PushesTheMastersOfHangingNodes)
 TEST(PressureSystem, IsSymmetricOverLevels)
 {
   auto changes = two_sizes;
-  changes[0]   = "Body water/Chequerboard control=1";
+  changes[0]   = "Body water/Checkerboard control=1";
   const EquationsOfStep<2> step(water_block<2>("5.3, 4.6"), changes);
   const auto               S = step.matrix();
   for (std::size_t i = 0; i < S.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/transfer/chequerboard.h>
+#include <limber/transfer/checkerboard.h>
 
 #include <algorithm>
 
@@ -27,7 +27,7 @@ namespace limber
 
   template <int dim>
   void
-  gather_chequerboards(const std::vector<std::uint32_t> &cells,
+  gather_checkerboards(const std::vector<std::uint32_t> &cells,
                        const GridView<dim>              &grid,
                        const CellSums<dim>              &sums)
   {
@@ -56,7 +56,7 @@ namespace limber
 
   template <int dim>
   void
-  find_chequerboard_shifts(const std::vector<std::uint32_t> &cells,
+  find_checkerboard_shifts(const std::vector<std::uint32_t> &cells,
                            const GridView<dim>              &grid,
                            const CellSums<dim>              &sums,
                            const double                      way,
@@ -94,21 +94,21 @@ namespace limber
 
 
   template void
-  gather_chequerboards(const std::vector<std::uint32_t> &,
+  gather_checkerboards(const std::vector<std::uint32_t> &,
                        const GridView<2> &,
                        const CellSums<2> &);
   template void
-  gather_chequerboards(const std::vector<std::uint32_t> &,
+  gather_checkerboards(const std::vector<std::uint32_t> &,
                        const GridView<3> &,
                        const CellSums<3> &);
   template void
-  find_chequerboard_shifts(const std::vector<std::uint32_t> &,
+  find_checkerboard_shifts(const std::vector<std::uint32_t> &,
                            const GridView<2> &,
                            const CellSums<2> &,
                            double,
                            double *);
   template void
-  find_chequerboard_shifts(const std::vector<std::uint32_t> &,
+  find_checkerboard_shifts(const std::vector<std::uint32_t> &,
                            const GridView<3> &,
                            const CellSums<3> &,
                            double,

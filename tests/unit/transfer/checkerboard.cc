@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/transfer/chequerboard.h>
+#include <limber/transfer/checkerboard.h>
 
 #include <gtest/gtest.h>
 #include <support/small_grid.h>
@@ -15,12 +15,12 @@ namespace
 {
   /** Cells with masses and means of the volumetric variable, no points. */
   template <class Dimension>
-  class Chequerboard : public testing::Test
+  class Checkerboard : public testing::Test
   {
   public:
     static constexpr int dim = Dimension::value;
 
-    Chequerboard()
+    Checkerboard()
       : cells(grid.n_cells)
       , mean(grid.n_cells)
       , mass(grid.n_cells, 2.)
@@ -65,8 +65,8 @@ namespace
           record[(1 << dim) - 1]      = mass[cell] * mean[cell];
         }
       std::fill(grid.nodes.begin(), grid.nodes.end(), 0.);
-      gather_chequerboards<dim>(cells, grid.view(), grid.cell_sums());
-      find_chequerboard_shifts<dim>(cells,
+      gather_checkerboards<dim>(cells, grid.view(), grid.cell_sums());
+      find_checkerboard_shifts<dim>(cells,
                                     grid.view(),
                                     grid.cell_sums(),
                                     share * *std::min_element(grid.edge.begin(),
@@ -92,13 +92,13 @@ namespace
 
   using Dimensions = testing::Types<std::integral_constant<int, 2>,
                                     std::integral_constant<int, 3>>;
-  TYPED_TEST_SUITE(Chequerboard, Dimensions);
+  TYPED_TEST_SUITE(Checkerboard, Dimensions);
 } // namespace
 
 
 
 // Fields that vary along one direction at a time have no pattern.
-TYPED_TEST(Chequerboard, LeavesSumsOfOneDimensionalFieldsAlone)
+TYPED_TEST(Checkerboard, LeavesSumsOfOneDimensionalFieldsAlone)
 {
   this->set_means([&](const auto cell) {
     double sum = 0;
@@ -115,9 +115,9 @@ TYPED_TEST(Chequerboard, LeavesSumsOfOneDimensionalFieldsAlone)
 
 
 
-// A full chequerboard on equal cells decays by the share, as each cell has
+// A full checkerboard on equal cells decays by the share, as each cell has
 // 2^dim nodes and W / m is 2^-dim.
-TYPED_TEST(Chequerboard, TakesItsShareOfAChequerboard)
+TYPED_TEST(Checkerboard, TakesItsShareOfACheckerboard)
 {
   this->set_means([&](const auto cell) {
     int sum = 0;
@@ -135,7 +135,7 @@ TYPED_TEST(Chequerboard, TakesItsShareOfAChequerboard)
 
 
 
-TYPED_TEST(Chequerboard, KeepsTheVolumeAndNeverAddsEnergy)
+TYPED_TEST(Checkerboard, KeepsTheVolumeAndNeverAddsEnergy)
 {
   for (unsigned int n = 0; n < 20; ++n)
     {
@@ -159,7 +159,7 @@ TYPED_TEST(Chequerboard, KeepsTheVolumeAndNeverAddsEnergy)
 
 
 // Next to the surface the patterns of a pressure do meet a force.
-TYPED_TEST(Chequerboard, NeedsAllCellsAroundANode)
+TYPED_TEST(Checkerboard, NeedsAllCellsAroundANode)
 {
   this->random_state();
   std::fill(this->mass.begin(), this->mass.end(), 0.);

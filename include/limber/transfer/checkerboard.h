@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_transfer_chequerboard_h
-#define limber_transfer_chequerboard_h
+#ifndef limber_transfer_checkerboard_h
+#define limber_transfer_checkerboard_h
 
 #include <limber/grid/grid_view.h>
 
@@ -28,7 +28,7 @@ namespace limber
 {
   /** Slots of the nodal records in which cells meet: number, 1/m, a_k. */
   template <int dim>
-  inline constexpr unsigned int n_chequerboard_slots = 2 + (1 << dim) - 1 - dim;
+  inline constexpr unsigned int n_checkerboard_slots = 2 + (1 << dim) - 1 - dim;
 
   /**
    * Let these cells, where the body has mass, add to the first slots of the
@@ -36,7 +36,7 @@ namespace limber
    */
   template <int dim>
   void
-  gather_chequerboards(const std::vector<std::uint32_t> &cells,
+  gather_checkerboards(const std::vector<std::uint32_t> &cells,
                        const GridView<dim>              &grid,
                        const CellSums<dim>              &sums);
 
@@ -47,7 +47,7 @@ namespace limber
    */
   template <int dim>
   void
-  find_chequerboard_shifts(const std::vector<std::uint32_t> &cells,
+  find_checkerboard_shifts(const std::vector<std::uint32_t> &cells,
                            const GridView<dim>              &grid,
                            const CellSums<dim>              &sums,
                            double                            way,
