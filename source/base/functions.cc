@@ -66,7 +66,7 @@ namespace limber
       throw InputError(
         "The formula " + in_quotes(expression) + " has " +
         (has_gap ? "an empty component" :
-                   std::to_string(components.size()) + " components") +
+                   counted(components.size(), "component")) +
         " in " + where + ", which takes " + std::to_string(expected) +
         ". Usually the separator ';' is missing or one too many. Write " +
         in_quotes(join(example, "; ")) + ", for instance.");

@@ -10,6 +10,7 @@
 #include <boost/property_tree/ptree.hpp>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -268,7 +269,8 @@ namespace limber
         {
           throw InputError("The file is not valid JSON: " + error.message() +
                            at_line(error.line(), origin) +
-                           ". Usually a comma or quotation mark is missing. "
+                           ". Usually a comma or quotation mark is missing, or "
+                           "a comma stands before a closing bracket. "
                            "Write '\"End time\": \"1\"', for instance.");
         }
       Scan scan;
@@ -365,11 +367,21 @@ namespace limber
         read.second = broadcast_text(read.second, MPI_COMM_WORLD);
       }
 
+    if (std::filesystem::is_directory(path))
+      throw InputError(
+        in_quotes(path) + " on the command line is a folder. " +
+        (std::filesystem::exists(path + "/parameters.prm") ?
+           "Usually a word is missing. Draw this run with 'limber plot " +
+             path + "', or go on with it: 'limber " + path +
+             "/parameters.prm --resume'." :
+           "Usually the name of the file is missing. Give a scene or a "
+           "study, for instance prm/dam_break.prm."));
     if (!read.first)
-      throw InputError("The scene file " + in_quotes(result.origin) +
+      throw InputError("The file " + in_quotes(result.origin) +
                        " cannot be read. Usually the path is misspelt or "
                        "relative to another folder. Give an existing, "
-                       "non-empty file, for instance prm/dam_break.prm.");
+                       "non-empty scene or study, for instance "
+                       "prm/dam_break.prm.");
     result.text = std::move(read.second);
     return result;
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
 #include <optional>
 #include <set>
 
@@ -108,15 +109,57 @@ namespace limber
 
 
 
-    /** Of a long list of choices the beginning, as messages must stay short. */
+    /**
+     * Of a long list of choices the beginning, as messages must stay short. The
+     * bars between them count for nothing.
+     */
     std::string
     first_words(const std::string &text, const unsigned int most)
     {
       std::size_t end = 0;
       for (unsigned int word = 0; word < most && end != std::string::npos;
            ++word)
-        end = text.find(' ', end + 1);
+        {
+          end = text.find(' ', end + 1);
+          if (end != std::string::npos && text.compare(end, 3, " | ") == 0)
+            end += 2;
+        }
       return end == std::string::npos ? text : text.substr(0, end) + " ...";
+    }
+
+
+
+    /** Of the words of a field the entries whose texts speak of them. */
+    std::vector<std::string>
+    that_speak_of(const std::string                      &word,
+                  const std::vector<const Declaration *> &declarations)
+    {
+      std::vector<std::string> result;
+      for (const Declaration *const declaration : declarations)
+        {
+          std::string words = declaration->text;
+          for (char &letter : words)
+            if (std::strchr(",.;:()/'", letter) != nullptr)
+              letter = ' ';
+          if (!with_word(word, {words}).empty())
+            result.push_back(declaration->name);
+        }
+      return result;
+    }
+
+
+
+    /** "'a', 'b' or 'c'" */
+    std::string
+    alternatives(const std::vector<std::string> &names)
+    {
+      std::string result;
+      for (std::size_t i = 0; i < names.size(); ++i)
+        result += (i == 0                ? "" :
+                   i + 1 == names.size() ? " or " :
+                                           ", ") +
+                  in_quotes(names[i]);
+      return result;
     }
 
 
@@ -408,25 +451,26 @@ namespace limber
                         entry.section.end(),
                         section.begin());
     };
-    std::vector<std::string> siblings;
-    std::string              elsewhere, not_chosen;
-    bool                     is_here = false;
+    std::vector<std::string>         siblings, elsewhere;
+    std::vector<const Declaration *> beside;
+    std::string                      not_chosen;
+    bool                             is_here = false;
     for (const Declaration &declaration : declarations)
       if (declaration.section == entry.section)
-        siblings.push_back(declaration.name);
+        {
+          siblings.push_back(declaration.name);
+          beside.push_back(&declaration);
+        }
       else if (declaration.name == entry.name)
         {
           const std::string but = what_chooses_another(declaration.section);
           if (but.empty())
-            {
-              if (elsewhere.empty())
-                elsewhere = in_section(declaration.section);
-            }
+            elsewhere.push_back(in_section(declaration.section));
           else if (not_chosen.empty() ||
                    (!is_here && is_within(declaration.section)))
             {
               not_chosen = "It belongs to " +
-                           in_quotes(declaration.section.back()) + ", but " +
+                           in_quotes(to_text(declaration.section)) + ", but " +
                            but;
               is_here = is_within(declaration.section);
             }
@@ -434,15 +478,29 @@ namespace limber
     if (is_here)
       elsewhere.clear();
 
-    const auto meant = nearest(entry.name, siblings);
+    constexpr std::size_t    many    = 4; // too many to be meant
+    const auto               meant   = nearest(entry.name, siblings);
+    std::vector<std::string> perhaps = with_word(entry.name, siblings);
+    if (perhaps.empty() && elsewhere.empty())
+      perhaps = that_speak_of(entry.name, beside);
+    if (meant)
+      perhaps = {*meant};
+    else if (perhaps.size() >= many)
+      perhaps.clear();
+    const std::string exists =
+      elsewhere.empty() || (!meant && !perhaps.empty()) ?
+        "" :
+        "It exists " + elsewhere.front() +
+          (elsewhere.size() > 1 ? ", for instance. " : ". ");
     throw InputError(
       "Entry " + in_quotes(entry.name) + " " + in_section(entry.section) +
       " (" + place + ") is not known. Usually it is misspelt or in the wrong " +
-      "section. " + (elsewhere.empty() ? "" : "It exists " + elsewhere + ". ") +
-      (meant               ? "Did you mean " + in_quotes(*meant) + "?" :
-       !elsewhere.empty()  ? "Move it there." :
-       !not_chosen.empty() ? not_chosen :
-                             known_names(siblings)));
+      "section. " + exists +
+      (!perhaps.empty()      ? "Did you mean " + alternatives(perhaps) + "?" :
+       elsewhere.size() == 1 ? "Move it there." :
+       elsewhere.size() > 1  ? "Write it where it is meant." :
+       !not_chosen.empty()   ? not_chosen :
+                               known_names(siblings)));
   }
 
 

@@ -298,25 +298,15 @@ namespace limber
 
 
   namespace
+  {} // namespace
+
+
+
+  std::string
+  counted(const std::size_t n, const std::string &what)
   {
-    /** Letter case aside; empty where there is none or more than one. */
-    std::optional<std::string>
-    only_one_with_word(const std::string              &word,
-                       const std::vector<std::string> &candidates)
-    {
-      const std::string          wanted = ' ' + lower_case(word) + ' ';
-      std::optional<std::string> result;
-      for (const std::string &candidate : candidates)
-        if ((' ' + lower_case(candidate) + ' ').find(wanted) !=
-            std::string::npos)
-          {
-            if (result)
-              return {};
-            result = candidate;
-          }
-      return result;
-    }
-  } // namespace
+    return std::to_string(n) + ' ' + what + (n == 1 ? "" : "s");
+  }
 
 
 
@@ -344,6 +334,22 @@ namespace limber
             result = candidate;
           }
       }
-    return result ? result : only_one_with_word(word, candidates);
+    if (!result)
+      if (const auto longer = with_word(word, candidates); longer.size() == 1)
+        result = longer.front();
+    return result;
+  }
+
+
+
+  std::vector<std::string>
+  with_word(const std::string &word, const std::vector<std::string> &candidates)
+  {
+    const std::string        wanted = ' ' + lower_case(word) + ' ';
+    std::vector<std::string> result;
+    for (const std::string &candidate : candidates)
+      if ((' ' + lower_case(candidate) + ' ').find(wanted) != std::string::npos)
+        result.push_back(candidate);
+    return result;
   }
 } // namespace limber

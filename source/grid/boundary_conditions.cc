@@ -33,12 +33,13 @@ namespace limber
   template <int dim>
   BoundaryConditions<dim>::BoundaryConditions(
     const Sides<dim>        &sides,
-    const std::vector<bool> &by_surface)
+    const std::vector<bool> &by_surface,
+    const CoveredSides<dim> *covered)
     : sides(sides)
     , others(sides_at_nodes<dim>(sides))
     , by_surface(by_surface)
-    , constraints{{SideConstraints<dim>(this->sides),
-                   SideConstraints<dim>(this->others)}}
+    , constraints{{SideConstraints<dim>(this->sides, covered),
+                   SideConstraints<dim>(this->others, covered)}}
     , one_sided(limber::any_one_sided<dim>(others) ||
                 (limber::any_one_sided<dim>(sides) &&
                  (by_surface.empty() ||
@@ -394,7 +395,7 @@ namespace limber
       vector_in<dim>(nodes.record(node) + NodeLayout<dim>::velocity);
     std::array<unsigned int, dim> result{};
     for (const HeldComponent &entry :
-         constraints[of_field(nodes)].of_sides(nodes.table.sides[node]))
+         constraints[of_field(nodes)].of_node(nodes, node))
       {
         const unsigned int direction = 1 << entry.side / 2;
         if (!entry.one_sided || velocity[entry.component] == 0)

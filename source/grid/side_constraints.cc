@@ -4,8 +4,10 @@
 namespace limber
 {
   template <int dim>
-  SideConstraints<dim>::SideConstraints(const Sides<dim> &sides)
+  SideConstraints<dim>::SideConstraints(const Sides<dim>        &sides,
+                                        const CoveredSides<dim> *covered)
     : sides(sides)
+    , covered(covered)
   {
     for (unsigned int set = 0; set < held.size(); ++set)
       held[set] = held_components(sides, set);
@@ -17,7 +19,8 @@ namespace limber
   const std::vector<Constraint> &
   SideConstraints<dim>::at(const NodalFields<dim> &nodes, const double time)
   {
-    if (version != nodes.version_of_active())
+    if (version != nodes.version_of_active() ||
+        (covered != nullptr && version_of_covered != covered->version()))
       rebuild(nodes);
     if (!has_values || time != time_of_values)
       evaluate(nodes, time);
@@ -33,7 +36,7 @@ namespace limber
     list.clear();
     moving.clear();
     for (const std::uint32_t node : nodes.active_boundary_nodes())
-      for (const HeldComponent &entry : of_sides(nodes.table.sides[node]))
+      for (const HeldComponent &entry : of_node(nodes, node))
         {
           if (!sides[entry.side].velocity.empty())
             moving.push_back(list.size());
@@ -43,8 +46,22 @@ namespace limber
                           entry.one_sided,
                           0});
         }
-    version    = nodes.version_of_active();
-    has_values = false;
+    version            = nodes.version_of_active();
+    version_of_covered = covered != nullptr ? covered->version() : 0;
+    has_values         = false;
+  }
+
+
+
+  template <int dim>
+  const std::vector<HeldComponent> &
+  SideConstraints<dim>::of_node(const NodalFields<dim> &nodes,
+                                const std::uint32_t     node) const
+  {
+    const std::uint8_t set = nodes.table.sides[node];
+    return of_sides(covered != nullptr && set != 0 ?
+                      covered->uncovered(set, nodes.table.places.at(node)) :
+                      set);
   }
 
 

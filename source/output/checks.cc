@@ -3,10 +3,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 namespace limber
 {
+  std::string
+  CheckResult::text() const
+  {
+    std::ostringstream text;
+    text << "check " << name << ": ";
+    if (std::isnan(value)) // a frequency, say, in less than a period
+      text << "no value yet";
+    else
+      text << value;
+    text << ", reference " << reference << " +- " << tolerance
+         << (passed ? ", passed" : ", MISSED");
+    return text.str();
+  }
+
+
+
   Checks::Checks(const std::vector<Check>       &checks,
                  const std::vector<std::string> &observables)
     : checks(checks)

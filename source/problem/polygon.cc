@@ -86,9 +86,8 @@ namespace limber
           }
         if (words.size() != 2)
           refuse("Instead of a vertex there " +
-                   (words.size() == 1 ?
-                      std::string("is 1 word") :
-                      "are " + std::to_string(words.size()) + " words"),
+                   std::string(words.size() == 1 ? "is " : "are ") +
+                   counted(words.size(), "word"),
                  lines.number,
                  "Usually the file has other columns. Write two numbers, x "
                  "and y, and nothing else.");

@@ -24,8 +24,8 @@ namespace limber
       "Cells",
       for_each_direction(dim, "10"),
       admissible::positive_integers(dim, false, for_each_direction(dim, "10")),
-      "Number of cells in each direction; their edges are h = (upper - lower) "
-      "/ cells, m.");
+      "Resolution: number of cells in each direction; their edges are h = "
+      "(upper - lower) / cells, m.");
     declare_levels(parameters, dim, refinements);
     parameters.leave_subsection();
   }

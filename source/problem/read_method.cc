@@ -44,7 +44,7 @@ namespace limber
                        "0",
                        admissible::non_negative_number("0.1"),
                        "PIC/FLIP blend: time constant T, s, in which PIC takes "
-                       "away what FLIP keeps; share of FLIP 1 - dt/T; 0: pure "
+                       "away what FLIP keeps; FLIP ratio 1 - dt/T; 0: pure "
                        "FLIP.");
     parameters.declare("Damping rate",
                        "0",

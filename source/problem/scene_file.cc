@@ -282,6 +282,11 @@ namespace limber
     : input(text)
   {
     Scan scan = scan_parameters(text.text, text.format, text.origin);
+    if (scan.last_value({}, "Scene") && scan.last_value({}, "Methods"))
+      throw InputError(in_quotes(text.origin) +
+                       " is a study and no scene. Usually a word is missing. "
+                       "Write 'limber study " +
+                       text.origin + "'.");
     std::vector<std::string> overrides = given_overrides;
     make_paths_absolute(
       std::filesystem::path(text.origin).parent_path().string(),

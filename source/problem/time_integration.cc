@@ -219,7 +219,7 @@ namespace limber
                    gain);
       problem.method.integration = TimeIntegration::semi_implicit;
       say("'semi-implicit', as " + ratio + ": " + gain +
-          "; sound dies away at once");
+          "; they do not resolve sound");
     }
 
 

@@ -4,6 +4,7 @@
 #include <limber/problem/words.h>
 #include <limber/simulation/command_line.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -70,11 +71,12 @@ namespace limber
       {
         joined = false;
         if (at_end())
-          throw InputError("The option " + in_quotes(option) +
-                           " at the end of the command line lacks its value. "
-                           "Usually it was forgotten. Write " +
-                           in_quotes("limber " + option + " " + example) +
-                           ", for instance.");
+          throw InputError(
+            "The option " + in_quotes(option) +
+            " at the end of the command line lacks its value. "
+            "Usually it was forgotten. Write " +
+            in_quotes("limber scene.prm " + option + " " + example) +
+            ", for instance.");
         return words[next++];
       }
 
@@ -147,7 +149,7 @@ namespace limber
         throw InputError("There are two scenes on the command line, " +
                          in_quotes(result.scene) + " and " + in_quotes(word) +
                          ". Usually quotation marks are missing around a path "
-                         "or a value. Give one file, for instance scene.prm.");
+                         "or a value. One run takes one scene.");
       result.scene = word;
     }
   } // namespace
@@ -168,6 +170,12 @@ namespace limber
                        " on the command line is neither a command nor a file. "
                        "Usually it is misspelt. Did you mean 'limber " +
                        *meant + "'?");
+    if (!meant && argc > 2 && std::filesystem::is_regular_file(argv[2]))
+      throw InputError("The word " + in_quotes(word) +
+                       " on the command line is neither a command nor a file. "
+                       "Usually it is a command of another program. Write "
+                       "'limber " +
+                       argv[2] + "' to run that scene.");
   }
 
 

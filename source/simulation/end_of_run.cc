@@ -321,9 +321,7 @@ namespace limber
       text << "  " << effort << '\n';
     text << std::setprecision(6);
     for (const CheckResult &check : summary.checks)
-      text << "  check " << check.name << ": " << check.value << ", reference "
-           << check.reference << " +- " << check.tolerance
-           << (check.passed ? ", passed\n" : ", MISSED\n");
+      text << "  " << check.text() << '\n';
     text << health_text(summary.health) << "results in "
          << problem.output.directory;
     console.say(text.str());

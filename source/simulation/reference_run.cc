@@ -324,9 +324,7 @@ namespace limber
           text << ", energy drift " << totals.energy_drift;
         text << "\n" << std::setprecision(6);
         for (const CheckResult &check : summary.checks)
-          text << "  check " << check.name << ": " << check.value
-               << ", reference " << check.reference << " +- " << check.tolerance
-               << (check.passed ? ", passed\n" : ", MISSED\n");
+          text << "  " << check.text() << '\n';
         text << "results in " << problem.output.directory;
         console.say(text.str());
       }

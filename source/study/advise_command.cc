@@ -138,7 +138,10 @@ stopped by signal n.
     {
       std::vector<std::string> gains;
       if (factor > 0)
-        gains.push_back("a factor of " + brief(factor) + " in CPU time");
+        gains.push_back(factor < 1 ?
+                          "nothing: it takes " + brief(1 / factor) +
+                            " times the CPU time" :
+                          "a factor of " + brief(factor) + " in CPU time");
       if (advice.memory > 0)
         gains.push_back(brief(advice.memory / 1048576) + " MB");
       return join(gains, ", ");

@@ -155,7 +155,7 @@ namespace limber
             text << " (closed form " << formula << ")";
           text << ", beyond: " << row.beyond;
         }
-      text << ", " << n_runs << " runs";
+      text << ", " << counted(n_runs, "run");
       return text.str();
     }
 

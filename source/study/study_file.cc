@@ -405,6 +405,13 @@ namespace limber
   {
     const ParameterText text = read_parameter_text(path);
     const Scan scan = scan_parameters(text.text, text.format, text.origin);
+    if (scan.last_value({}, "Bodies"))
+      throw InputError(in_quotes(text.origin) +
+                       " is a scene and no study. Usually a word is too many. "
+                       "Run it with 'limber " +
+                       text.origin +
+                       "', or write a study of it like "
+                       "prm/studies/cantilever.prm.");
     Parameters parameters;
     declare_study(parameters,
                   names_in(scan, overrides, "Methods"),

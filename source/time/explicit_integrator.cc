@@ -39,7 +39,10 @@ namespace limber
                                     [](const auto &body) {
                                       return !body->description.is_liquid;
                                     }))
-    , boundaries(parts.problem.sides, fields_that_meet_sides(parts.problem))
+    , covered(parts.problem.obstacles, parts.grid.smallest_edge)
+    , boundaries(parts.problem.sides,
+                 fields_that_meet_sides(parts.problem),
+                 &covered)
     , cut_cells(CutCells<dim>::may_be(parts) ?
                   std::make_optional<CutCells<dim>>(parts) :
                   std::nullopt)
@@ -60,7 +63,10 @@ namespace limber
         contact.emplace(parts);
       }
     if (parts.problem.has_rigid_contact())
-      obstacles.emplace(parts, cut_cells ? &*cut_cells : nullptr, leapfrogs());
+      obstacles.emplace(parts,
+                        cut_cells ? &*cut_cells : nullptr,
+                        leapfrogs(),
+                        covered);
     if (cut_cells && parts.nodes.n_fields() == 1 &&
         std::all_of(parts.bodies.begin(),
                     parts.bodies.end(),
@@ -158,6 +164,7 @@ namespace limber
     stopwatch.start();
 
     clear();
+    covered.find(time);
     if (cut_cells)
       cut_cells->find(time);
     liquid_means.find();

@@ -113,6 +113,7 @@ namespace limber
     at_covered.reinit(parts.grid.vertices.n());
     open_rooms.reinit(parts.grid.vertices.n());
     former.clear();
+    knows_points = false;
     Places places;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
       places.emplace_back(obstacle, time);
@@ -128,6 +129,7 @@ namespace limber
     std::fill(wet.begin(), wet.end(), 0);
     if (!moves)
       return;
+    knows_points = true;
     Places places;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
       places.emplace_back(obstacle, time);

@@ -40,25 +40,28 @@ namespace limber
 
 
 
-  // Or in its surface, to a thousandth of a cell. Of an obstacle at rest each
-  // node asks once: with many facets that is dear.
+  // Or in its surface, to a thousandth of a cell; or, in the wall that a cell
+  // is which a moving obstacle closes, as far from it as that may be. Of an
+  // obstacle at rest each node asks once: with many facets that is dear.
   template <int dim>
   bool
   ObstacleContact<dim>::is_in(const std::uint32_t node,
                               const unsigned int  obstacle,
-                              const Way          &way)
+                              const Way          &way,
+                              const bool          in_wall)
   {
     if (vertices.empty())
       return false;
-    const auto ask = [&]() {
+    const auto is_within = [&](const double edges) {
       return way.before.distance(vertices[node]).value <=
-             1e-3 * parts.grid.smallest_edge;
+             edges * parts.grid.smallest_edge;
     };
+    constexpr double surface = 1e-3;
     if (rigid[obstacle].moves())
-      return ask();
+      return is_within(in_wall ? cut_cells->least_open_left() : surface);
     std::uint8_t &known = known_nodes[obstacle][node];
     if (known == 0)
-      known = ask() ? 2 : 1;
+      known = is_within(surface) ? 2 : 1;
     return known == 2;
   }
 
@@ -153,7 +156,7 @@ namespace limber
     const bool   is_full = walls.any() &&
                          mass >= least_of_full * liquid_density[field] *
                                    cut_cells->rooms()[node] &&
-                         is_in(node, obstacle, way);
+                         is_in(node, obstacle, way, true);
     const bool touches_somewhere = // and is not met from all sides alike
       weight > 0 && normal.norm() > 1e-6 * weight;
     if (!is_full && !touches_somewhere)
@@ -161,7 +164,7 @@ namespace limber
     const double least_share =
       walls.open_at_walls * least_touching_share(parts.problem.grid.kernel);
     const bool is_held = is_full || weight >= least_share * mass;
-    if (!is_held && !is_in(node, obstacle, way))
+    if (!is_held && !is_in(node, obstacle, way, walls.any()))
       return;
 
     const dealii::Point<dim> x =

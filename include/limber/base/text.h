@@ -65,6 +65,10 @@ namespace limber
   std::string
   brief(const double number);
 
+  /** "1 word", "2 words" */
+  std::string
+  counted(std::size_t n, const std::string &what);
+
   /**
    * The candidate that @p word was probably meant to be: the one with the
    * smallest edit distance, letter case aside, or the only one that has it
@@ -73,6 +77,11 @@ namespace limber
    */
   std::optional<std::string>
   nearest(const std::string &word, const std::vector<std::string> &candidates);
+
+  /** Those that have @p word among their words, letter case aside. */
+  std::vector<std::string>
+  with_word(const std::string              &word,
+            const std::vector<std::string> &candidates);
 } // namespace limber
 
 #endif

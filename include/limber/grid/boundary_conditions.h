@@ -49,10 +49,11 @@ namespace limber
     /**
      * On the nodes of fields for which @p by_surface is true, those sides do
      * not act that meet surfaces (Side), by number of the field; none by
-     * default.
+     * default. Nor do those that are @p covered, which may be null.
      */
     explicit BoundaryConditions(const Sides<dim>        &sides,
-                                const std::vector<bool> &by_surface = {});
+                                const std::vector<bool> &by_surface = {},
+                                const CoveredSides<dim> *covered    = nullptr);
 
     BoundaryConditions(const BoundaryConditions &) = delete;
     BoundaryConditions &

@@ -2,6 +2,7 @@
 #ifndef limber_grid_side_constraints_h
 #define limber_grid_side_constraints_h
 
+#include <limber/grid/covered_sides.h>
 #include <limber/grid/nodal_fields.h>
 #include <limber/problem/side_conditions.h>
 
@@ -24,14 +25,16 @@ namespace limber
    * The constraints that the sides of the box lay on the active nodes, as a
    * list: those of a node follow each other in the order in which its sides
    * act, so that of several for one component the last counts. The list is
-   * made anew only when nodes have become active or inactive, and its values
-   * only at another time.
+   * made anew only when nodes have become active or inactive or obstacles have
+   * moved that cover sides, and its values only at another time.
    */
   template <int dim>
   class SideConstraints
   {
   public:
-    explicit SideConstraints(const Sides<dim> &sides);
+    /** @p covered outlives this object; null: no side can be. */
+    explicit SideConstraints(const Sides<dim>        &sides,
+                             const CoveredSides<dim> *covered = nullptr);
 
     /** All of active nodes, owned and ghost, at @p time, s. */
     const std::vector<Constraint> &
@@ -44,6 +47,10 @@ namespace limber
       return held[set];
     }
 
+    /** The same of a node, less what obstacles have covered. */
+    const std::vector<HeldComponent> &
+    of_node(const NodalFields<dim> &nodes, std::uint32_t node) const;
+
   private:
     void
     rebuild(const NodalFields<dim> &nodes);
@@ -51,12 +58,14 @@ namespace limber
     evaluate(const NodalFields<dim> &nodes, double time);
 
     const Sides<dim>                                      &sides;
-    std::array<std::vector<HeldComponent>, 1 << (2 * dim)> held; // by sets
+    const CoveredSides<dim> *const                         covered; // or null
+    std::array<std::vector<HeldComponent>, 1 << (2 * dim)> held;    // by sets
     std::vector<Constraint>                                list;
     std::vector<std::size_t> moving;      // of them: those with a formula
     std::uint64_t            version = 0; // of the active nodes in the list
-    double                   time_of_values = 0; // s
-    bool                     has_values     = false;
+    std::uint64_t            version_of_covered = 0;
+    double                   time_of_values     = 0; // s
+    bool                     has_values         = false;
   };
 } // namespace limber
 

@@ -17,6 +17,10 @@ namespace limber
     double      reference = 0;
     double      tolerance = 0; // largest admissible difference
     bool        passed    = false;
+
+    /** The line of the end of a run: value, reference, verdict. */
+    std::string
+    text() const;
   };
 
 

@@ -110,6 +110,15 @@ namespace limber
       return least_of_layer;
     }
 
+    /** The same of such a layer that a moving obstacle closes and the last
+     * points have left: about what their material reaches beyond them, half an
+     * edge. */
+    static constexpr double
+    least_open_left()
+    {
+      return 0.3;
+    }
+
     /** What the pressure in a cell answers its dilation with, over that in any
      * other: less where so little is open that it would be too stiff for the
      * step, as if C^2 / 4 were open. */
@@ -261,6 +270,10 @@ namespace limber
     is_as_before(std::uint32_t cell, const Places &places);
     void
     look_at(std::uint32_t cell, const Places &places);
+
+    /** Whether no points are in a cell that an obstacle closes. */
+    bool
+    is_left(std::uint32_t cell) const;
     bool
     is_layer(std::uint32_t cell, const Distances &distances) const;
     void
@@ -313,7 +326,8 @@ namespace limber
     // less what it has moved by since
     std::vector<double> distance_at_rest, distance;
     Places              former;
-    bool                moves = false;
+    bool                moves        = false;
+    bool                knows_points = false; // which cells hold any
     // By cell, whether what moves was too far off to do anything to it or to
     // those around when cells were last found
     std::vector<char> is_untouched;

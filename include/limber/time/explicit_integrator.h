@@ -248,6 +248,7 @@ namespace limber
     // Points by the velocity that strains them, with MUSL and USAVG; APIC
     // would lose angular momentum.
     const bool              moves_as_strained;
+    CoveredSides<dim>       covered; // by obstacles that move
     BoundaryConditions<dim> boundaries;
     // Where obstacles may cut cells that hold a liquid
     std::optional<CutCells<dim>> cut_cells;

@@ -61,9 +61,10 @@ namespace limber
      * start. With @p leapfrogs (the initial frame) the velocity that points
      * give back in a step strains them in the next as well.
      */
-    ObstacleContact(const RunParts<dim> &parts,
-                    CutCells<dim>       *cut_cells,
-                    bool                 leapfrogs);
+    ObstacleContact(const RunParts<dim>     &parts,
+                    CutCells<dim>           *cut_cells,
+                    bool                     leapfrogs,
+                    const CoveredSides<dim> &covered);
 
     /** Adopt a changed mesh. */
     void
@@ -278,7 +279,10 @@ namespace limber
               const CellBatch      &batch,
               double               &reach) const;
     bool
-    is_in(std::uint32_t node, unsigned int obstacle, const Way &way);
+    is_in(std::uint32_t node,
+          unsigned int  obstacle,
+          const Way    &way,
+          bool          in_wall);
     bool
     is_beyond(double                    reach,
               unsigned int              obstacle,

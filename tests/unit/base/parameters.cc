@@ -182,6 +182,56 @@ TEST(Parameters, ErrorsSayWhereAndWhatWasMeant)
 
 
 
+// Hints are places where the entry has a meaning.
+TEST(Parameters, UnknownEntriesOfWordsThatOthersHave)
+{
+  Parameters parameters;
+  parameters.enter_subsection("Output");
+  for (const char *const name : {"Time interval", "Statistics interval"})
+    parameters.declare(name, "0", admissible::number(), "dt, s.");
+  parameters.leave_subsection();
+  parameters.enter_subsection("Checkpoint");
+  parameters.declare("Interval", "0", admissible::number(), "dt, s.");
+  parameters.leave_subsection();
+  parameters.enter_subsection("Method");
+  parameters.declare("Courant number",
+                     "0.4",
+                     admissible::number(),
+                     "CFL number C.");
+  parameters.leave_subsection();
+  for (const char *const side : {"left", "right"})
+    {
+      parameters.enter_subsection(side);
+      parameters.declare("Velocity", "0", admissible::number(), "v, m/s.");
+      parameters.leave_subsection();
+    }
+  const auto said = [&](const std::string &setting) -> std::string {
+    try
+      {
+        parameters.read(scan_parameters("", FileFormat::prm, "example"),
+                        {setting});
+      }
+    catch (const InputError &error)
+      {
+        return error.what();
+      }
+    return "";
+  };
+  const std::string interval = said("Output/Interval=1");
+  EXPECT_NE(interval.find("mean 'Time interval' or 'Statistics interval'?"),
+            std::string::npos)
+    << interval;
+  EXPECT_EQ(interval.find("Checkpoint"), std::string::npos) << interval;
+  const std::string cfl = said("Method/CFL=1");
+  EXPECT_NE(cfl.find("mean 'Courant number'?"), std::string::npos) << cfl;
+  const std::string velocity = said("Method/Velocity=1");
+  EXPECT_NE(velocity.find("exists in section 'left', for instance"),
+            std::string::npos)
+    << velocity;
+}
+
+
+
 TEST(Parameters, BrokenJsonIsWrongInput)
 {
   EXPECT_THROW(scan_parameters("{\"a\": 1,}", FileFormat::json, "a.json"),

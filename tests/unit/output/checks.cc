@@ -44,7 +44,11 @@ namespace limber::test
     EXPECT_FALSE(checks.results()[0].passed);
     checks.add(1, {1.05});
     EXPECT_TRUE(checks.results()[0].passed);
+    EXPECT_EQ(checks.results()[0].text(),
+              "check : 1.05, reference 1 +- 0.1, passed");
     checks.add(2, {std::numeric_limits<double>::quiet_NaN()});
     EXPECT_FALSE(checks.results()[0].passed);
+    EXPECT_EQ(checks.results()[0].text(),
+              "check : no value yet, reference 1 +- 0.1, MISSED");
   }
 } // namespace limber::test

@@ -87,6 +87,10 @@ TEST(CommandLine, MisspeltCommands)
   EXPECT_EQ(said({"runs/studdy"}), "");
   EXPECT_EQ(said({"--validate"}), "");
   EXPECT_EQ(said({"something", "else"}), "");
+  const std::string file = testing::TempDir() + "/scene.prm";
+  std::ofstream(file) << '\n';
+  EXPECT_NE(said({"run", file.c_str()}).find("'limber " + file + "'"),
+            std::string::npos);
   EXPECT_EQ(said({}), "");
 }
 

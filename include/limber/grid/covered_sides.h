@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_grid_covered_sides_h
+#define limber_grid_covered_sides_h
+
+#include <limber/problem/obstacle.h>
+
+#include <vector>
+
+namespace limber
+{
+  /**
+   * Sides of the box in whose place an obstacle has moved: a piston, a press or
+   * a paddle that starts in a side. A side that went on holding the nodes
+   * behind its surface would hold the material in front of it as well, in the
+   * cells that the obstacle cuts, both against being pushed and against coming
+   * along. Such nodes are left to the obstacle.
+   *
+   * Where the obstacle does not look into the box as the side does, as behind a
+   * piston on the floor, the side remains what holds the material.
+   */
+  template <int dim>
+  class CoveredSides
+  {
+  public:
+    /** By those of the obstacles that move; these outlive this object. */
+    CoveredSides(const std::vector<Obstacle<dim>> &obstacles,
+                 double                            smallest_edge);
+
+    /** Where they are in the step that begins at @p time, s. */
+    void
+    find(double time);
+
+    /** Of the sides in @p set (bits) at a place, those that still act. */
+    std::uint8_t
+    uncovered(std::uint8_t set, const dealii::Point<dim> &place) const;
+
+    /** Raised by one whenever obstacles have moved. */
+    std::uint64_t
+    version() const
+    {
+      return n_found;
+    }
+
+  private:
+    std::vector<const Obstacle<dim> *> moving;
+    std::vector<ObstaclePlace<dim>>    places; // of these, now
+    const double                       tolerance;
+    std::uint64_t                      n_found = 0;
+  };
+} // namespace limber
+
+#endif
