@@ -9,7 +9,7 @@ namespace limber
     : tolerance(1e-6 * smallest_edge)
   {
     for (const Obstacle<dim> &obstacle : obstacles)
-      if (obstacle.moves())
+      if (obstacle.changes_place())
         moving.push_back(&obstacle);
     find(0);
   }

@@ -178,9 +178,8 @@ namespace limber
                      "; smaller steps do not help";
       else
         line.text +=
-          ": points come to rest against what they hit one by one, "
-          "in each impact those of up to a cell. Take smaller "
-          "cells" +
+          ": each impact loses that of a layer up to one cell thick. Take "
+          "smaller cells" +
           std::string(crosses_cells ? ", or a smaller 'Courant number'" : "");
       return line;
     }

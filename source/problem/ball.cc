@@ -31,6 +31,16 @@ namespace limber
 
 
   template <int dim>
+  bool
+  BallShape<dim>::is_round_about(const dealii::Point<dim> &place,
+                                 const dealii::Tensor<1, 3> & /*axis*/) const
+  {
+    return place.distance(centre) <= 1e-12 * radius;
+  }
+
+
+
+  template <int dim>
   Corners<dim>
   BallShape<dim>::bounding_box() const
   {

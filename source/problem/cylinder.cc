@@ -7,6 +7,8 @@
 #include <limber/problem/read_parts.h>
 #include <limber/problem/signed_distance.h>
 
+#include <cmath>
+
 namespace limber
 {
   namespace numbers = dealii::numbers;
@@ -68,6 +70,19 @@ namespace limber
     on_axis[axis]      = point[axis];
     return lower <= point[axis] && point[axis] <= upper &&
            point.distance_square(on_axis) <= radius * radius;
+  }
+
+
+
+  template <int dim>
+  bool
+  CylinderShape<dim>::is_round_about(const dealii::Point<dim>   &place,
+                                     const dealii::Tensor<1, 3> &about) const
+  {
+    dealii::Tensor<1, dim> beside = place - centre;
+    beside[axis]                  = 0;
+    return std::abs(std::abs(about[axis]) - 1) <= 1e-12 &&
+           beside.norm() <= 1e-12 * radius;
   }
 
 

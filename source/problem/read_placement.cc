@@ -253,7 +253,8 @@ namespace limber
     // a side has nodes of 13 m/s with such points, of 3 m/s cut. Liquids that
     // obstacles bound have to have the mass of what they fill there: counted by
     // parts, water of 93 J moves beside a wall that it should rest at; and so
-    // have boxes of a liquid, whose level would be off. (Linear functions
+    // have boxes of a liquid, whose level would be off, and waves, of which
+    // stairs of parts have a third less energy. (Linear functions
     // without a treatment lock in bending, which such rows make up for in part:
     // a disk that swirls errs by a third less.)
     template <int dim>
@@ -296,6 +297,12 @@ namespace limber
         return choose(Placement::cut,
                       "cut",
                       "its faces do not lie between the points of 'regular'");
+      if (body.is_liquid && !touches &&
+          problem.grid.kernel == KernelKind::linear &&
+          has_faces_of_its_own(*body.shape))
+        return choose(Placement::cut,
+                      "cut",
+                      "its surface runs across the cells");
       // 'fitted', which solids with domains or in contact may need, does not
       // go with cells of several sizes.
       if (body.is_liquid || (problem.grid.levels > 0 &&

@@ -50,6 +50,18 @@ namespace limber
 
 
   template <int dim>
+  bool
+  UnionShape<dim>::is_round_about(const dealii::Point<dim>   &place,
+                                  const dealii::Tensor<1, 3> &axis) const
+  {
+    return std::all_of(parts.begin(), parts.end(), [&](const auto &part) {
+      return part->is_round_about(place, axis);
+    });
+  }
+
+
+
+  template <int dim>
   Corners<dim>
   UnionShape<dim>::bounding_box() const
   {

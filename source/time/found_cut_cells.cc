@@ -32,7 +32,7 @@ namespace limber
         middle[d] = cell.origin[d] + 0.5 / cell.inverse_edge[d];
       double result = 1e300;
       for (std::size_t o = 0; o < obstacles.size(); ++o)
-        if (obstacles[o].moves() == that_move)
+        if (obstacles[o].changes_place() == that_move)
           result = std::min(result, places[o].distance(middle).value);
       return result;
     }
@@ -63,7 +63,9 @@ namespace limber
     , knowing(n_nodal_fields(parts.problem), false)
     , moves(std::any_of(parts.problem.obstacles.begin(),
                         parts.problem.obstacles.end(),
-                        [](const auto &obstacle) { return obstacle.moves(); }))
+                        [](const auto &obstacle) {
+                          return obstacle.changes_place();
+                        }))
     , is_implicit(parts.problem.method.integration ==
                   TimeIntegration::semi_implicit)
   {
@@ -145,7 +147,9 @@ namespace limber
   {
     double result = 0;
     for (std::size_t o = 0; o < former.size(); ++o)
-      for (unsigned int corner = 0; corner < n_nodes; ++corner)
+      for (unsigned int corner = 0;
+           corner < n_nodes && parts.problem.obstacles[o].changes_place();
+           ++corner)
         {
           dealii::Point<dim> x;
           for (unsigned int d = 0; d < dim; ++d)

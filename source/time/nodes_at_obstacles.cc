@@ -57,7 +57,7 @@ namespace limber
              edges * parts.grid.smallest_edge;
     };
     constexpr double surface = 1e-3;
-    if (rigid[obstacle].moves())
+    if (rigid[obstacle].changes_place())
       return is_within(in_wall ? cut_cells->least_open_left() : surface);
     std::uint8_t &known = known_nodes[obstacle][node];
     if (known == 0)

@@ -39,6 +39,10 @@ namespace limber
     Corners<dim>
     bounding_box() const override;
 
+    bool
+    is_round_about(const dealii::Point<dim>   &place,
+                   const dealii::Tensor<1, 3> &axis) const override;
+
     std::optional<double>
     exact_volume() const override;
 

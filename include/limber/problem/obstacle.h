@@ -34,6 +34,15 @@ namespace limber
     {
       return !displacement.empty() || !rotation.empty();
     }
+
+    /** Whether it takes other places than before: not so if it is round and
+     * turns about its own axis. */
+    bool
+    changes_place() const
+    {
+      return !displacement.empty() ||
+             (!rotation.empty() && !shape->is_round_about(centre, axis));
+    }
   };
 
 

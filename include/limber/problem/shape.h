@@ -79,6 +79,15 @@ namespace limber
       return std::nullopt;
     }
 
+    /** Whether turning it about an axis, of unit length, through a place leaves
+     * it as it is; in two dimensions about z. */
+    virtual bool
+    is_round_about(const dealii::Point<dim> & /*place*/,
+                   const dealii::Tensor<1, 3> & /*axis*/) const
+    {
+      return false;
+    }
+
     /** From the surface; nothing of a shape that cannot tell. */
     virtual std::optional<SignedDistance<dim>>
     signed_distance(const dealii::Point<dim> &) const

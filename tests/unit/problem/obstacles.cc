@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
+#include <limber/grid/covered_sides.h>
 #include <limber/problem/closed_surface.h>
 #include <limber/problem/half_space.h>
 #include <limber/problem/read_problem.h>
@@ -362,4 +363,51 @@ TEST(Obstacles, WhatDoesNotGoWithThemIsRefused)
             << error.what();
         }
     }
+}
+
+
+
+// Of a half-space that goes along x, from the left side on.
+TEST(Obstacles, TakeThePlaceOfSides)
+{
+  const std::string shape = "set Shape = half-space\nsubsection Half-space\n"
+                            "set Point = 0, 0\nset Normal = 1, 0\nend\n";
+  const std::vector<Obstacle<2>> piston = {
+    obstacle_of<2>(shape + "set Displacement = t; 0\n")};
+  constexpr std::uint8_t left = 1, bottom = 4;
+  CoveredSides<2>        sides(piston, 1);
+  EXPECT_EQ(sides.uncovered(left, Point<2>(0, 1)), 0) << "it begins there";
+  EXPECT_EQ(sides.uncovered(left | bottom, Point<2>(0, 0)), bottom);
+  EXPECT_EQ(sides.uncovered(bottom, Point<2>(0.5, 0)), bottom);
+  const auto version = sides.version();
+  sides.find(1);
+  EXPECT_NE(sides.version(), version);
+  EXPECT_EQ(sides.uncovered(bottom, Point<2>(0.5, 0)), bottom)
+    << "what is behind it on the floor cannot go through that";
+  sides.find(-1);
+  EXPECT_EQ(sides.uncovered(left, Point<2>(0, 1)), left) << "it is outside";
+
+  // What stays where it is leaves sides alone, also if it turns there.
+  const std::vector<Obstacle<2>> wall = {obstacle_of<2>(shape)};
+  EXPECT_EQ(CoveredSides<2>(wall, 1).uncovered(left, Point<2>(0, 1)), left);
+}
+
+
+
+TEST(Obstacles, ThatAreRoundTurnWhereTheyAre)
+{
+  const auto changes = [](const std::string &more) {
+    return obstacle_of<2>(
+             "set Shape = ball\nset Rotation = t\nsubsection Ball\n"
+             "set Centre = 2, 1\nset Radius = 0.5\nend\n" +
+             more)
+      .changes_place();
+  };
+  EXPECT_FALSE(changes(""));
+  EXPECT_TRUE(changes("set Centre = 2, 1.1\n"));
+  EXPECT_TRUE(changes("set Displacement = t; 0\n"));
+  const CylinderShape<3> cylinder(2, Point<3>(1, 2, 0), 0.5, 0, 1);
+  EXPECT_TRUE(cylinder.is_round_about(Point<3>(1, 2, 7), Point<3>(0, 0, -1)));
+  EXPECT_FALSE(cylinder.is_round_about(Point<3>(1, 2, 7), Point<3>(0, 1, 0)));
+  EXPECT_FALSE(cylinder.is_round_about(Point<3>(1, 1, 0), Point<3>(0, 0, 1)));
 }
