@@ -1,15 +1,41 @@
 # Completion of bash for limber: commands, options, scenes, entries of --set, fields.
 
 _limber_entries() {
-  # 'Section/Name' of all entries, from the program itself
-  limber --print-parameters prm "$@" 2>/dev/null | awk '
+  # 'Section/Name=' of all entries, from the program itself: those of the scene or
+  # study that the line names, if it is there
+  local word words=()
+  [[ $command != @(study|stability) ]] || words=("$command")
+  words+=(--print-parameters prm)
+  for word in "${COMP_WORDS[@]}"; do
+    if [[ $word == *.@(prm|json) && -f $word ]]; then
+      words+=("$word")
+      break
+    fi
+  done
+  limber "${words[@]}" 2>/dev/null | awk '
     $1 == "subsection" { sub(/^ *subsection +/, ""); path = path $0 "/"; next }
     $1 == "end" { sub(/[^\/]*\/$/, "", path); next }
     $1 == "set" { sub(/^ *set +/, ""); sub(/ *=.*/, ""); print path $0 "=" }'
 }
 
+_limber_offer() {
+  # Lines that begin with the word. 'compgen -W' would take quotes out of them; what
+  # stands in a quotation already must not be escaped.
+  local line word=$1
+  [[ $typed == [\"\']* ]] || word=${word//\\/}
+  while read -r line; do
+    [[ $line == "$word"* ]] || continue
+    case $typed in
+      \"*) ;;
+      \'*) line=${line//\'/\'\\\'\'} ;;
+      *) printf -v line %q "$line" ;;
+    esac
+    COMPREPLY+=("$line")
+  done
+}
+
 _limber() {
-  local word=$2 before=$3 command=run
+  local word=$2 before=$3 typed=${COMP_WORDS[COMP_CWORD]} command=run
   local commands="reference compare study stability inf-sup advise plot animate"
   local options
   COMPREPLY=()
@@ -26,15 +52,12 @@ _limber() {
         -- "$word")
       return ;;
     --set)
-      local IFS=$'\n'
-      mapfile -t COMPREPLY < <(compgen -W "$(_limber_entries)" -- "$word" |
-        sed 's/[ '\'']/\\&/g')
+      _limber_offer "$word" < <(_limber_entries)
       compopt -o nospace
       return ;;
     --field)
-      local IFS=$'\n'
-      mapfile -t COMPREPLY < <(compgen -W $'pressure\nspeed\nvelocity\nstress
-displacement\nequivalent\\ stress\nvolume\\ ratio\nmass\nbody' -- "$word")
+      _limber_offer "$word" < <(printf '%s\n' pressure speed velocity stress \
+        displacement "equivalent stress" "volume ratio" mass body)
       return ;;
     --output-directory | --frames)
       mapfile -t COMPREPLY < <(compgen -d -- "$word")

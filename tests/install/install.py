@@ -6,22 +6,27 @@
 
 import argparse
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+TOP = Path(__file__).resolve().parents[2]
 ARGUMENTS = None
 
-COMPLETE = """
+# bash hands the word on without the quote that it begins with
+COMPLETE = r"""
 source "$1"
 program=$2
 limber() { "$program" "$@"; }
 COMP_WORDS=("${@:3}") COMP_CWORD=$(($# - 3))
 compopt() { :; }
-_limber limber "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}"
-printf '%s\\n' "${COMPREPLY[@]}"
+word=${COMP_WORDS[COMP_CWORD]}
+[[ $word != [\"\']* ]] || word=${word:1}
+_limber limber "$word" "${COMP_WORDS[COMP_CWORD - 1]}"
+printf '%s\n' "${COMPREPLY[@]}"
 """
 
 
@@ -71,6 +76,17 @@ class Install(unittest.TestCase):
         page = (self.prefix / "share/man/man1/limber.1").read_text()
         self.assertIn(run(self.limber, "--version").split()[1], page)
 
+    def test_links_of_pages_and_files_of_scenes(self):
+        """What the sources have beside their pages and scenes is installed."""
+        share = self.prefix / "share"
+        for page in [share / "limber/prm/README.md",
+                     *(share / "doc/limber").rglob("*.md")]:
+            for link in re.findall(r"\]\(([^)#\s]+)", page.read_text()):
+                self.assertTrue(":" in link or (page.parent / link).exists(),
+                                f"{page}: {link}")
+        for path in (TOP / "prm/data").iterdir():
+            self.assertTrue((share / "limber/prm/data" / path.name).is_file())
+
     def complete(self, *words):
         script = self.prefix / "share/bash-completion/completions/limber"
         return run("bash", "-c", COMPLETE, "bash", script, self.limber,
@@ -85,6 +101,23 @@ class Install(unittest.TestCase):
         self.assertIn("prm/dam_break.prm", self.complete("prm/"))
         self.assertIn("Method/Courant\\ number=",
                       self.complete("a.prm", "--set", "Method/Cou"))
+        self.assertEqual(["Method/Stress update="], self.complete(
+            "a.prm", "--set", '"Method/Stress u'))
+        scene = "prm/cantilever.prm"
+        self.assertIn("Body\\ beam/Material=",
+                      self.complete(scene, "--set", "Body\\ beam/Mat"))
+        for typed, entry in (
+                ("Body\\ beam/Neo\\ hookean/Yo",
+                 "Body\\ beam/Neo\\ hookean/Young\\'s\\ modulus="),
+                ('"Body beam/Neo hookean/Yo',
+                 "Body beam/Neo hookean/Young's modulus="),
+                ("'Body beam/Neo hookean/Yo",
+                 "Body beam/Neo hookean/Young'\\''s modulus=")):
+            self.assertEqual([entry], self.complete(scene, "--set", typed))
+        self.assertEqual(["Error\\ levels="], self.complete(
+            "study", "prm/studies/cantilever.prm", "--set", "Error"))
+        self.assertEqual(["equivalent\\ stress"],
+                         self.complete("plot", "x", "--field", "eq"))
 
 
 def main():
