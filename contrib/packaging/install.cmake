@@ -46,6 +46,8 @@ set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
 set(LIMBER_MAINTAINER "Limber developers <root@localhost>" CACHE STRING
   "Name and address in the Debian package")
 set(CPACK_PACKAGE_CONTACT "${LIMBER_MAINTAINER}")
+set(CPACK_PROJECT_CONFIG_FILE
+  ${CMAKE_CURRENT_SOURCE_DIR}/contrib/packaging/check_maintainer.cmake)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY
   "material point method for solids and fluids that do not lock")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
