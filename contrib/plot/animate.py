@@ -4,7 +4,8 @@
 Makes a film of a field, all its pictures one after the other with the same
 colours; of several runs one below the other, at the same times. Ends in .mp4
 (with ffmpeg, Debian: apt-get install ffmpeg) or .gif; without '--output' it is
-animation.mp4 in the folder of the first run. '--frames FOLDER' keeps the pictures.
+animation.mp4, of several runs comparison_animation.mp4, in the folder of the first
+run. '--frames FOLDER' keeps the pictures.
 """
 
 import os
@@ -72,7 +73,9 @@ def main(words=None):
     arguments = parser.parse_args(words)
     sources, labels = plot.checked(arguments)
     path = charts.check_ending(
-        arguments.output or sources[0].folder / "animation.mp4",
+        arguments.output or sources[0].folder / (
+            "comparison_animation.mp4" if len(sources) > 1
+            else "animation.mp4"),
         (".mp4", ".gif"))
     if arguments.rate <= 0:
         charts.fail("'--rate' must be greater than 0.")

@@ -47,13 +47,18 @@ plt.rcParams.update({
     "figure.dpi": 100, "savefig.dpi": 150, "svg.fonttype": "none",
     "pdf.fonttype": 42, "svg.hashsalt": "limber"})
 
+# Bodies, columns, runs: colours that stay apart for all kinds of sight (Okabe and
+# Ito 2008), in the order of their contrast on white.
+COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9",
+           "#777777"]
+plt.rcParams["axes.prop_cycle"] = plt.cycler(color=COLOURS)
+
 ENDINGS = (".png", ".pdf", ".svg")
 
 
 # ---- one palette: what a method is drawn with, wherever it occurs --------------
 
-# Colours that stay apart for all kinds of sight (Okabe and Ito 2008), and some
-# darker and lighter ones. By treatment of locking:
+# Those colours, and some darker and lighter ones. By treatment of locking:
 TREATMENTS = {
     "none": "#777777", "cell": "#0072B2", "cell shear": "#56B4E9",
     "cell full": "#00366b", "node": "#009E73", "hybrid": "#8a8d00",
@@ -183,16 +188,24 @@ def line_of(method):
 
 # ---- axes -----------------------------------------------------------------------
 
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"))
+PREFIXES = {**dict.fromkeys(("Pa", "J", "N"),
+                            ((1e9, "G"), (1e6, "M"), (1e3, "k"))),
+            # 0.15 s, but 50 ms
+            **dict.fromkeys(("s", "m"), ((1, ""), (1e-3, "m"), (1e-6, "µ")))}
 
 
 def scaled_unit(unit, largest):
     """Factor and unit that make numbers up to @p largest short: 1e6, 'MPa'."""
-    if unit in ("Pa", "J", "N"):
-        for factor, prefix in PREFIXES:
-            if largest >= factor:
-                return factor, prefix + unit
+    for factor, prefix in PREFIXES.get(unit, ()):
+        if largest >= factor * (1 if factor > 1 else 0.1):
+            return factor, prefix + unit
     return 1, unit
+
+
+def with_time(seconds, longest):
+    """'t = 20 µs', in the unit that suits the longest of several times."""
+    factor, unit = scaled_unit("s", longest)
+    return f"t = {seconds / factor:.4g} {unit}"
 
 
 def with_unit(name, unit):

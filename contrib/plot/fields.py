@@ -15,6 +15,12 @@ UNITS = {"displacement": "m", "velocity": "m/s", "speed": "m/s",
          "point pressure": "Pa", "point stress": "Pa"}
 
 
+def refuse_scene(folder):
+    if Path(folder).suffix in (".prm", ".json") and Path(folder).is_file():
+        fail(f"'{folder}' is a scene. Run it ('limber {folder}'), then plot its "
+             "folder.")
+
+
 class Source:
     """A run folder that fields are drawn from.
 
@@ -24,6 +30,10 @@ class Source:
 
     def __init__(self, folder):
         self.folder = Path(folder)
+        refuse_scene(folder)
+        if (self.folder / "study.csv").is_file():
+            fail(f"'{folder}' is a study; pictures and films of a field are made "
+                 f"of its runs in '{self.folder / 'runs'}'.")
         if not self.folder.is_dir():
             fail(f"There is no folder '{folder}'. Usually the path is misspelt, "
                  "or the run was written elsewhere ('--output-directory').")

@@ -13,9 +13,8 @@ import obstacles
 import run_folder
 import spheres
 
+SLENDER = 0.15  # height over width of what stands in one column
 RASTER_FROM = 3000  # points; more of them make a PDF or SVG slow
-BODY_COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00",
-                "#56B4E9", "#777777"]
 
 
 class State:
@@ -83,15 +82,18 @@ class Look:
         both_signs = low < 0 < high and min(-low, high) > 0.15 * max(-low, high)
         if both_signs and not self.limits:
             low, high = -max(-low, high), max(-low, high)
-        self.map = charts.plt.get_cmap("RdBu_r" if both_signs else "viridis")
+        # Grey at zero: a body at rest stands out from the paper.
+        self.map = charts.plt.get_cmap("coolwarm" if both_signs else "viridis")
         self.norm = Normalize(low, high)
+        self.longest = max(state.source.times[-1] for state in states)
         self.beyond = {(False, False): "neither", (True, False): "min",
                        (False, True): "max", (True, True): "both"}[
             bool(finite.min() < low), bool(finite.max() > high)]
         if self.is_body:
             names = states[0].source.bodies
-            self.map = ListedColormap([BODY_COLOURS[i % len(BODY_COLOURS)]
-                                       for i in range(len(names))])
+            self.map = ListedColormap([
+                charts.COLOURS[i % len(charts.COLOURS)]
+                for i in range(len(names))])
             self.norm = Normalize(-0.5, len(names) - 0.5)
         if self.zoom:
             self.lower, self.upper = self.zoom
@@ -113,6 +115,10 @@ class Look:
 
     def colours(self, values):
         return self.map(self.norm(values))[:, :3]
+
+    def title(self, state):
+        return charts.with_time(state.time, self.longest) + (
+            f", displacements × {self.enlarge:g}" if self.enlarge != 1 else "")
 
     @property
     def aspect(self):
@@ -349,27 +355,33 @@ def _below_each_other(states, aspect):
     """Pictures of one run in rows: what is flat, a beam or a slope, stands in one
     column or two, as it would be tiny side by side."""
     columns = len(states)
-    if aspect < 0.4 and columns > 2:
-        columns = 1 if aspect < 0.15 or columns == 3 else 2
+    if aspect < SLENDER or aspect < 0.4 and columns <= 3:
+        columns = 1
+    elif aspect < 0.6:
+        columns = min(columns, 2)
     return [states[i:i + columns] for i in range(0, len(states), columns)]
 
 
 def figure_of(states, look, labels, width=None):
-    """A figure with a row for each run and a column for each time; @p states is
-    a list of rows. Returns the figure."""
+    """A figure with a row for each run and a column for each time, slender bodies
+    in one column; @p states is a list of rows. Returns the figure."""
     look.fix([state for row in states for state in row])
     dimension = states[0][0].source.dimension
     aspect = look.aspect
-    if len(states) == 1 and dimension == 2 and not width:
-        states, labels = _below_each_other(states[0], aspect), [""] * len(
-            states[0])
+    if len(states) == 1:
+        labels = [""] * len(states[0])
+        if dimension == 2:
+            states = _below_each_other(states[0], aspect)
+    elif dimension == 2 and aspect < SLENDER:
+        labels = labels * len(states[0])
+        states = [[state] for column in zip(*states) for state in column]
     rows, columns = len(states), max(len(row) for row in states)
     if dimension == 3:
         camera = _camera_of(look, _upwards(states[0][0].source), 100)
         look.pixels = 1000 if width else 1500 if columns == 1 else 1100
         aspect = camera.shape[0] / camera.shape[1]
     panel = (width or (6.5 if columns == 1 else min(4.2, 13 / columns)))
-    height = min(panel * aspect, 6) + (0.75 if rows == 1 else 0.45)
+    height = np.clip(panel * aspect, 1, 6) + (0.75 if rows == 1 else 0.45)
     figure, axes = charts.plt.subplots(
         rows, columns, squeeze=False, sharex=dimension == 2,
         sharey=dimension == 2, layout="constrained",
@@ -378,18 +390,16 @@ def figure_of(states, look, labels, width=None):
         for axis, state in zip(axes[i], row):
             draw(axis, state, look)
             if i == 0 or state.time != states[0][row.index(state)].time:
-                axis.set_title(f"t = {state.time:.4g} s")
+                axis.set_title(look.title(state))
             if dimension == 2 and i == rows - 1:
                 axis.set_xlabel("x [m]")
         for axis in axes[i][len(row):]:
             axis.set_axis_off()
         if dimension == 2:
             axes[i][0].set_ylabel("y [m]")
-        if label and rows > 1:
-            axes[i][0].annotate(
-                label, (0, 0.5), xycoords="axes fraction", rotation=90,
-                xytext=(-45 if dimension == 2 else -12, 0),
-                textcoords="offset points", fontweight="bold",
-                horizontalalignment="right", verticalalignment="center")
+        if label:
+            # above the times where those have little room
+            above = "\n" if columns > 1 and axes[i][0].get_title() else ""
+            axes[i][0].set_title(label + above, loc="left", fontweight="bold")
     look.bar(figure, axes)
     return figure

@@ -5,7 +5,8 @@ Draws runs, references and studies. Of one run without options: snapshots of the
 pressure (or of the first field there is), the energies, and the observables, as
 snapshots.png, energies.png and observables.png in its folder; of a study its chart.
 Several runs are drawn one below the other, with the same colours and at the same
-times, and their tables in the same charts.
+times, and their tables in the same charts: comparison_snapshots.png and so on in the
+folder of the first one.
 
 A field is what pictures hold ('Output/Fields', all of a reference), a component of
 it ('velocity x', 'stress xy'), 'speed', 'equivalent stress', or 'body'. A field,
@@ -13,7 +14,9 @@ body or column that is not there ends with exit code 1 and no picture is touched
 """
 
 import argparse
+import difflib
 import sys
+import textwrap
 from pathlib import Path
 
 import charts
@@ -25,7 +28,14 @@ from charts import np, plt
 
 class Parser(argparse.ArgumentParser):
     def error(self, message):
-        charts.fail(f"{message}. See 'limber {self.prog.split()[-1]} --help'.")
+        _, _, unknown = message.partition("unrecognized arguments: ")
+        meant = difflib.get_close_matches(
+            unknown.split(" ")[0],
+            [name for action in self._actions for name in action.option_strings],
+            1)
+        charts.fail(f"{message}." + (f" Did you mean '{meant[0]}'?" if meant
+                                     else "")
+                    + f" See '{self.prog} --help'.")
 
 
 def finite(text):
@@ -91,9 +101,20 @@ def look_of(arguments, sources):
                        grid=arguments.grid)
 
 
+def check_times(sources, latest):
+    """A time that a run has not reached is not drawn as its last picture."""
+    for source in sources:
+        last, interval = source.times[-1], np.diff(source.times).max(initial=0)
+        if latest > last + interval:
+            charts.fail(f"The run in '{source.folder}' ends at {last:.4g} s; "
+                        f"there is no picture of {latest:.4g} s.")
+
+
 def snapshots(arguments, sources, labels):
     wanted = arguments.time
-    if not wanted:
+    if wanted:
+        check_times(sources, max(wanted))
+    else:
         times = sources[0].times
         wanted = [times[i] for i in np.unique(np.linspace(
             0, len(times) - 1, arguments.snapshots).round().astype(int))]
@@ -151,6 +172,8 @@ def columns_figure(sources, labels, names_in, wanted=None):
     figure, axes = plt.subplots(
         len(groups), 1, sharex=True, squeeze=False, layout="constrained",
         figsize=(8.5, 0.9 + 2.6 * len(groups)))
+    second, seconds = charts.scaled_unit(
+        "s", max(table["time"][-1] for table, _ in tables))
     for axis, (unit, names) in zip(axes[:, 0], groups.items()):
         largest = max((np.nanmax(abs(table[name]), initial=0)
                        for table, _ in tables for name in names
@@ -161,19 +184,18 @@ def columns_figure(sources, labels, names_in, wanted=None):
             colour = ENERGY_COLOURS.get(name, f"C{k}")
             for i, (table, _) in enumerate(tables):
                 if name in table:
-                    axis.plot(table["time"], table[name] / factor,
+                    axis.plot(table["time"] / second, table[name] / factor,
                               "-" if by_run else LINES[i % len(LINES)],
                               color=f"C{i}" if by_run else colour,
                               linewidth=1.2, label=labels[i] if by_run
                               else name if len(tables) == 1
                               else f"{name}, {labels[i]}")
-        name = names[0] if len(names) == 1 else (
-            "energy" if unit == "J" else "")
-        axis.set_ylabel(charts.with_unit(name, short) if name
-                        else f"[{short}]")
+        name = "energy" if unit == "J" and len(names) > 1 else textwrap.shorten(
+            ", ".join(names), 28, placeholder=" ...")
+        axis.set_ylabel(charts.with_unit(name, short))
         axis.grid(alpha=0.25)
         charts.legend_outside(axis)
-    axes[-1, 0].set_xlabel("time [s]")
+    axes[-1, 0].set_xlabel(charts.with_unit("time", seconds))
     return figure
 
 
@@ -212,6 +234,8 @@ def main(words=None):
     else:
         sources, labels = checked(arguments)
     home = sources[0].folder
+    # What the folder holds of its own run stays.
+    about = "comparison_" if len(sources) > 1 else ""
     output = arguments.output
     drawn = []
     if arguments.columns:
@@ -223,17 +247,18 @@ def main(words=None):
                 [e for e in (*ENERGIES, "total energy") if e in table]
                 if word == "energies" else observables_of(sources[0])(table)
                 if word == "observables" else [word])]
-        drawn.append((output or home / "columns.png",
+        drawn.append((output or home / f"{about}columns.png",
                       columns_figure(sources, labels, chosen, names)))
         if drawn[0][1] is None:
             charts.fail(f"There is nothing to draw in '{home}': the scene has "
                         "no observables.")
     if arguments.field or not arguments.columns:
-        drawn.append((output or home / "snapshots.png",
+        drawn.append((output or home / f"{about}snapshots.png",
                       snapshots(arguments, sources, labels)))
     if not arguments.field and not arguments.columns and not output:
-        drawn.append((home / "energies.png", energies(sources, labels)))
-        drawn.append((home / "observables.png",
+        drawn.append((home / f"{about}energies.png",
+                      energies(sources, labels)))
+        drawn.append((home / f"{about}observables.png",
                       columns_figure(sources, labels,
                                      observables_of(sources[0]))))
     if output and len(drawn) > 1:
@@ -249,6 +274,7 @@ class TableOnly:
 
     def __init__(self, folder):
         self.folder = Path(folder)
+        fields.refuse_scene(folder)
         if not (self.folder / "statistics").is_file():
             charts.fail(f"The folder '{folder}' holds no table 'statistics'.")
         self.parameters = run_folder.parameters(self.folder)
