@@ -4,7 +4,7 @@ same size for all of them."""
 import charts
 from charts import np
 from matplotlib.cm import ScalarMappable
-from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.collections import LineCollection
 from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.tri import Triangulation
 
@@ -12,9 +12,9 @@ import fields
 import obstacles
 import run_folder
 import spheres
+import squares
 
 SLENDER = 0.15  # height over width of what stands in one column
-RASTER_FROM = 3000  # points; more of them make a PDF or SVG slow
 
 
 class State:
@@ -64,7 +64,7 @@ class Look:
         self.field, self.body, self.enlarge = field, body, enlarge
         self.limits, self.view, self.zoom = limits, view, zoom
         self.is_body = field == "body"
-        self.pixels = 1100  # of a panel in three dimensions
+        self.pixels = 1100  # of the width of a panel
 
     def fix(self, states):
         """Colours, unit and corners for good, from all states that are seen."""
@@ -148,16 +148,7 @@ def draw(axis, state, look):
     if state.source.is_reference:
         _draw_elements(axis, state, look)
     else:
-        # Squares: their rows have straight edges. No gaps up to that stretch, nor
-        # where the lattice has turned by whatever angle.
-        half = 0.5 * 1.45 * state.sizes[:, None, None]
-        corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-        dots = PolyCollection(
-            state.place[:, None, :2] + half * corners, linewidths=0,
-            cmap=look.map, norm=look.norm,
-            rasterized=len(state.place) > RASTER_FROM)
-        dots.set_array(state.values)
-        axis.add_collection(dots)
+        _draw_squares(axis, state, look)
     axis.set_xlim(look.lower[0], look.upper[0])
     axis.set_ylim(look.lower[1], look.upper[1])
     axis.set_aspect("equal")
@@ -168,22 +159,40 @@ def draw(axis, state, look):
                    look.upper)
 
 
+def _box_of(state):
+    return [run_folder.numbers(state.source.parameters[f"Grid/{name}"])
+            for name in ("Lower corner", "Upper corner")]
+
+
+def _draw_squares(axis, state, look):
+    lower, upper = look.lower[:2], look.upper[:2]
+    owner = squares.owners(state.place[:, :2], state.sizes, lower, upper,
+                           _box_of(state), look.pixels)
+    picture = look.map(look.norm(state.values))[owner]
+    picture[owner < 0, 3] = 0
+    height = owner.shape[0] / owner.shape[1] * (upper[0] - lower[0])
+    axis.imshow(picture, origin="lower", interpolation="antialiased", extent=(
+        lower[0], upper[0], lower[1], lower[1] + height))
+
+
 def _draw_box(axis, state, look):
     """The sides of the grid's box, grey, where they are in sight."""
-    lower, upper = (run_folder.numbers(state.source.parameters[f"Grid/{name}"])
-                    for name in ("Lower corner", "Upper corner"))
+    lower, upper = _box_of(state)
     axis.plot([lower[0], upper[0], upper[0], lower[0], lower[0]],
               [lower[1], lower[1], upper[1], upper[1], lower[1]],
               color="0.6", linewidth=0.8, zorder=0, scalex=False, scaley=False)
 
 
 def _draw_cells(axis, lower, upper):
-    """The edges of cells, each line once; finer ones over coarser ones."""
+    """The edges of cells, each line once; finer ones over coarser ones, and
+    thinner where they would hide what is below them."""
     lines = np.concatenate([
         np.stack([lower, np.stack([upper[:, 0], lower[:, 1]], axis=1)], axis=1),
         np.stack([lower, np.stack([lower[:, 0], upper[:, 1]], axis=1)], axis=1)])
-    axis.add_collection(LineCollection(lines, colors="0.55", linewidths=0.45,
-                                       zorder=3))
+    points = 72 / axis.figure.dpi * axis.bbox.width / np.diff(axis.get_xlim())
+    axis.add_collection(LineCollection(
+        lines, colors="0.55", zorder=3, linewidths=np.tile(
+            np.clip(0.06 * points * (upper - lower)[:, 0], 0.1, 0.45), 2)))
 
 
 def _draw_elements(axis, state, look):
@@ -380,6 +389,8 @@ def figure_of(states, look, labels, width=None):
         camera = _camera_of(look, _upwards(states[0][0].source), 100)
         look.pixels = 1000 if width else 1500 if columns == 1 else 1100
         aspect = camera.shape[0] / camera.shape[1]
+    else:
+        look.pixels = 1600 if columns == 1 else 1000
     panel = (width or (6.5 if columns == 1 else min(4.2, 13 / columns)))
     height = np.clip(panel * aspect, 1, 6) + (0.75 if rows == 1 else 0.45)
     figure, axes = charts.plt.subplots(
@@ -391,8 +402,10 @@ def figure_of(states, look, labels, width=None):
             draw(axis, state, look)
             if i == 0 or state.time != states[0][row.index(state)].time:
                 axis.set_title(look.title(state))
-            if dimension == 2 and i == rows - 1:
+            below = states[i + 1] if i + 1 < rows else []
+            if dimension == 2 and len(below) <= row.index(state):
                 axis.set_xlabel("x [m]")
+                axis.tick_params(labelbottom=True)
         for axis in axes[i][len(row):]:
             axis.set_axis_off()
         if dimension == 2:

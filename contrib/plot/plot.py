@@ -5,8 +5,8 @@ Draws runs, references and studies. Of one run without options: snapshots of the
 pressure (or of the first field there is), the energies, and the observables, as
 snapshots.png, energies.png and observables.png in its folder; of a study its chart.
 Several runs are drawn one below the other, with the same colours and at the same
-times, and their tables in the same charts: comparison_snapshots.png and so on in the
-folder of the first one.
+times, and their tables in the same charts: comparison_snapshots.png and so on in
+the folder of the first one.
 
 A field is what pictures hold ('Output/Fields', all of a reference), a component of
 it ('velocity x', 'stress xy'), 'speed', 'equivalent stress', or 'body'. A field,

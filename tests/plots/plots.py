@@ -106,6 +106,21 @@ class Plots(unittest.TestCase):
         self.refused("Runs in two and in three dimensions",
                      "plot", self.home / "flat", self.home / "solid")
 
+    def test_pictures_of_several_runs_leave_those_of_the_first_alone(self):
+        kept = self.home / "arrays/snapshots.png"
+        kept.write_bytes(b"as it was")
+        limber("plot", self.home / "arrays", self.home / "flat", "--field",
+               "pressure")
+        self.assertEqual(kept.read_bytes(), b"as it was")
+        self.assertTrue((kept.parent / "comparison_snapshots.png").is_file())
+
+    def test_what_the_titles_say(self):
+        path = self.home / "titles.svg"
+        limber("plot", self.home / "arrays", "--field", "pressure", "--time", 0,
+               0.004, "--enlarge", 3, "--output", path)
+        text = path.read_text()
+        self.assertIn("t = 4 ms, displacements × 3</text>", text)
+
     def test_bodies(self):
         path = self.home / "two.png"
         limber("plot", self.home / "two", "--field", "body", "--output", path)
@@ -144,7 +159,12 @@ class Plots(unittest.TestCase):
         self.refused("there is no folder", "plot", run, "--output",
                      self.home / "none/picture.png")
         self.refused("is not that of a run", "plot", self.home)
-        self.refused("unrecognized arguments", "plot", run, "--filed", "mass")
+        self.refused("Did you mean '--field'?", "plot", run, "--filed", "mass")
+        self.refused("there is no picture of 1 s", "plot", run, "--time", 0, 1,
+                     "--output", path)
+        scene = TOP / "prm/dam_break.prm"
+        self.refused("is a scene. Run it", "plot", scene)
+        self.refused("is a scene. Run it", "plot", scene, "--columns", "mass")
         self.assertEqual(path.read_bytes(), b"as it was")
         self.assertEqual(sorted(self.home.glob("tmp*")), [])
 
@@ -204,6 +224,7 @@ class Plots(unittest.TestCase):
         for words in ("error of the tip", "4: lost points", "1e-14", "none"):
             self.assertIn(f"{words}</text>", text)
         self.refused("A study is drawn alone", "plot", folder, "--field", "a")
+        self.refused("is a study", "animate", folder)
 
 
 class Scripts(unittest.TestCase):
@@ -248,6 +269,12 @@ class Scripts(unittest.TestCase):
     def test_gaps_between_points_that_were_pulled_apart(self):
         self.run_python(GAPS)
 
+    def test_squares_join_but_cracks_of_a_cell_stay(self):
+        self.run_python(SQUARES)
+
+    def test_short_units(self):
+        self.run_python(UNITS)
+
     def test_charts_say_what_failed(self):
         self.run_python(FAILED)
 
@@ -280,6 +307,43 @@ for wanted, kept in ((1, slot | True), (0, slot)):
     middle = picture[40:-40, 184:196, 3] if not wanted else picture[
         20:-40, 20:-20, 3]
     assert (middle == wanted).all(), (wanted, middle.mean())
+"""
+
+# A block of 20 x 20 squares: its outline is its own, also where it stands at the side
+# of the grid; a gap of one row is filled by its neighbours, one of two rows stays.
+SQUARES = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import squares
+x, y = np.meshgrid(np.arange(20) + 0.5, np.arange(20) + 0.5)
+places = np.stack([x.ravel(), y.ravel()], axis=1)
+low, high = np.array([0., -2]), np.array([22., 22])
+def seen(missing):
+    kept = places[~np.isin(places[:, 1], missing)]
+    owner = squares.owners(kept, np.ones(len(kept)), low, high, (low, high), 440)
+    assert owner.shape == (480, 440), owner.shape
+    return kept, owner
+kept, owner = seen([])
+assert (owner[40:440, :400] >= 0).all() and (owner >= 0).sum() == 400**2
+assert (kept[owner[50, 30]] == [1.5, 0.5]).all()
+kept, owner = seen([9.5])
+assert (owner[40:440, :390] >= 0).all()  # its mouth is rounded
+assert kept[owner[225, 30]][1] == 8.5 and kept[owner[235, 30]][1] == 10.5
+_, owner = seen([9.5, 10.5])
+assert (owner[222:258, :399] < 0).all()
+"""
+
+UNITS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import charts
+assert charts.scaled_unit("Pa", 2e6) == (1e6, "MPa")
+assert charts.scaled_unit("Pa", 0.2) == (1, "Pa")
+assert charts.scaled_unit("s", 0.) == (1, "s")
+assert charts.with_time(0.2, 0.3) == "t = 0.2 s"
+assert charts.with_time(0, 0.02) == "t = 0 ms"
+assert charts.with_time(2e-5, 2e-5) == "t = 20 µs"
 """
 
 # A ball at the height of 2 over the floor, seen from above: lit disc of its own size,
@@ -380,8 +444,9 @@ import sys
 sys.path.insert(0, sys.argv[1])
 import panels
 shape = [[len(row) for row in panels._below_each_other(list(range(n)), aspect)]
-         for n, aspect in ((4, 1.), (4, 0.3), (4, 0.1), (3, 0.3), (2, 0.1))]
-assert shape == [[4], [2, 2], [1] * 4, [1] * 3, [2]], shape
+         for n, aspect in ((4, 1.), (4, 0.5), (4, 0.1), (3, 0.3), (3, 0.5),
+                            (2, 0.1))]
+assert shape == [[4], [2, 2], [1] * 4, [1] * 3, [2, 1], [1, 1]], shape
 """
 
 PALETTE = """
