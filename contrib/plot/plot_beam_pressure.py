@@ -13,10 +13,12 @@ import sys
 from pathlib import Path
 
 import charts
+import fields
+import panels
 import run_folder
 from charts import np, plt
 
-LARGEST = 3  # MPa, end of the colours
+LARGEST = 3e6  # Pa, end of the colours
 
 
 def rms(values):
@@ -30,28 +32,16 @@ def block_means(values, blocks):
     return (np.bincount(inverse, values) / number)[inverse]
 
 
-def read_reference(folder, wanted):
-    """Title, places, pressure in MPa, size of the dots."""
-    _, fields = run_folder.nodes(folder, wanted)
-    return ("finite elements", fields["position"], fields["pressure"] / 1e6, 30)
-
-
-def read_run(folder, wanted):
-    parameters = run_folder.parameters(folder)
-    treatment = parameters["Body beam/Locking treatment"]
+def report(state, treatment):
     lower, upper, cells = (
-        run_folder.numbers(parameters["Grid/" + name])[:2]
+        run_folder.numbers(state.source.parameters["Grid/" + name])[:2]
         for name in ("Lower corner", "Upper corner", "Cells"))
-    times, files = run_folder.series(folder)
-    nearest = np.argmin(abs(times - wanted))
-    cloud = run_folder.points(files[nearest])
-    place, pressure = cloud["position"][:, :2], cloud["pressure"] / 1e6
-
-    blocks = np.floor((place - lower) / (2 * (upper - lower) / cells))
-    print(f"{treatment}: t = {times[nearest]:.3g} s, rms of the pressure "
+    pressure = state.values / 1e6
+    blocks = np.floor((state.place[:, :2] - lower) /
+                      (2 * (upper - lower) / cells))
+    print(f"{treatment}: t = {state.time:.3g} s, rms of the pressure "
           f"{rms(pressure):.3g} MPa, of its means over 2 x 2 cells "
           f"{rms(block_means(pressure, blocks)):.3g} MPa")
-    return treatment, place, pressure, 2
 
 
 def main():
@@ -63,17 +53,21 @@ def main():
     figure, axes = plt.subplots(1, len(folders), squeeze=False, sharey=True,
                                 figsize=(3.4 * len(folders) + 1, 4),
                                 layout="constrained")
-    for axis, folder in zip(axes[0], folders):
-        read = read_reference if run_folder.is_reference(folder) else read_run
-        title, place, pressure, size = read(folder, wanted)
-        dots = axis.scatter(place[:, 0], place[:, 1], c=pressure, s=size,
-                            linewidths=0, vmin=-LARGEST, vmax=LARGEST,
-                            cmap="RdBu_r")
-        axis.set_title(title)
-        axis.set_aspect("equal")
+    look = panels.Look("pressure", limits=(-LARGEST, LARGEST))
+    sources = [fields.Source(folder) for folder in folders]
+    states = [panels.State(source, source.nearest(wanted), look)
+              for source in sources]
+    look.fix(states)
+    for axis, state in zip(axes[0], states):
+        panels.draw(axis, state, look)
+        name = "finite elements"
+        if not state.source.is_reference:
+            name = state.source.parameters["Body beam/Locking treatment"]
+            report(state, name)
+        axis.set_title(f"{name}, {look.title(state)}")
         axis.set_xlabel("x [m]")
     axes[0, 0].set_ylabel("y [m]")
-    figure.colorbar(dots, ax=axes, label="pressure [MPa]", extend="both")
+    look.bar(figure, axes)
 
     path = folders[-1] / "pressure.png"
     charts.save(figure, path)

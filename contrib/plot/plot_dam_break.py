@@ -10,10 +10,13 @@ Martin and Moyce (1952): experiment, n^2 = 2, a = 2.25 in, tables 2 and 6.
 Mast et al. (2012): read off the snapshots, to within 0.02.
 """
 
+import re
 import sys
 from pathlib import Path
 
 import charts
+import fields
+import panels
 import run_folder
 from charts import np, plt
 
@@ -40,23 +43,39 @@ def scaled_time(time, parameters):
     return time * np.sqrt(2 * gravity / WIDTH)
 
 
-def draw_snapshots(axes, folder, parameters, largest_pressure):
-    times, files = run_folder.series(folder)
-    scaled = scaled_time(times, parameters)
-    for axis, wanted in zip(axes, SNAPSHOTS):
-        nearest = np.argmin(abs(scaled - wanted))
-        cloud = run_folder.points(files[nearest])
-        x, y = cloud["position"][:, 0], cloud["position"][:, 1]
-        dots = axis.scatter(x, y, c=cloud["pressure"] / 1e3, s=3, linewidths=0,
-                            vmin=-largest_pressure / 1e3,
-                            vmax=largest_pressure / 1e3, cmap="RdBu_r")
-        axis.set_title(f"T = {scaled[nearest]:.2f}, "
-                       f"t = {times[nearest]:.2f} s")
-        axis.set_aspect("equal")
-        axis.set_xlim(0, 4.5)
-        axis.set_ylim(0, 2.1)
+def draw_snapshots(figure, folders):
+    grid = figure.subplots(len(folders), len(SNAPSHOTS), squeeze=False,
+                           sharex=True, sharey=True)
+    sources = [fields.Source(folder) for folder in folders.values()]
+    # The colours end at the weight of the column upon the floor.
+    gravity = -run_folder.numbers(sources[0].parameters["Loads/Gravity"])[1]
+    weight = 1000 * gravity * HEIGHT
+    look = panels.Look("pressure", limits=(-weight, weight),
+                       zoom=(np.zeros(2), np.array([4.5, 2.1])))
+    scaled = [scaled_time(source.times, source.parameters) for source in sources]
+    states = [[panels.State(source, np.argmin(abs(times - wanted)), look)
+               for wanted in SNAPSHOTS] for source, times in zip(sources, scaled)]
+    look.fix([state for row in states for state in row])
+    for axes, row, name in zip(grid, states, folders):
+        for axis, state in zip(axes, row):
+            panels.draw(axis, state, look)
+            time = scaled_time(state.time, state.source.parameters)
+            axis.set_title(f"T = {time:.2f}, t = {state.time:.2f} s")
+        axes[0].set_ylabel(f"{name}\ny [m]")
+    for axis in grid[-1]:
         axis.set_xlabel("x [m]")
-    return dots
+    look.bar(figure, grid)
+
+
+def name_of(folder):
+    """Treatment and kind of steps, 'cell, semi-implicit'."""
+    parameters = run_folder.parameters(folder)
+    steps = parameters["Method/Time integration"]
+    if steps == "auto":
+        chosen = re.search("Time integration 'auto' is '(.*?)'",
+                           (folder / "log.txt").read_text())
+        steps = chosen[1]
+    return f"{parameters['Body water/Locking treatment']}, {steps}"
 
 
 def draw_curve(axis, folders, column, scale, experiment, mast, label):
@@ -77,21 +96,12 @@ def draw_curve(axis, folders, column, scale, experiment, mast, label):
 def main():
     if len(sys.argv) not in (2, 3) or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
-    folders = {"Limber": Path(sys.argv[1])}
-    if len(sys.argv) == 3:
-        folders["Limber, locked"] = Path(sys.argv[2])
+    folders = {name_of(Path(name)): Path(name) for name in sys.argv[1:]}
 
     rows = len(folders)
     figure = plt.figure(figsize=(12, 1.9 * rows + 3.6), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=[1.9 * rows, 3.6])
-    grid = above.subplots(rows, len(SNAPSHOTS), squeeze=False)
-    for axes, (name, folder) in zip(grid, folders.items()):
-        parameters = run_folder.parameters(folder)
-        gravity = -run_folder.numbers(parameters["Loads/Gravity"])[1]
-        # The colours end at the weight of the column upon the floor.
-        dots = draw_snapshots(axes, folder, parameters, 1000 * gravity * HEIGHT)
-        axes[0].set_ylabel(f"{name}\ny [m]")
-    above.colorbar(dots, ax=grid, label="pressure [kPa]", extend="both")
+    draw_snapshots(above, folders)
 
     left, right = below.subplots(1, 2)
     draw_curve(left, folders, "front", WIDTH, MARTIN_MOYCE_FRONT, MAST_FRONT,
@@ -101,7 +111,7 @@ def main():
 
     charts.legend_outside(right)
 
-    path = folders["Limber"] / "dam_break.png"
+    path = Path(sys.argv[1]) / "dam_break.png"
     charts.save(figure, path)
 
 

@@ -14,6 +14,8 @@ import sys
 from pathlib import Path
 
 import charts
+import fields
+import panels
 import run_folder
 from charts import np, plt
 
@@ -52,20 +54,20 @@ def main():
     figure = plt.figure(figsize=(11, 5), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=[4, 5])
     axes = above.subplots(1, len(PERIODS), sharey=True)
-    times, files = run_folder.series(folders[0])
-    for axis, periods in zip(axes, PERIODS):
-        nearest = np.argmin(abs(times - periods * period))
-        cloud = run_folder.points(files[nearest])
-        dots = axis.scatter(*cloud["position"][:, :2].T, s=3, linewidths=0,
-                            c=cloud["pressure"] / 1e3, vmin=0, vmax=5,
-                            cmap="viridis")
-        axis.set_title(f"t = {times[nearest]:.2f} s", fontsize=10)
-        axis.set_aspect("equal")
+    source = fields.Source(folders[0])
+    look = panels.Look("pressure", limits=(0, 5000),
+                       zoom=(np.array([-LENGTH / 2, 0]),
+                                              np.array([LENGTH / 2, 0.56])))
+    states = [panels.State(source, source.nearest(periods * period), look)
+              for periods in PERIODS]
+    look.fix(states)
+    for axis, state in zip(axes, states):
+        panels.draw(axis, state, look)
+        axis.set_title(look.title(state))
         axis.set_xlabel("x [m]")
-        axis.set_ylim(0, 0.56)
         axis.set_xticks([-0.4, 0, 0.4])
     axes[0].set_ylabel("y [m]")
-    above.colorbar(dots, ax=axes, label="pressure [kPa]", extend="both")
+    look.bar(above, axes)
 
     axis = below.subplots()
     for folder in folders:

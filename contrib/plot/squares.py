@@ -69,10 +69,16 @@ def _paint(owner, distance, covered, points, at, size):
 
 
 def _closed(covered, radius):
-    """Without the gaps in which no disc of this radius finds room."""
-    y, x = (np.minimum(np.arange(n), n - np.arange(n)) for n in covered.shape)
-    disc = np.fft.rfft2(np.hypot(y[:, None], x) <= radius)
+    """Without the gaps in which neither a disc nor a square of this radius finds
+    room; the square leaves corners of the grid's directions sharp."""
+    y, x = np.meshgrid(*(np.minimum(np.arange(n), n - np.arange(n))
+                         for n in covered.shape), indexing="ij")
+    closed = np.ones_like(covered)
+    for away in (np.hypot(y, x), np.maximum(y, x)):
+        shape = np.fft.rfft2(away <= radius)
 
-    def grown(seen):
-        return np.fft.irfft2(np.fft.rfft2(seen) * disc, covered.shape) > 0.5
-    return ~grown(~grown(covered))
+        def grown(seen):
+            return np.fft.irfft2(np.fft.rfft2(seen) * shape,
+                                 covered.shape) > 0.5
+        closed &= ~grown(~grown(covered))
+    return closed

@@ -84,14 +84,13 @@ def tank(runner):
         error = np.sqrt(((data["pressure"] - exact)**2).sum() /
                         (exact**2).sum())
         print(f"| {name} | {energy.max():.1e} | {100 * error:.1f} |")
-        if name in ("cell without control", "cell"):
-            left.plot(data["pressure"] / 1e3, data["position"][:, 1], ".",
-                      ms=8 if name != "cell" else 4,
-                      color=charts.style_of(name)["color"])
+        left.plot(data["pressure"] / 1e3, data["position"][:, 1], ".",
+                  ms=2 * widths[name], mew=0,
+                  color=charts.style_of(name)["color"])
     left.plot([9.81, 0], [0, 1], "k-")
     right.plot([], [], "k-", label="exact pressure")
     left.set(xlabel="pressure [kPa]", ylabel="y [m]")
-    right.set(xlabel="time [s]", ylabel="largest kinetic energy so far\n/ (rho g H² W/2)",
+    right.set(xlabel="time [s]", ylabel="largest kinetic energy so far\n/ (ρ g H² W/2)",
               ylim=(1e-18, 1e-8))
     charts.legend_outside(right)
     runner.save(figure, "hydrostatic_tank")
