@@ -103,7 +103,8 @@ class Look:
                                 axis=0) - margin
             self.upper = np.max([s.place.max(axis=0) for s in states],
                                 axis=0) + margin
-            self._keep_to_the_grid(states[0].source)
+            if self.enlarge == 1:
+                self._keep_to_the_grid(states[0].source)
 
     def _keep_to_the_grid(self, source):
         """The margin ends at the sides of the grid."""
@@ -117,8 +118,9 @@ class Look:
         return self.map(self.norm(values))[:, :3]
 
     def title(self, state):
-        return charts.with_time(state.time, self.longest) + (
-            f", displacements × {self.enlarge:g}" if self.enlarge != 1 else "")
+        shape = {1: "", 0: ", undeformed"}.get(
+            self.enlarge, f", displacements × {self.enlarge:g}")
+        return charts.with_time(state.time, self.longest) + shape
 
     @property
     def aspect(self):

@@ -13,6 +13,8 @@ import sys
 from pathlib import Path
 
 import charts
+import fields
+import panels
 import run_folder
 from charts import np, plt
 
@@ -28,24 +30,14 @@ def largest_deflection(folder, observable):
     return table["time"][np.argmax(abs(value[:end]))]
 
 
-def state_at(folder, wanted):
-    """Time and points of the picture nearest to a time."""
-    times, files = run_folder.series(folder)
-    nearest = np.argmin(abs(times - wanted))
-    return times[nearest], run_folder.points(files[nearest])
-
-
-def draw_beam(axis, name, time, cloud, factor, largest_pressure):
-    place = (cloud["position"][:, :2] +
-             (factor - 1) * cloud["displacement"][:, :2])
-    dots = axis.scatter(place[:, 0], place[:, 1], c=cloud["pressure"], s=20,
-                        linewidths=0, vmin=-largest_pressure,
-                        vmax=largest_pressure, cmap="RdBu_r")
-    axis.set_xlabel("x [m]")
-    axis.set_title(f"{name}, t = {time:.3g} s, displacements x {factor:.0f}",
-                   fontsize=10)
-    axis.set_aspect("equal")
-    return dots
+def look_at(source, index):
+    """Colours and enlargement that suit this picture."""
+    cloud = source.at(index)
+    length = np.ptp(cloud["position"][:, 0])
+    pressure = abs(cloud["pressure"]).max()
+    return panels.Look(
+        "pressure", limits=(-pressure, pressure),
+        enlarge=round(LARGEST_DRAWN * length / abs(cloud["displacement"]).max()))
 
 
 def main():
@@ -54,26 +46,21 @@ def main():
     folders = {"cell": Path(sys.argv[1]), "none": Path(sys.argv[2])}
     observable = sys.argv[3]
     extreme = largest_deflection(folders["cell"], observable)
-    states = {name: state_at(folder, extreme)
-              for name, folder in folders.items()}
-
-    largest = abs(states["cell"][1]["pressure"]).max()
-    unit_factor, unit = charts.scaled_unit("Pa", largest)
-    for _, cloud in states.values():
-        cloud["pressure"] = cloud["pressure"] / unit_factor
-    treated = states["cell"][1]
-    length = np.ptp(treated["position"][:, 0])
-    factor = LARGEST_DRAWN * length / abs(treated["displacement"]).max()
-    pressure = abs(treated["pressure"]).max()
+    sources = [fields.Source(folder) for folder in folders.values()]
+    look = look_at(sources[0], sources[0].nearest(extreme))
+    states = [panels.State(source, source.nearest(extreme), look)
+              for source in sources]
+    look.fix(states)
 
     figure = plt.figure(figsize=(10, 5), layout="constrained")
     above, below = figure.subfigures(2, 1, height_ratios=[3, 4])
     axes = above.subplots(1, 2, sharey=True)
-    for axis, (name, (time, cloud)) in zip(axes, states.items()):
-        dots = draw_beam(axis, f"Locking treatment = {name}", time, cloud,
-                         factor, pressure)
+    for axis, name, state in zip(axes, folders, states):
+        panels.draw(axis, state, look)
+        axis.set_title(f"{name}, {look.title(state)}")
+        axis.set_xlabel("x [m]")
     axes[0].set_ylabel("y [m]")
-    above.colorbar(dots, ax=axes, label=f"pressure [{unit}]", extend="both")
+    look.bar(above, axes)
 
     axis = below.subplots()
     for name, folder in folders.items():

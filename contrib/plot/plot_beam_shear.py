@@ -16,19 +16,20 @@ import sys
 from pathlib import Path
 
 import charts
+import fields
+import panels
 import run_folder
 from charts import np, plt
+from matplotlib.cm import ScalarMappable
 
 
-def largest_deflection(folder):
-    """The picture nearest to the first extreme of the tip."""
-    table, _ = run_folder.statistics(folder)
+def largest_deflection(source):
+    """Number of the picture nearest to the first extreme of the tip."""
+    table, _ = run_folder.statistics(source.folder)
     tip = table["tip"]
     crossings = np.flatnonzero(tip[1:-1] * tip[2:] < 0) + 1
     end = crossings[0] if len(crossings) else len(tip)
-    extreme = table["time"][np.argmax(abs(tip[:end]))]
-    times, files = run_folder.series(folder)
-    return run_folder.points(files[np.argmin(abs(times - extreme))])
+    return source.nearest(table["time"][np.argmax(abs(tip[:end]))])
 
 
 def less_cell_means(values, cells):
@@ -47,17 +48,23 @@ def main():
     figure, axes = plt.subplots(len(folders), 2, squeeze=False, sharex=True,
                                 figsize=(11, 1.4 * len(folders) + 0.7),
                                 layout="constrained")
-    for row, folder in zip(axes, folders):
-        parameters = run_folder.parameters(folder)
+    # At places in the reference state, as shares of the bending stress.
+    look = panels.Look("stress xy", enlarge=0, limits=(-12, 12))
+    sources = [fields.Source(folder) for folder in folders]
+    states = [panels.State(source, largest_deflection(source), look)
+              for source in sources]
+    look.fix(states)
+    for row, state in zip(axes, states):
+        parameters = state.source.parameters
         treatment = parameters["Body beam/Locking treatment"]
         lower, upper, cells = (
             run_folder.numbers(parameters["Grid/" + name])[:2]
             for name in ("Lower corner", "Upper corner", "Cells"))
         edge = (upper - lower) / cells
 
-        cloud = largest_deflection(folder)
+        cloud = state.source.at(state.index)
         shear, bending = cloud["stress"][:, 1], cloud["stress"][:, 0]
-        start = (cloud["position"] - cloud["displacement"])[:, :2]
+        start = state.place[:, :2]
         at_root = start[:, 0] < lower[0] + edge[0]
         root = abs(bending[at_root]).max()
         cell = np.floor((cloud["position"][:, :2] - lower) / edge)
@@ -65,12 +72,10 @@ def main():
         print(f"{treatment}: rms within cells {rms:.4g} Pa, largest bending "
               f"stress at the root {root:.4g} Pa, ratio {rms / root:.3g}")
 
-        share = 100 * shear / root
-        dots = row[0].scatter(start[:, 0], start[:, 1], c=share, s=14, marker="s",
-                              linewidths=0, vmin=-12, vmax=12, cmap="RdBu_r")
-        row[0].set_aspect("equal")
-        row[0].set_ylabel(treatment)
-        row[0].set_yticks([])
+        share = state.values = 100 * shear / root
+        panels.draw(row[0], state, look)
+        row[0].set_title(f"{treatment}, {look.title(state)}", loc="left")
+        row[0].set_ylabel("y [m]")
 
         middle = (start[:, 1].min() + start[:, 1].max()) / 2
         above = start[:, 1][start[:, 1] > middle].min()
@@ -81,13 +86,12 @@ def main():
         row[1].set_ylim(-8, 14)
         row[1].set_ylabel("share [%]")
         row[1].grid(alpha=0.3)
-    axes[0, 0].set_title("shear stress of the points", fontsize=10)
-    axes[0, 1].set_title("along the row of points above the middle",
-                         fontsize=10)
+    axes[0, 1].set_title("along the row of points above the middle", loc="left")
     for axis in axes[-1]:
         axis.set_xlabel("x [m]")
 
-    figure.colorbar(dots, ax=axes[:, 0], extend="both",
+    figure.colorbar(ScalarMappable(look.norm, look.map), ax=axes[:, 0],
+                    extend="both",
                     label="shear stress / bending stress at the root [%]",
                     orientation="horizontal", shrink=0.6, aspect=40)
 

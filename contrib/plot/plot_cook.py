@@ -14,6 +14,8 @@ import sys
 from pathlib import Path
 
 import charts
+import fields
+import panels
 import run_folder
 from charts import np, plt
 
@@ -40,15 +42,20 @@ def main():
     if len(sys.argv) < 2 or sys.argv[1].startswith("-"):
         sys.exit(__doc__)
     folders = [Path(name) for name in sys.argv[1:]]
-    clouds = [run_folder.points(run_folder.series(folder)[1][-1])
-              for folder in folders]
+    sources = [fields.Source(folder) for folder in folders]
+    clouds = [source.at(-1) for source in sources]
     largest = np.quantile(abs(clouds[-1]["pressure"]), 0.98)
+    look = panels.Look("pressure", enlarge=ENLARGED, limits=(-largest, largest),
+                       zoom=(np.array([-2, -2]), np.array([50, 68])))
+    states = [panels.State(source, len(source.times) - 1, look)
+              for source in sources]
+    look.fix(states)
 
     figure, axes = plt.subplots(1, len(folders), squeeze=False, sharey=True,
                                 figsize=(3.4 * len(folders) + 1, 4.4),
                                 layout="constrained")
-    for axis, folder, cloud in zip(axes[0], folders, clouds):
-        parameters = run_folder.parameters(folder)
+    for axis, state, cloud in zip(axes[0], states, clouds):
+        parameters = state.source.parameters
         treatment = parameters["Body panel/Locking treatment"]
         lower, upper, cells = (
             run_folder.numbers(parameters["Grid/" + name])[:2]
@@ -60,16 +67,12 @@ def main():
               f"{np.sqrt(np.mean(pressure**2)):.3g} Pa, of jumps between "
               f"cells {rms_of_jumps(means):.3g} Pa")
 
-        drawn = cloud["position"] + (ENLARGED - 1) * cloud["displacement"]
-        dots = axis.scatter(drawn[:, 0], drawn[:, 1], c=pressure, s=3,
-                            linewidths=0, vmin=-largest, vmax=largest,
-                            cmap="RdBu_r")
+        panels.draw(axis, state, look)
         axis.plot([0, 48, 48, 0, 0], [0, 44, 60, 44, 0], color="0.6", lw=0.6)
-        axis.set_title(f"{treatment}, displacements x {ENLARGED}")
-        axis.set_aspect("equal")
+        axis.set_title(f"{treatment}, displacements × {ENLARGED}")
         axis.set_xlabel("x [m]")
     axes[0, 0].set_ylabel("y [m]")
-    figure.colorbar(dots, ax=axes, label="pressure [Pa]", extend="both")
+    look.bar(figure, axes)
 
     path = folders[-1] / "pressure.png"
     charts.save(figure, path)

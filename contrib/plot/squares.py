@@ -11,7 +11,7 @@ GAP = 1.9  # edges of squares: a cell of 2 x 2 points without any is a crack
 def owners(places, sizes, lower, upper, box, pixels):
     """Which point each pixel shows, (rows, columns), row 0 at the lower corner; -1
     where there is no material. sizes: edges of the squares; box: corners of the
-    grid, at whose sides material goes on; pixels: columns, less for few points."""
+    grid; at its sides material goes on; pixels: columns, less for few points."""
     pixels = int(np.ceil(min(pixels, FINEST * (upper[0] - lower[0]) /
                              sizes.max())))
     scale = pixels / (upper[0] - lower[0])
@@ -32,9 +32,9 @@ def owners(places, sizes, lower, upper, box, pixels):
     for d, seen in enumerate((covered.T, covered)):
         mirrored = np.pad(seen[border:-border], ((border, border), (0, 0)),
                           mode="symmetric")
-        if lower[d] <= box[0][d]:
+        if lower[d] == box[0][d]:
             seen[:border] = mirrored[:border]
-        if upper[d] >= box[1][d]:
+        if upper[d] == box[1][d]:
             seen[-border:] = mirrored[-border:]
     for size, points in classes:
         material |= (_closed(covered, GAP / 2 * size * scale) & (owner >= 0) &
