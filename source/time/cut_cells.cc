@@ -109,7 +109,8 @@ namespace limber
     });
     const bool layer = is_layer(number, distances);
     if (cell.open < (layer ? least_of_layer : least_share) ||
-        (layer && cell.open < least_open_left() && is_left(number)))
+        (layer && cell.open < least_open_left() && !holding.empty() &&
+         !(holding[number] > 0)))
       {
         kinds[number] = !(cell.open > 0)        ? covered :
                         cell.open < least_share ? closed_to_a_rest :
@@ -120,23 +121,6 @@ namespace limber
     kinds[number] = first_cut + static_cast<std::uint32_t>(cells.size());
     cells.push_back(std::move(cell));
     distances_of_cells.push_back(distances);
-  }
-
-
-
-  // In front of what moves; at rest, a layer that nothing has reached yet is to
-  // be filled.
-  template <int dim>
-  bool
-  CutCells<dim>::is_left(const std::uint32_t cell) const
-  {
-    return moves && knows_points &&
-           std::none_of(parts.bodies.begin(),
-                        parts.bodies.end(),
-                        [&](const auto &body) {
-                          return body->cell_sums &&
-                                 body->cell_sums->present_mass(cell) > 0;
-                        });
   }
 
 

@@ -115,7 +115,7 @@ namespace limber
     at_covered.reinit(parts.grid.vertices.n());
     open_rooms.reinit(parts.grid.vertices.n());
     former.clear();
-    knows_points = false;
+    holding.clear();
     Places places;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
       places.emplace_back(obstacle, time);
@@ -131,7 +131,7 @@ namespace limber
     std::fill(wet.begin(), wet.end(), 0);
     if (!moves)
       return;
-    knows_points = true;
+    find_holding();
     Places places;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
       places.emplace_back(obstacle, time);
@@ -277,6 +277,23 @@ namespace limber
     ++times_found;
     sum_over_ranks(at_cut);
     sum_over_ranks(at_covered);
+  }
+
+
+
+  // A rank does not know what others have in ghost cells.
+  template <int dim>
+  void
+  CutCells<dim>::find_holding()
+  {
+    holding.assign(parts.grid.n_cells(), 0.);
+    for (const auto &body : parts.bodies)
+      if (body->cell_sums)
+        for (std::uint32_t cell = 0; cell < holding.size(); ++cell)
+          holding[cell] += body->cell_sums->present_mass(cell);
+    const ExchangePlan all(parts.grid.shared_cells);
+    exchange.start(all, holding.data(), 0, 1);
+    exchange.finish(holding.data());
   }
 
 

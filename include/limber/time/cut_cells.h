@@ -263,6 +263,8 @@ namespace limber
     void
     find_rooms();
     void
+    find_holding();
+    void
     sum_over_ranks(LazyArray<double> &of_nodes);
     void
     find_distance_at_rest(const Places &places);
@@ -271,9 +273,6 @@ namespace limber
     void
     look_at(std::uint32_t cell, const Places &places);
 
-    /** Whether no points are in a cell that an obstacle closes. */
-    bool
-    is_left(std::uint32_t cell) const;
     bool
     is_layer(std::uint32_t cell, const Distances &distances) const;
     void
@@ -326,8 +325,10 @@ namespace limber
     // less what it has moved by since
     std::vector<double> distance_at_rest, distance;
     Places              former;
-    bool                moves        = false;
-    bool                knows_points = false; // which cells hold any
+    bool                moves = false;
+    // By cell: positive where it holds points of any rank; empty where that is
+    // not known yet, or nothing moves
+    std::vector<double> holding;
     // By cell, whether what moves was too far off to do anything to it or to
     // those around when cells were last found
     std::vector<char> is_untouched;
