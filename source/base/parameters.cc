@@ -109,21 +109,14 @@ namespace limber
 
 
 
-    /**
-     * Of a long list of choices the beginning, as messages must stay short. The
-     * bars between them count for nothing.
-     */
+    /** Of a long list of choices the beginning, as messages must stay short. */
     std::string
     first_words(const std::string &text, const unsigned int most)
     {
       std::size_t end = 0;
       for (unsigned int word = 0; word < most && end != std::string::npos;
            ++word)
-        {
-          end = text.find(' ', end + 1);
-          if (end != std::string::npos && text.compare(end, 3, " | ") == 0)
-            end += 2;
-        }
+        end = text.find(' ', end + 1);
       return end == std::string::npos ? text : text.substr(0, end) + " ...";
     }
 
@@ -301,21 +294,22 @@ namespace limber
     suggestion(const Declaration &declaration, const std::string &value)
     {
       const Admissible &admissible = declaration.admissible;
-      const std::string shown      = first_words(admissible.description(), 14);
-      const std::string write      = "Write " + shown;
+      const std::string shown      = first_words(admissible.description(), 20);
+      const bool        is_cut     = shown != admissible.description();
+      const std::string write = "Write " + shown, stop = is_cut ? "" : ".";
       if (const auto meant = admissible.meant(value))
-        return write + ". Did you mean " + in_quotes(*meant) + "?";
+        return write + stop + " Did you mean " + in_quotes(*meant) + "?";
       const std::string example = admissible.match(declaration.default_value) &&
                                       !declaration.default_value.empty() &&
                                       admissible.is_choice() ?
                                     declaration.default_value :
                                     admissible.example();
-      const std::string cause   = "Usually a digit, sign or word is mistyped. ";
       // a long list of choices is an example of itself
-      if (admissible.is_choice() && shown != admissible.description())
-        return cause + write;
-      return cause + write + ", for instance " +
-             in_quotes(first_words(example, 8)) + ".";
+      if (admissible.is_choice() &&
+          first_words(shown, 14) != admissible.description())
+        return "Usually a word is mistyped. " + write + stop;
+      return "Usually a digit, sign or word is mistyped. " + write +
+             ", for instance " + in_quotes(first_words(example, 8)) + ".";
     }
   } // namespace
 
@@ -469,10 +463,11 @@ namespace limber
           else if (not_chosen.empty() ||
                    (!is_here && is_within(declaration.section)))
             {
+              is_here    = is_within(declaration.section);
               not_chosen = "It belongs to " +
-                           in_quotes(to_text(declaration.section)) + ", but " +
-                           but;
-              is_here = is_within(declaration.section);
+                           in_quotes(is_here ? declaration.section.back() :
+                                               to_text(declaration.section)) +
+                           ", but " + but;
             }
         }
     if (is_here)

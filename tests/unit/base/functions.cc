@@ -98,7 +98,7 @@ TEST(Formula, ErrorsNameTheEntryAndTheReason)
 
   EXPECT_NE(formula_error("(x", 1).find("Missing parenthesis"),
             std::string::npos);
-  EXPECT_NE(formula_error("1, 2", 2).find("1 components"), std::string::npos);
+  EXPECT_NE(formula_error("1, 2", 2).find("1 component"), std::string::npos);
   EXPECT_NE(formula_error("1; ", 2).find("empty component"), std::string::npos);
   EXPECT_NE(formula_error("x", 1, {{"t", 1.}}).find("constant 't'"),
             std::string::npos);

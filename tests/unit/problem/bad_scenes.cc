@@ -579,7 +579,7 @@ namespace
      {"'sin(t); 0'", "time t", "'Initial velocity'"}},
     {"FormulaComponents",
      {"Body beam/Initial velocity=1"},
-     {"'1'", "1 components", "'0; 0'"}},
+     {"'1'", "1 component", "'0; 0'"}},
     {"FormulaUnknownName",
      {"Body beam/Initial velocity=0; vo"},
      {"vo", "'Initial velocity'", "'Body beam'"}},
