@@ -42,7 +42,7 @@ namespace limber
     , covered(parts.problem.obstacles, parts.grid.smallest_edge)
     , boundaries(parts.problem.sides,
                  fields_that_meet_sides(parts.problem),
-                 &covered)
+                 covered.if_any())
     , cut_cells(CutCells<dim>::may_be(parts) ?
                   std::make_optional<CutCells<dim>>(parts) :
                   std::nullopt)
@@ -66,7 +66,7 @@ namespace limber
       obstacles.emplace(parts,
                         cut_cells ? &*cut_cells : nullptr,
                         leapfrogs(),
-                        covered);
+                        covered.if_any());
     if (cut_cells && parts.nodes.n_fields() == 1 &&
         std::all_of(parts.bodies.begin(),
                     parts.bodies.end(),

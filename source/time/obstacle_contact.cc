@@ -59,13 +59,13 @@ namespace limber
   ObstacleContact<dim>::ObstacleContact(const RunParts<dim>     &parts,
                                         CutCells<dim> *const     cut_cells,
                                         const bool               leapfrogs,
-                                        const CoveredSides<dim> &covered)
+                                        const CoveredSides<dim> *covered)
     : parts(parts)
     , cut_cells(cut_cells)
     , rigid(parts.problem.obstacles)
-    , sides(parts.problem.sides, &covered)
+    , sides(parts.problem.sides, covered)
     , other_sides(sides_at_nodes<dim>(parts.problem.sides))
-    , of_other_sides(other_sides, &covered)
+    , of_other_sides(other_sides, covered)
     , impulses(parts.nodes, leapfrogs)
     , sums(parts.problem.obstacles.size() * parts.nodes.n_fields())
   {

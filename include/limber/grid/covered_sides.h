@@ -26,6 +26,13 @@ namespace limber
     CoveredSides(const std::vector<Obstacle<dim>> &obstacles,
                  double                            smallest_edge);
 
+    /** This, or null where no obstacle moves: then no side is asked. */
+    const CoveredSides *
+    if_any() const
+    {
+      return moving.empty() ? nullptr : this;
+    }
+
     /** Where they are in the step that begins at @p time, s. */
     void
     find(double time);

@@ -59,12 +59,13 @@ namespace limber
     /**
      * Collective; throws InputError where an obstacle holds points at the
      * start. With @p leapfrogs (the initial frame) the velocity that points
-     * give back in a step strains them in the next as well.
+     * give back in a step strains them in the next as well. Sides that are
+     * @p covered, which may be null, do not act.
      */
     ObstacleContact(const RunParts<dim>     &parts,
                     CutCells<dim>           *cut_cells,
                     bool                     leapfrogs,
-                    const CoveredSides<dim> &covered);
+                    const CoveredSides<dim> *covered);
 
     /** Adopt a changed mesh. */
     void
