@@ -39,7 +39,7 @@ namespace limber
                                     [](const auto &body) {
                                       return !body->description.is_liquid;
                                     }))
-    , covered(parts.problem.obstacles, parts.grid.smallest_edge)
+    , covered(parts.problem.obstacles, parts.problem.grid)
     , boundaries(parts.problem.sides,
                  fields_that_meet_sides(parts.problem),
                  covered.if_any())

@@ -2,7 +2,7 @@
 #ifndef limber_grid_covered_sides_h
 #define limber_grid_covered_sides_h
 
-#include <limber/problem/obstacle.h>
+#include <limber/problem/problem.h>
 
 #include <vector>
 
@@ -15,8 +15,9 @@ namespace limber
    * cells that the obstacle cuts, both against being pushed and against coming
    * along. Such nodes are left to the obstacle.
    *
-   * Where the obstacle does not look into the box as the side does, as behind a
-   * piston on the floor, the side remains what holds the material.
+   * Where it has not taken all faces around a node yet, as an oblique wall in a
+   * corner, and where it does not look into the box as the side does, as behind
+   * a piston on the floor, the side remains what holds the material.
    */
   template <int dim>
   class CoveredSides
@@ -24,7 +25,7 @@ namespace limber
   public:
     /** By those of the obstacles that move; these outlive this object. */
     CoveredSides(const std::vector<Obstacle<dim>> &obstacles,
-                 double                            smallest_edge);
+                 const GridDescription<dim>       &grid);
 
     /** This, or null where no obstacle moves: then no side is asked. */
     const CoveredSides *
@@ -49,9 +50,18 @@ namespace limber
     }
 
   private:
+    bool
+    is_in(const SignedDistance<dim> &distance) const;
+
+    /** Whether it has all faces of cells in a side that meet in a place. */
+    bool
+    covers_faces_at(const ObstaclePlace<dim> &obstacle,
+                    unsigned int              side,
+                    const dealii::Point<dim> &place) const;
+
     std::vector<const Obstacle<dim> *> moving;
     std::vector<ObstaclePlace<dim>>    places; // of these, now
-    const double                       tolerance;
+    const GridDescription<dim>         grid;
     std::uint64_t                      n_found = 0;
   };
 } // namespace limber

@@ -375,7 +375,10 @@ TEST(Obstacles, TakeThePlaceOfSides)
   const std::vector<Obstacle<2>> piston = {
     obstacle_of<2>(shape + "set Displacement = t; 0\n")};
   constexpr std::uint8_t left = 1, bottom = 4;
-  CoveredSides<2>        sides(piston, 1);
+  GridDescription<2>     grid;
+  grid.upper = Point<2>(4, 4);
+  grid.cells = {{4, 4}};
+  CoveredSides<2> sides(piston, grid);
   EXPECT_EQ(sides.uncovered(left, Point<2>(0, 1)), 0) << "it begins there";
   EXPECT_EQ(sides.uncovered(left | bottom, Point<2>(0, 0)), bottom);
   EXPECT_EQ(sides.uncovered(bottom, Point<2>(0.5, 0)), bottom);
@@ -389,7 +392,7 @@ TEST(Obstacles, TakeThePlaceOfSides)
 
   // What stays where it is leaves sides alone, also if it turns there.
   const std::vector<Obstacle<2>> wall = {obstacle_of<2>(shape)};
-  EXPECT_EQ(CoveredSides<2>(wall, 1).uncovered(left, Point<2>(0, 1)), left);
+  EXPECT_EQ(CoveredSides<2>(wall, grid).uncovered(left, Point<2>(0, 1)), left);
 }
 
 
