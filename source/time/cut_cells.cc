@@ -107,14 +107,17 @@ namespace limber
     for_each_open_simplex(distances, [&](const Simplex &simplex) {
       add_volume(simplex, cell);
     });
-    const bool layer = is_layer(number, distances);
-    if (cell.open < (layer ? least_of_layer : least_share) ||
-        (layer && cell.open < least_open_left() && !holding.empty() &&
-         !(holding[number] > 0)))
+    const bool layer     = is_layer(number, distances),
+               in_motion = moves && distance[number] < distance_at_rest[number],
+               is_left   = in_motion && cell.open < least_open_left() &&
+                         !holding.empty() && !(holding[number] > 0);
+    if (is_left || cell.open < (layer ? least_of_layer : least_share))
       {
-        kinds[number] = !(cell.open > 0)        ? covered :
-                        cell.open < least_share ? closed_to_a_rest :
-                                                  closed;
+        const bool has_walls =
+          is_left || (in_motion && is_implicit) || cell.open >= least_share;
+        kinds[number] = !(cell.open > 0) ? covered :
+                        has_walls        ? closed :
+                                           closed_to_a_rest;
         return;
       }
     finish_volume(cell);

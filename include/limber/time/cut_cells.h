@@ -26,10 +26,13 @@ namespace limber
    * grows with the depth adds to that is known as well, see Cell::hydrostatic.
    *
    * A cell that is open by less than least_open() counts as closed, a layer
-   * across an axis by less than least_open_layer(). Faces towards such cells
-   * are surfaces of others that are cut, with their own normals before a layer
-   * and with the part along that of the obstacle before a tip; else their nodes
-   * are held one by one, see ObstacleContact. Theory: doc/theory/obstacles.md.
+   * across an axis by less than least_open_layer(), one that points have left
+   * before a moving obstacle by less than least_open_left(). Faces towards such
+   * cells are surfaces of others that are cut, with the part of their normals
+   * along that of the obstacle before a tip at rest, else with their own, so
+   * that they sweep the volume that the obstacle does; nodes of faces that no
+   * cut cell has are held one by one, see ObstacleContact. Theory:
+   * doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells
@@ -110,9 +113,9 @@ namespace limber
       return least_of_layer;
     }
 
-    /** The same of such a layer that a moving obstacle closes and the last
-     * points have left: about what their material reaches beyond them, half an
-     * edge. */
+    /** The same of a cell that a moving obstacle closes and the last points
+     * have left: about what their material reaches beyond them, half an edge.
+     */
     static constexpr double
     least_open_left()
     {
@@ -237,8 +240,8 @@ namespace limber
     {
       open,
       covered,
-      closed, // but for a layer
-      closed_to_a_rest,
+      closed,           // but for what may hold points; with walls for faces
+      closed_to_a_rest, // a tip, its faces stand for the obstacle behind
       first_cut
     };
 
