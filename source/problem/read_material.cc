@@ -113,6 +113,35 @@ namespace limber
 
 
 
+    /** Of the sides that move: on a lattice of each, up to the end time. */
+    template <int dim>
+    double
+    largest_side_speed(const Problem<dim> &problem)
+    {
+      constexpr unsigned int n       = 4;   // places along an axis, less one
+      constexpr unsigned int n_times = 200; // as a formula may be periodic
+      const auto            &box     = problem.grid;
+      double                 largest = 0;
+      for (const Side<dim> &side : problem.sides)
+        if (!side.velocity.empty())
+          for (unsigned int i = 0; i < std::pow(n + 1, dim); ++i)
+            {
+              dealii::Point<dim> place;
+              unsigned int       index = i;
+              for (unsigned int d = 0; d < dim; ++d, index /= n + 1)
+                place[d] = box.lower[d] + index % (n + 1) / double(n) *
+                                            (box.upper[d] - box.lower[d]);
+              for (unsigned int k = 0; k <= n_times; ++k)
+                if (const double t = problem.end_time * k / n_times;
+                    side.velocity.is_finite(place, t))
+                  largest =
+                    std::max(largest, side.velocity.vector(place, t).norm());
+            }
+      return largest;
+    }
+
+
+
     template <int dim>
     double
     largest_expected_speed(const Body<dim> &body, const Problem<dim> &problem)
@@ -123,7 +152,8 @@ namespace limber
       double             fall         = 0;
       for (unsigned int d = 0; d < dim; ++d)
         fall += acceleration[d] * (box.second[d] - box.first[d]);
-      return std::sqrt(2 * fall) + largest_initial_speed(body);
+      return std::max(std::sqrt(2 * fall) + largest_initial_speed(body),
+                      largest_side_speed(problem));
     }
 
 
@@ -139,8 +169,8 @@ namespace limber
       if (speed <= 0)
         throw InputError(
           "The bulk modulus 'auto' in " + section.where("Bulk modulus") +
-          " needs a velocity to go by, but there is neither "
-          "gravity, body force nor initial velocity. Give a number, for "
+          " needs a velocity to go by, but there is neither gravity, body "
+          "force, initial velocity nor a side that moves. Give a number, for "
           "instance 2e9.");
 
       const double sound   = 10 * speed;

@@ -172,6 +172,24 @@ TEST(Scenes, AutomaticBulkModulusKeepsTheMachNumber)
 
 
 
+// No gravity, no initial velocity: the lid of a cavity alone moves.
+TEST(Scenes, AutomaticBulkModulusGoesByTheSidesThatMove)
+{
+  const Problem<2> problem =
+    read_problem<2>(SceneFile(prm_folder() + "dam_break.prm",
+                              {"Method/Time integration=explicit",
+                               "Method/Stress update=musl",
+                               "Body water/Newtonian fluid/Bulk modulus=auto",
+                               "Loads/Gravity=0, 0",
+                               "Boundaries/top=velocity",
+                               "Boundaries/Side top/Velocity=5*sin(20*t); 0"}));
+  EXPECT_NEAR(problem.bodies[0].material.at(1),
+              997.5 * 100 * 25,
+              0.01 * 997.5 * 100 * 25);
+}
+
+
+
 // c = 1416 m/s and |v| + sqrt(g H) = 4.4 m/s in the scene as it is.
 TEST(Scenes, AutomaticTimeIntegration)
 {
