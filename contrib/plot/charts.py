@@ -66,7 +66,7 @@ TREATMENTS = {
 
 # By kernel and frame where nothing else is said:
 ALONE = {
-    "linear": ("#777777", "o", "-"), "splines": ("#CC79A7", "s", "--"),
+    "linear": ("#777777", "o", "-"),
     "quadratic": ("#CC79A7", "s", "--"), "CPDI": ("#6a3d9a", "D", "-."),
     "cubic": ("#d01c8b", "p", "--"), "GIMP": ("#33a02c", "v", "-."),
     "cpGIMP": ("#17807e", "^", "-."), "CPDI2": ("#7a0177", "d", "-."),
@@ -80,7 +80,7 @@ ALONE = {
     "MUSL cell": ("#56B4E9", "s", "--"),
     "MUSL assumed strain": ("#CC79A7", "P", "-."),
     "PIC": ("#D55E00", "v", "-"), "FLIP": ("#0072B2", "o", "-"),
-    "FLIP with damping": ("#56B4E9", "s", "--"), "APIC": ("#009E73", "^", "-"),
+    "PIC-FLIP blend": ("#56B4E9", "s", "--"), "APIC": ("#009E73", "^", "-"),
     "2 points": ("#0072B2", "o", "-"), "3 points": ("#D55E00", "s", "-"),
     "4 points": ("#009E73", "^", "-"),
     "3 points finer": ("#CC79A7", "D", "--"),
@@ -94,7 +94,7 @@ ALONE = {
 
 # Marker and line of a kernel that comes before or behind a treatment:
 KERNELS = {
-    "linear": ("o", "-"), "splines": ("s", "--"), "quadratic": ("s", "--"),
+    "linear": ("o", "-"), "quadratic": ("s", "--"),
     "cubic": ("p", "--"), "GIMP": ("v", "-."),
     "cpGIMP": ("^", "-."), "CPDI": ("D", "-."), "CPDI2": ("d", "-."),
     "DDMP": ("H", "--"),

@@ -305,10 +305,17 @@ def measures_of(rows, meta):
     """Those that are drawn: one that repeats another, as the mean over a single
     filling does, is not."""
     known = {}
-    for measure in meta["measures"]:
+    for measure in meta.get("drawn measures") or meta["measures"]:
         values = tuple(row[measure + " error"] for row in rows)
         known.setdefault(values, measure)
     return list(known.values())
+
+
+def drawn_rows(rows, meta):
+    """Those of the methods that are drawn; all where none is named, or none of
+    those named was run, as in a short study."""
+    drawn = meta.get("drawn methods")
+    return [row for row in rows if row["method"] in drawn] if drawn else []
 
 
 def key_of(meta):
@@ -324,6 +331,8 @@ PER_ROW = 2  # panels; with more of them texts are too small on a page
 
 def draw(rows, meta):
     """The chart of a study as a figure: rows of study.csv, study.json."""
+    number_of_methods = len(methods_of(rows))
+    rows = drawn_rows(rows, meta) or rows
     meta = {**meta, "measures": measures_of(rows, meta)}
     measures = meta["measures"]
     panels = panels_of(rows, meta)
@@ -332,10 +341,12 @@ def draw(rows, meta):
     per_row = min(number_of_panels, PER_ROW)
     lines = -(-number_of_panels // per_row)
     total = 2.5 + (6.5 if per_row == 1 else 4.5 * per_row)
-    caption = "\n".join(textwrap.wrap(meta["caption"], int(16 * total)))
-    if meta["against cost"]:
-        caption = "\n".join(textwrap.wrap(key_of(meta), int(16 * total))
-                            + [caption])
+    more = number_of_methods - len(methods_of(rows))
+    keys = ([key_of(meta)] if meta["against cost"] else []) + (
+        [f"{more} more method{'s are' if more > 1 else ' is'} in the table."]
+        if more else [])
+    caption = "\n".join(textwrap.wrap(" ".join(keys), int(16 * total)) +
+                        textwrap.wrap(meta["caption"], int(16 * total)))
     figure, axes = plt.subplots(
         lines, per_row, squeeze=False, layout="constrained",
         figsize=(total, 0.9 + (4.5 if per_row == 1 else 3.9) * lines))

@@ -38,13 +38,6 @@ def command_for(name, arguments):
     return command + (["--short"] if arguments.short else [])
 
 
-def what_words_mean(table):
-    """A line for methods whose names are shorter than the entries' words."""
-    if "| splines" not in table and " splines " not in table:
-        return ""
-    return "\n`splines`: quadratic B-splines (`Method/Kernel = quadratic`).\n"
-
-
 def publish(results, target, name):
     """Table and chart of a study, as a page of the manual."""
     target.mkdir(parents=True, exist_ok=True)
@@ -53,8 +46,7 @@ def publish(results, target, name):
     chart = results / "study.png"
     if chart.exists():
         shutil.copy(chart, target / f"{name}.png")
-        rest = f"\n![{title.lstrip('# ')}]({name}.png)\n" + what_words_mean(
-            rest) + rest
+        rest = f"\n![{title.lstrip('# ')}]({name}.png)\n" + rest
     (target / f"{name}.md").write_text(title + "\n" + rest)
 
 

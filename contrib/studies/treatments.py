@@ -259,7 +259,7 @@ def main():
                         f"Body water/Checkerboard control={checkerboard}"]
             row = dam_break(runner, treatment, settings)
             row += tank(runner, treatment, settings)
-            print("| " + " | ".join([treatment + ", splines", "-", checkerboard,
+            print("| " + " | ".join(["quadratic " + treatment, "-", checkerboard,
                                      *row]) + " |", flush=True)
 
 

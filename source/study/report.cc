@@ -212,6 +212,17 @@ namespace limber
 
 
 
+    json::Value
+    words_of(const std::vector<std::string> &words)
+    {
+      std::vector<json::Value> result;
+      for (const std::string &word : words)
+        result.push_back(json::string(word));
+      return json::array(result);
+    }
+
+
+
     std::string
     json_text_of(const StudyReport &report)
     {
@@ -230,6 +241,8 @@ namespace limber
                {{"title", json::string(study.title)},
                 {"caption", json::string(report.caption)},
                 {"measures", json::array(measures)},
+                {"drawn methods", words_of(study.drawn_methods)},
+                {"drawn measures", words_of(study.drawn_measures)},
                 {"variations", json::array(variations)},
                 {"horizontal", json::string(axis)},
                 {"horizontal label",
@@ -412,6 +425,16 @@ namespace limber
 
 
 
+    bool
+    is_drawn(const StudyFile &study, const Measure &measure)
+    {
+      const auto &drawn = study.drawn_measures;
+      return drawn.empty() ||
+             std::find(drawn.begin(), drawn.end(), measure.name) != drawn.end();
+    }
+
+
+
     /** What one error of one problem costs, in words. */
     std::string
     findings_for(const StudyReport &report,
@@ -500,8 +523,9 @@ namespace limber
     std::string text;
     for (const std::string &problem : problems_of(report))
       for (std::size_t m = 0; m < report.study.measures.size(); ++m)
-        for (const double level : levels)
-          text += problem + findings_for(report, problem, m, level);
+        if (is_drawn(report.study, report.study.measures[m]))
+          for (const double level : levels)
+            text += problem + findings_for(report, problem, m, level);
     return text;
   }
 

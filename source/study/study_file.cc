@@ -325,8 +325,23 @@ namespace limber
 
 
 
+    /** Names of what is drawn, each one of @p known. */
+    std::vector<std::string>
+    read_drawn(const Section                  &chart,
+               const std::string              &entry,
+               const std::string              &what,
+               const std::vector<std::string> &known)
+    {
+      const auto names = chart.list(entry);
+      for (const std::string &name : names)
+        check_known(name, known, what, chart.where(entry));
+      return names;
+    }
+
+
+
     void
-    read_axes(const Section &root, StudyFile &study)
+    read_chart(const Section &root, StudyFile &study)
     {
       const Section            section = root.subsection("Chart");
       const std::string        axis    = section.text("Horizontal axis");
@@ -337,6 +352,10 @@ namespace limber
       study.logarithmic      = section.text("Logarithmic");
       study.horizontal_label = section.text("Horizontal label");
       study.vertical_label   = section.text("Vertical label");
+      study.drawn_methods =
+        read_drawn(section, "Methods", "method", root.list("Methods"));
+      study.drawn_measures =
+        read_drawn(section, "Measures", "measure", root.list("Measures"));
       if (axis == "cost")
         return;
       study.horizontal_axis = axis;
@@ -442,7 +461,7 @@ namespace limber
     study.error_levels       = read_levels(root);
     study.cost               = read_word(root, "Cost", cost_words());
     study.time_limit         = root.number("Time limit");
-    read_axes(root, study);
+    read_chart(root, study);
     study.bisection = read_bisection(root);
     return study;
   }

@@ -205,6 +205,17 @@ namespace limber
                          "both",
                          one_of({"both", "horizontal", "vertical", "none"}),
                          "Which axes are logarithmic.");
+      parameters.declare(
+        "Methods",
+        "",
+        names("cell, none"),
+        "Those that are drawn; empty: all. The table has all.");
+      parameters.declare(
+        "Measures",
+        "",
+        names("frequency"),
+        "Those that are drawn, a panel each, and whose cheapest "
+        "variants are named; empty: all. The table has all.");
       parameters.leave_subsection();
     }
 

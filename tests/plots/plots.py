@@ -290,6 +290,9 @@ class Scripts(unittest.TestCase):
     def test_lines_and_panels_that_coincide(self):
         self.run_python(COINCIDE)
 
+    def test_a_study_names_what_is_drawn(self):
+        self.run_python(DRAWN)
+
 
 # Spheres that stand 1.7 diameters apart make a surface; a slot of five spacings stays.
 GAPS = """
@@ -416,6 +419,33 @@ widths = [line.get_linewidth() for line in figure.axes[0].lines]
 assert widths[0] > widths[1] == widths[2], widths
 """
 
+# Of many methods and measures those are drawn that the study names, and the
+# caption says how many more there are; all where it names none that was run.
+DRAWN = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import plot_study
+rows = [{"method": m, "outcome": "finished", "beyond": "", "n": "1",
+         "a value": str(v), "a error": str(v), "b value": str(v + 1),
+         "b error": str(v + 1)}
+        for m, v in (("none", 1), ("cell", 2), ("node", 3))]
+meta = {"title": "", "caption": "", "measures": ["a", "b"], "variations": ["n"],
+        "drawn methods": ["none", "node"], "drawn measures": ["b"],
+        "horizontal": "n", "horizontal label": "n", "vertical label": "",
+        "against cost": False, "logarithmic": "none", "error levels": [],
+        "closed forms": {}}
+def methods(figure):
+    return [text.get_text() for text in
+            figure.axes[-1].get_legend().get_texts()]
+figure = plot_study.draw(rows, meta)
+assert len(figure.axes) == 1, figure.axes
+assert methods(figure) == ["none", "node"], methods(figure)
+assert "1 more method is in the table" in figure._supxlabel.get_text()
+figure = plot_study.draw(rows, {**meta, "drawn methods": ["hybrid"]})
+assert methods(figure) == ["none", "cell", "node"], methods(figure)
+assert "more" not in figure._supxlabel.get_text()
+"""
+
 # What has failed is a cross of its own, and the legend says why.
 FAILED = """
 import sys
@@ -465,7 +495,6 @@ for path in sys.argv[2:]:
         looks[look] = method
         count += 1
 assert count > 100, count
-assert charts.style_of("quadratic node") == charts.style_of("splines node")
 """
 
 

@@ -141,12 +141,14 @@ namespace limber
     Cost                     cost       = Cost::cpu_seconds;
     double                   time_limit = 600; // s, wall time of one run
     // Name of the variation on the horizontal axis; empty: the cost
-    std::string      horizontal_axis;
-    std::string      horizontal_label; // what stands at the axis
-    std::string      vertical_label;
-    std::string      logarithmic = "both"; // "horizontal", "vertical", "none"
-    BisectionRequest bisection;
-    bool             is_short = false;
+    std::string horizontal_axis;
+    std::string horizontal_label; // what stands at the axis
+    std::string vertical_label;
+    std::string logarithmic = "both"; // "horizontal", "vertical", "none"
+    // Names of what the chart draws, empty: all; the table has all
+    std::vector<std::string> drawn_methods, drawn_measures;
+    BisectionRequest         bisection;
+    bool                     is_short = false;
   };
 
   /** Whether a measure asks for a comparison. */

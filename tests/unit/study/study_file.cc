@@ -45,6 +45,8 @@ namespace
     end
     subsection Chart
       set Horizontal axis = cells
+      set Methods = cured
+      set Measures = energy
     end)";
 
 
@@ -177,6 +179,10 @@ TEST(StudyFile, WrongInputIsRefused)
           false);
   refused("set With = cells", "set With = cels", "Did you mean 'cells'?");
   refused("Horizontal axis = cells", "Horizontal axis = cell", "'cells'");
+  refused("Methods = cured", "Methods = curd", "Did you mean 'cured'?");
+  refused("set Measures = energy\n    end",
+          "set Measures = enery\n    end",
+          "Did you mean 'energy'?");
   refused("Reference = 1", "Reference = 0", "Set 'Scale'");
   refused("Reduction = last over first", "Reduction = last", "");
   refused("Source = column", "Source = check", "brings its own");
