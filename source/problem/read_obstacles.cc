@@ -398,6 +398,73 @@ namespace limber
 
 
 
+    /** The largest angle, in degrees, between a side and an obstacle that has
+     * a part of it at the start and looks into the box as it does; 0: there is
+     * none, or it has all of the side, as a piston that has come some way.
+     */
+    template <int dim>
+    double
+    angle_at_start(const Obstacle<dim> &obstacle,
+                   const Problem<dim>  &problem,
+                   const unsigned int   side)
+    {
+      constexpr unsigned int      n   = 20; // places along an axis, less one
+      const GridDescription<dim> &box = problem.grid;
+      const ObstaclePlace<dim>    start(obstacle, 0);
+      double                      largest = 0;
+      bool                        has_all = true;
+      for (unsigned int i = 0; i < std::pow(n + 1, dim - 1); ++i)
+        {
+          Point<dim>   place;
+          unsigned int index = i;
+          for (unsigned int d = 0; d < dim; ++d)
+            if (d == side / 2)
+              place[d] = side % 2 == 0 ? box.lower[d] : box.upper[d];
+            else
+              {
+                place[d] = box.lower[d] + index % (n + 1) / double(n) *
+                                            (box.upper[d] - box.lower[d]);
+                index /= n + 1;
+              }
+          const auto   from = start.distance(place);
+          const double cosine =
+            (side % 2 == 0 ? 1 : -1) * from.normal[side / 2];
+          if (from.value > 1e-6 * box.edge(side / 2))
+            has_all = false;
+          else if (cosine > 0.7)
+            largest = std::max(largest, std::acos(std::min(1., cosine)));
+        }
+      return has_all ? 0 : largest * 180 / dealii::numbers::PI;
+    }
+
+
+
+    /** An obstacle takes over a side face by face: see CoveredSides. */
+    template <int dim>
+    void
+    note_oblique_starts(Problem<dim> &problem)
+    {
+      if (std::none_of(problem.bodies.begin(),
+                       problem.bodies.end(),
+                       [](const Body<dim> &body) { return body.is_liquid; }))
+        return;
+      for (const Obstacle<dim> &obstacle : problem.obstacles)
+        for (unsigned int side = 0; side < 2 * dim; ++side)
+          if (obstacle.changes_place() &&
+              problem.sides[side].held != HeldComponents::none)
+            if (const double angle = angle_at_start(obstacle, problem, side);
+                angle > 0.5)
+              problem.notes.push_back(
+                "Obstacle " + in_quotes(obstacle.name) + " starts in side " +
+                in_quotes(side_names(dim)[side]) + " at an angle of " +
+                brief(angle) +
+                " degrees: liquid is noisy where it leaves the side. A box "
+                "that is two cells larger there, and a half-space at rest in "
+                "the place of the side, avoid this.");
+    }
+
+
+
     /** What the criterion 'obstacle' has to know of those that there are. */
     template <int dim>
     void
@@ -434,6 +501,7 @@ namespace limber
     for (const std::string &name : root.list("Obstacles"))
       problem.obstacles.push_back(read_obstacle(root, name, problem));
     complete_refinements(root, problem);
+    note_oblique_starts(problem);
   }
 
 

@@ -172,6 +172,30 @@ TEST(Scenes, AutomaticBulkModulusKeepsTheMachNumber)
 
 
 
+// Of the moving wall with another normal and place: liquid is noisy where an
+// obstacle takes over a side face by face, and the log says so.
+TEST(Scenes, ObstaclesThatStartObliquelyInASideAreTold)
+{
+  const auto is_told = [](const std::string &normal, const std::string &point) {
+    const Problem<2> problem =
+      read_problem<2>(SceneFile(prm_folder() + "verification/moving_wall.prm",
+                                {"Obstacle wall/Half-space/Normal=" + normal,
+                                 "Obstacle wall/Half-space/Point=" + point}));
+    return std::any_of(problem.notes.begin(),
+                       problem.notes.end(),
+                       [](const std::string &note) {
+                         return note.find("'wall' starts in side 'left'") !=
+                                std::string::npos;
+                       });
+  };
+  EXPECT_TRUE(is_told("1, 0.2", "0, 0"));
+  EXPECT_TRUE(is_told("1, -0.05", "0, 1"));
+  EXPECT_FALSE(is_told("1, 0", "0, 0"));
+  EXPECT_FALSE(is_told("1, 0.2", "0.25, 0")); // has all of the side
+}
+
+
+
 // No gravity, no initial velocity: the lid of a cavity alone moves.
 TEST(Scenes, AutomaticBulkModulusGoesByTheSidesThatMove)
 {
@@ -181,6 +205,7 @@ TEST(Scenes, AutomaticBulkModulusGoesByTheSidesThatMove)
                                "Method/Stress update=musl",
                                "Body water/Newtonian fluid/Bulk modulus=auto",
                                "Loads/Gravity=0, 0",
+                               "Body water/Initial pressure=",
                                "Boundaries/top=velocity",
                                "Boundaries/Side top/Velocity=5*sin(20*t); 0"}));
   EXPECT_NEAR(problem.bodies[0].material.at(1),
