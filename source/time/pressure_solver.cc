@@ -324,7 +324,8 @@ namespace limber
     std::copy(equations.right_side.begin(),
               equations.right_side.end(),
               b.begin());
-    const unsigned int iterations = iterate(accuracy);
+    const unsigned int iterations =
+      iterate(accuracy * equations.share_of_accuracy);
     std::copy(x.begin(), x.end(), solution.begin());
     return iterations;
   }

@@ -148,6 +148,13 @@ namespace limber
       return cells;
     }
 
+    /** Whether any obstacle changes its place. */
+    bool
+    in_motion() const
+    {
+      return moves;
+    }
+
     /** Whether any rank has a cell that is cut. */
     bool
     any() const

@@ -26,6 +26,9 @@ namespace limber
     std::vector<std::uint32_t> columns;    // by row; no_column where none
     std::vector<double>        values;     // likewise
     std::vector<double>        right_side; // by row
+    // Of the accuracy that is asked for, what iterations have to reach: a
+    // factor leaves hardly more than round-off
+    double share_of_accuracy = 1;
   };
 
 
