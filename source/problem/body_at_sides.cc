@@ -19,32 +19,6 @@ namespace limber
 
 
 
-    /** Of the face of the box in a side: places on a lattice. */
-    template <int dim>
-    std::vector<dealii::Point<dim>>
-    places_in(const unsigned int side, const GridDescription<dim> &grid)
-    {
-      constexpr unsigned int          n = dim == 2 ? 9 : 5; // along each edge
-      std::vector<dealii::Point<dim>> result;
-      for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim - 1); ++i)
-        {
-          dealii::Point<dim> place;
-          for (unsigned int d = 0, rest = i; d < dim; ++d)
-            if (d == side / 2)
-              place[d] = side % 2 == 0 ? grid.lower[d] : grid.upper[d];
-            else
-              {
-                place[d] = grid.lower[d] + (rest % n) / (n - 1.) *
-                                             (grid.upper[d] - grid.lower[d]);
-                rest /= n;
-              }
-          result.push_back(place);
-        }
-      return result;
-    }
-
-
-
     /**
      * How far a side moves inward until @p end (s) at most, m. By parts of time
      * in which it moves by a small part of what it may, so that one that swings
@@ -65,7 +39,7 @@ namespace limber
                  0.;
       };
       double result = 0;
-      for (const dealii::Point<dim> &place : places_in(side, grid))
+      for (const dealii::Point<dim> &place : places_in_side(side, grid))
         {
           double fastest = 0;
           for (double n = 0; n < coarse; ++n)

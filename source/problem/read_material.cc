@@ -118,25 +118,16 @@ namespace limber
     double
     largest_side_speed(const Problem<dim> &problem)
     {
-      constexpr unsigned int n       = 4;   // places along an axis, less one
       constexpr unsigned int n_times = 200; // as a formula may be periodic
-      const auto            &box     = problem.grid;
       double                 largest = 0;
-      for (const Side<dim> &side : problem.sides)
-        if (!side.velocity.empty())
-          for (unsigned int i = 0; i < std::pow(n + 1, dim); ++i)
-            {
-              dealii::Point<dim> place;
-              unsigned int       index = i;
-              for (unsigned int d = 0; d < dim; ++d, index /= n + 1)
-                place[d] = box.lower[d] + index % (n + 1) / double(n) *
-                                            (box.upper[d] - box.lower[d]);
-              for (unsigned int k = 0; k <= n_times; ++k)
-                if (const double t = problem.end_time * k / n_times;
-                    side.velocity.is_finite(place, t))
-                  largest =
-                    std::max(largest, side.velocity.vector(place, t).norm());
-            }
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        if (const Formula<dim> &velocity = problem.sides[side].velocity;
+            !velocity.empty())
+          for (const auto &place : places_in_side(side, problem.grid))
+            for (unsigned int k = 0; k <= n_times; ++k)
+              if (const double t = problem.end_time * k / n_times;
+                  velocity.is_finite(place, t))
+                largest = std::max(largest, velocity.vector(place, t).norm());
       return largest;
     }
 

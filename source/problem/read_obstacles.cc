@@ -408,28 +408,15 @@ namespace limber
                    const Problem<dim>  &problem,
                    const unsigned int   side)
     {
-      constexpr unsigned int      n   = 20; // places along an axis, less one
-      const GridDescription<dim> &box = problem.grid;
-      const ObstaclePlace<dim>    start(obstacle, 0);
-      double                      largest = 0;
-      bool                        has_all = true;
-      for (unsigned int i = 0; i < std::pow(n + 1, dim - 1); ++i)
+      const ObstaclePlace<dim> start(obstacle, 0);
+      double                   largest = 0;
+      bool                     has_all = true;
+      for (const Point<dim> &place : places_in_side(side, problem.grid))
         {
-          Point<dim>   place;
-          unsigned int index = i;
-          for (unsigned int d = 0; d < dim; ++d)
-            if (d == side / 2)
-              place[d] = side % 2 == 0 ? box.lower[d] : box.upper[d];
-            else
-              {
-                place[d] = box.lower[d] + index % (n + 1) / double(n) *
-                                            (box.upper[d] - box.lower[d]);
-                index /= n + 1;
-              }
           const auto   from = start.distance(place);
           const double cosine =
             (side % 2 == 0 ? 1 : -1) * from.normal[side / 2];
-          if (from.value > 1e-6 * box.edge(side / 2))
+          if (from.value > 1e-6 * problem.grid.edge(side / 2))
             has_all = false;
           else if (cosine > 0.7)
             largest = std::max(largest, std::acos(std::min(1., cosine)));

@@ -27,6 +27,31 @@ namespace limber
 
 
 
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  places_in_side(const unsigned int side, const GridDescription<dim> &grid)
+  {
+    constexpr unsigned int          n = dim == 2 ? 9 : 5; // along each edge
+    std::vector<dealii::Point<dim>> result;
+    for (unsigned int i = 0; i < dealii::Utilities::pow(n, dim - 1); ++i)
+      {
+        dealii::Point<dim> place;
+        for (unsigned int d = 0, rest = i; d < dim; ++d)
+          if (d == side / 2)
+            place[d] = side % 2 == 0 ? grid.lower[d] : grid.upper[d];
+          else
+            {
+              place[d] = grid.lower[d] + (rest % n) / (n - 1.) *
+                                           (grid.upper[d] - grid.lower[d]);
+              rest /= n;
+            }
+        result.push_back(place);
+      }
+    return result;
+  }
+
+
+
   std::string
   for_each_direction(const unsigned int dim,
                      const std::string &text,
@@ -200,8 +225,10 @@ namespace limber
                                           const Constants &,        \
                                           const Corners<dim> &);    \
   template Corners<dim>       corners<dim>(const GridDescription<dim> &); \
-  template std::string        to_text<dim>(const dealii::Point<dim> &);   \
-  template std::string        brief<dim>(const dealii::Point<dim> &);
+  template std::vector<dealii::Point<dim>> places_in_side<dim>(           \
+    const unsigned int, const GridDescription<dim> &);                    \
+  template std::string to_text<dim>(const dealii::Point<dim> &);          \
+  template std::string brief<dim>(const dealii::Point<dim> &);
 
   INSTANTIATE(2)
   INSTANTIATE(3)

@@ -108,13 +108,13 @@ namespace limber
       add_volume(simplex, cell);
     });
     const bool layer     = is_layer(number, distances),
-               in_motion = moves && distance[number] < distance_at_rest[number],
-               is_left   = in_motion && cell.open < least_open_left() &&
+               by_moving = moves && distance[number] < distance_at_rest[number],
+               is_left   = by_moving && cell.open < least_open_left() &&
                          !holding.empty() && !(holding[number] > 0);
     if (is_left || cell.open < (layer ? least_of_layer : least_share))
       {
         const bool has_walls =
-          is_left || (in_motion && is_implicit) || cell.open >= least_share;
+          is_left || (by_moving && is_implicit) || cell.open >= least_share;
         kinds[number] = !(cell.open > 0) ? covered :
                         has_walls        ? closed :
                                            closed_to_a_rest;

@@ -37,6 +37,12 @@ namespace limber
   unsigned int
   side_index(const std::string &name);
 
+  /** Of the face of the box in a side: places on a lattice, its corners among
+   * them. */
+  template <int dim>
+  std::vector<dealii::Point<dim>>
+  places_in_side(unsigned int side, const GridDescription<dim> &grid);
+
   /** The same text for each direction: "0, 0, 0". */
   std::string
   for_each_direction(const unsigned int dim,
