@@ -80,6 +80,22 @@ namespace limber
 
 
 
+    /** In liquids that are stirred the volumes of points drift apart, while
+     * those of cells stay. */
+    template <int dim>
+    std::string
+    remedy_for_crushed(const BodySymptoms &of_body, const Problem<dim> &problem)
+    {
+      for (const Body<dim> &body : problem.bodies)
+        if (body.name == of_body.body && body.is_liquid &&
+            averages_volume_in_cells(body.treatment) &&
+            body.history == HistoryTreatment::keep)
+          return "Set 'Body " + body.name + "/History = replace'.";
+      return "Refine 'Grid/Cells' or load more slowly.";
+    }
+
+
+
     template <int dim>
     Diagnosis
     diagnose_unstable(const Symptoms &symptoms, const Problem<dim> &problem)
@@ -114,9 +130,8 @@ namespace limber
           if (body.smallest_volume < crushed)
             return {"inverted point",
                     "a point of body '" + body.body + "' has " +
-                      brief(body.smallest_volume) +
-                      " of its volume left. Refine 'Grid/Cells' or load more "
-                      "slowly."};
+                      brief(body.smallest_volume) + " of its volume left. " +
+                      remedy_for_crushed(body, problem)};
         }
       return {};
     }

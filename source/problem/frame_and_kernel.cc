@@ -75,7 +75,7 @@ namespace limber
         return Hindrance{"has no checkerboard control",
                          ", or 'Checkerboard control = 0'"};
       for (const std::string history : {"History", "Deviatoric history"})
-        if (read_word(section, history, history_words()) !=
+        if (read_word(section, history, volume_history_words()) !=
             HistoryTreatment::keep)
           return Hindrance{"has no histories that could scatter: the stress "
                            "follows from the deformation",
@@ -181,7 +181,7 @@ namespace limber
         return Misfit{"Checkerboard control",
                       "it is for kernels whose points see one cell",
                       "'Checkerboard control = 0'"};
-      if (read_word(section, "History", history_words()) !=
+      if (read_word(section, "History", volume_history_words()) !=
           HistoryTreatment::keep)
         return Misfit{"History",
                       "points with domains keep their own",
@@ -208,7 +208,7 @@ namespace limber
         return Misfit{"Checkerboard control",
                       "it is for kernels whose points see one cell",
                       "'Checkerboard control = 0'"};
-      if (read_word(section, "History", history_words()) !=
+      if (read_word(section, "History", volume_history_words()) !=
           HistoryTreatment::keep)
         return Misfit{"History", "points keep their own", "'History = keep'"};
       return {};

@@ -109,8 +109,8 @@ namespace limber
         "in the scene) and do not fill the box, else 0.");
       declare_word(parameters,
                    "History",
-                   "keep",
-                   history_words(),
+                   "auto",
+                   volume_history_words(),
                    "With a treatment that averages the volumetric strain: what "
                    "happens to its scatter among the points of a cell.");
       declare_word(parameters,
@@ -326,7 +326,7 @@ namespace limber
     void
     read_histories(const Section &section, const bool fluid, Body<dim> &body)
     {
-      body.history = read_word(section, "History", history_words());
+      body.history = read_word(section, "History", volume_history_words());
       body.deviatoric_history =
         read_word(section, "Deviatoric history", history_words());
       body.relaxation_time         = section.number("Relaxation time");

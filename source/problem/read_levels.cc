@@ -454,7 +454,7 @@ namespace limber
                  "its points would not follow the size of cells",
                  "'Placement = cut' or 'regular'");
         for (const std::string entry : {"History", "Deviatoric history"})
-          if (read_word(section, entry, history_words()) ==
+          if (read_word(section, entry, volume_history_words()) ==
               HistoryTreatment::crossing)
             refuse(section,
                    entry,

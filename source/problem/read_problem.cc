@@ -145,6 +145,7 @@ namespace limber
     read_face_loads(loads, problem);
     read_obstacles(root, problem);
     choose_time_integration(root, problem);
+    choose_histories(root, problem);
     choose_stress_update(problem);
     obey_filter(problem);
     read_contact(root, problem);

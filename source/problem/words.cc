@@ -314,4 +314,22 @@ namespace limber
     return words;
   }
 
+
+
+  const Words<HistoryTreatment> &
+  volume_history_words()
+  {
+    static const Words<HistoryTreatment> words = [] {
+      Words<HistoryTreatment> all = {
+        {"auto",
+         HistoryTreatment::keep, // until choose_histories() knows more
+         "'crossing' ('replace' on levels) for liquids in explicit steps with "
+         "linear functions where a side or an obstacle moves, else 'keep'"}};
+      const auto &others = history_words();
+      all.insert(all.end(), others.begin(), others.end());
+      return all;
+    }();
+    return words;
+  }
+
 } // namespace limber

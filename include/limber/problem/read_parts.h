@@ -299,6 +299,12 @@ namespace limber
   void
   choose_time_integration(const Section &root, Problem<dim> &problem);
 
+  /** Body::history of liquids that leave it to 'auto'. Time integration,
+   * bodies, sides and obstacles are known. */
+  template <int dim>
+  void
+  choose_histories(const Section &root, Problem<dim> &problem);
+
   /** How points of liquids are kept from gathering: Body::density_control and
    * particle_shifting. Time integration, bodies and obstacles are known. */
   template <int dim>

@@ -76,6 +76,10 @@ namespace limber
   const Words<HistoryTreatment> &
   history_words();
 
+  /** Those and 'auto', which is 'keep' until choose_histories(). */
+  const Words<HistoryTreatment> &
+  volume_history_words();
+
   /** The word of a condition at a side of the grid, in place of a value. */
   const Words<std::string> &
   side_condition_words();

@@ -196,6 +196,35 @@ TEST(Scenes, ObstaclesThatStartObliquelyInASideAreTold)
 
 
 
+// What stirs a liquid for long scatters the volumes of its points.
+TEST(Scenes, LiquidsThatAreStirredDoNotKeepTheirHistories)
+{
+  const auto history = [](std::vector<std::string> changes) {
+    changes.push_back("Method/Time integration=explicit");
+    changes.push_back("Body water/Newtonian fluid/Bulk modulus=1e6");
+    return read_problem<2>(
+             SceneFile(prm_folder() + "verification/moving_wall.prm", changes))
+      .bodies[0]
+      .history;
+  };
+  using H = HistoryTreatment;
+  EXPECT_EQ(history({}), H::crossing);
+  EXPECT_EQ(history({"Body water/History=keep"}), H::keep);
+  EXPECT_EQ(history({"Body water/Locking treatment=none"}), H::keep);
+  EXPECT_EQ(history({"Grid/Levels=1",
+                     "Grid/Refine=near",
+                     "Grid/Refine near/Criterion=obstacle"}),
+            H::replace);
+  const std::string still = "Obstacle wall/Displacement=0; 0";
+  EXPECT_EQ(history({still}), H::keep);
+  EXPECT_EQ(history({still,
+                     "Boundaries/top=velocity",
+                     "Boundaries/Side top/Velocity=1; 0"}),
+            H::crossing);
+}
+
+
+
 // No gravity, no initial velocity: the lid of a cavity alone moves.
 TEST(Scenes, AutomaticBulkModulusGoesByTheSidesThatMove)
 {

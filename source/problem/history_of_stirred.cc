@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/text.h>
+#include <limber/problem/read_parts.h>
+
+#include <algorithm>
+
+namespace limber
+{
+  namespace
+  {
+    /** Whether something moves along or through liquids for as long as it
+     * likes: a side with a velocity, or an obstacle. */
+    template <int dim>
+    bool
+    is_stirred(const Problem<dim> &problem)
+    {
+      const auto does_something = [](const Formula<dim> &formula) {
+        return !formula.empty() && !formula.is_zero();
+      };
+      return std::any_of(problem.sides.begin(),
+                         problem.sides.end(),
+                         [&](const Side<dim> &side) {
+                           return does_something(side.velocity);
+                         }) ||
+             std::any_of(problem.obstacles.begin(),
+                         problem.obstacles.end(),
+                         [&](const Obstacle<dim> &obstacle) {
+                           return does_something(obstacle.displacement) ||
+                                  does_something(obstacle.rotation);
+                         });
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  choose_histories(const Section &root, Problem<dim> &problem)
+  {
+    if (problem.method.integration != TimeIntegration::explicit_steps ||
+        problem.grid.kernel != KernelKind::linear || !is_stirred(problem))
+      return;
+    for (Body<dim> &body : problem.bodies)
+      if (body.is_liquid && averages_volume_in_cells(body.treatment) &&
+          root.subsection("Body " + body.name).text("History") == "auto")
+        {
+          // several sizes of cells have no one time to cross them
+          body.history = problem.grid.levels > 0 ? HistoryTreatment::replace :
+                                                   HistoryTreatment::crossing;
+          problem.notes.push_back(
+            "Body " + in_quotes(body.name) + ": history 'auto' is " +
+            (problem.grid.levels > 0 ? "'replace'" : "'crossing'") +
+            ", as in a liquid that is stirred the volumes of points drift "
+            "apart until one turns inside out.");
+        }
+  }
+
+
+
+  template void
+  choose_histories<2>(const Section &, Problem<2> &);
+  template void
+  choose_histories<3>(const Section &, Problem<3> &);
+} // namespace limber
