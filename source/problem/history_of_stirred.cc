@@ -8,8 +8,9 @@ namespace limber
 {
   namespace
   {
-    /** Whether something moves along or through liquids for as long as it
-     * likes: a side with a velocity, or an obstacle. */
+    /** Whether something drives a liquid for as long as it likes: a side with a
+     * velocity, or an obstacle that turns. What is displaced may be a piston,
+     * which does not. */
     template <int dim>
     bool
     is_stirred(const Problem<dim> &problem)
@@ -25,8 +26,7 @@ namespace limber
              std::any_of(problem.obstacles.begin(),
                          problem.obstacles.end(),
                          [&](const Obstacle<dim> &obstacle) {
-                           return does_something(obstacle.displacement) ||
-                                  does_something(obstacle.rotation);
+                           return does_something(obstacle.rotation);
                          });
     }
   } // namespace
@@ -37,21 +37,20 @@ namespace limber
   void
   choose_histories(const Section &root, Problem<dim> &problem)
   {
+    // Cells of several sizes have no one time to cross them.
     if (problem.method.integration != TimeIntegration::explicit_steps ||
-        problem.grid.kernel != KernelKind::linear || !is_stirred(problem))
+        problem.grid.kernel != KernelKind::linear || problem.grid.levels > 0 ||
+        !is_stirred(problem))
       return;
     for (Body<dim> &body : problem.bodies)
       if (body.is_liquid && averages_volume_in_cells(body.treatment) &&
           root.subsection("Body " + body.name).text("History") == "auto")
         {
-          // several sizes of cells have no one time to cross them
-          body.history = problem.grid.levels > 0 ? HistoryTreatment::replace :
-                                                   HistoryTreatment::crossing;
+          body.history = HistoryTreatment::crossing;
           problem.notes.push_back(
-            "Body " + in_quotes(body.name) + ": history 'auto' is " +
-            (problem.grid.levels > 0 ? "'replace'" : "'crossing'") +
-            ", as in a liquid that is stirred the volumes of points drift "
-            "apart until one turns inside out.");
+            "Body " + in_quotes(body.name) +
+            ": history 'auto' is 'crossing', as in a liquid that is stirred "
+            "the volumes of points drift apart until one turns inside out.");
         }
   }
 

@@ -323,8 +323,8 @@ namespace limber
       Words<HistoryTreatment> all = {
         {"auto",
          HistoryTreatment::keep, // until choose_histories() knows more
-         "'crossing' ('replace' on levels) for liquids in explicit steps with "
-         "linear functions where a side or an obstacle moves, else 'keep'"}};
+         "'crossing' for liquids in explicit steps with linear functions on "
+         "equal cells where a side moves or an obstacle turns, else 'keep'"}};
       const auto &others = history_words();
       all.insert(all.end(), others.begin(), others.end());
       return all;

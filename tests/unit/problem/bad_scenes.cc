@@ -511,7 +511,7 @@ namespace
      {"relax", "'Relaxation time'", "0.01"}},
     {"TimeWithoutRelax",
      {"Body beam/Relaxation time=1"},
-     {"'keep'", "History = relax"}},
+     {"'auto'", "History = relax"}},
     {"DeviatoricHistoryOfAFluid",
      {"Body water/Deviatoric history=replace",
       "Body water/Locking treatment=cell shear"},
