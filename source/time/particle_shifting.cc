@@ -2,6 +2,7 @@
 #include <limber/time/particle_shifting.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace limber
@@ -44,6 +45,25 @@ namespace limber
       for (const double inverse : cell.inverse_edge)
         result /= inverse;
       return result;
+    }
+
+
+
+    /** The edge of a square or cube of this content. */
+    template <int dim>
+    double
+    root(const double content)
+    {
+      return dim == 2 ? std::sqrt(content) : std::cbrt(content);
+    }
+
+
+
+    /** Of what holds @p filling times its room. */
+    double
+    excess_of(const double filling)
+    {
+      return std::clamp(filling - 1, -largest_excess, largest_excess);
     }
 
 
@@ -184,27 +204,84 @@ namespace limber
       for (MaterialBody *const body : *bodies)
         add_volumes(*body);
     mark_cells(group);
-    table.give_to_masters(records.data(), Record::stride, 0, Record::stride);
-    exchange.start(vertices.node_plan(), records.data(), 0, Record::stride);
+    table.give_to_masters(records.data(), Record::stride, 0, Record::parts);
+    exchange.start(vertices.node_plan(), records.data(), 0, Record::fillings);
     exchange.finish(records.data());
+    if (!parts.grid.has_levels())
+      find_fillings();
 
     for (const std::uint32_t node : vertices.active_nodes())
       {
         double *const of_node = record(node);
         const double  room    = room_at(node);
-        double        excess  = of_node[Record::excess] / room - 1;
+        double        excess  = excess_of(of_node[Record::excess] / room);
         if (of_node[Record::at_surface] > 0)
           excess = std::max(excess, 0.);
         if (of_node[Record::shared] > 0 || !(room > 0))
           excess = 0;
-        of_node[Record::excess] =
-          std::min(std::max(excess, -largest_excess), largest_excess);
+        of_node[Record::excess] = excess;
       }
     make_room(group);
     table.take_from_masters(records.data(),
                             Record::stride,
                             Record::excess,
                             Record::excess + 1);
+  }
+
+
+
+  // The volume of a point that covers parts of the cells around the nearest
+  // node: of each its share, as if the point were a box, which no side cuts.
+  template <int dim>
+  void
+  ParticleShifting<dim>::add_parts(const std::uint32_t            cell,
+                                   const std::array<double, dim> &xi,
+                                   const double                   volume)
+  {
+    const double edge =
+      std::min(1., root<dim>(volume / volume_of(parts.grid.geometry[cell])));
+    unsigned int corner = 0;
+    for (int d = 0; d < dim; ++d)
+      corner |= (xi[d] > 0.5) << d;
+    const std::uint32_t           node  = surroundings.node_of(cell, corner);
+    const std::uint8_t            sides = parts.grid.vertices.sides[node];
+    std::array<double, n_corners> shares;
+    shares.fill(volume);
+    for (int d = 0; d < dim; ++d)
+      {
+        const unsigned int end      = corner >> d & 1;
+        const double       distance = end == 1 ? 1 - xi[d] : xi[d];
+        const double       own =
+          sides >> (2 * d + end) & 1 ? 1. : std::min(1., 0.5 + distance / edge);
+        for (unsigned int a = 0; a < n_corners; ++a)
+          shares[a] *= (a >> d & 1) == end ? own : 1 - own;
+      }
+    for (unsigned int a = 0; a < n_corners; ++a)
+      record(node)[Record::parts + a] += shares[a];
+  }
+
+
+
+  // How far each cell is filled, at all of its corners.
+  template <int dim>
+  void
+  ParticleShifting<dim>::find_fillings()
+  {
+    const NodalFields<dim> &vertices = parts.nodes.vertices();
+    for (const std::uint32_t cell : vertices.owned_occupied_cells())
+      {
+        double volume = 0;
+        for (unsigned int a = 0; a < n_corners; ++a)
+          volume += record(surroundings.node_of(cell, a))[Record::parts + a];
+        const double filling = volume / volume_of(parts.grid.geometry[cell]);
+        for (unsigned int a = 0; a < n_corners; ++a)
+          record(surroundings.node_of(cell, a))[Record::fillings + a] = filling;
+      }
+    exchange.start(vertices.node_plan(),
+                   records.data(),
+                   Record::fillings,
+                   Record::stride);
+    exchange.finish(records.data());
   }
 
 
@@ -265,6 +342,8 @@ namespace limber
               part *= a >> d & 1 ? xi[d] : 1 - xi[d];
             record(surroundings.node_of(cell, a))[Record::excess] += part;
           }
+        if (!parts.grid.has_levels())
+          add_parts(cell, xi, volume);
       }
   }
 
@@ -294,6 +373,46 @@ namespace limber
 
 
 
+  // Displacements at the faces of a cell towards the upper end of each
+  // direction, in cells: finite volume fluxes of diffusion between cells.
+  template <int dim>
+  typename ParticleShifting<dim>::Faces
+  ParticleShifting<dim>::shifts_at_faces(const std::uint32_t cell,
+                                         const double        factor)
+  {
+    Faces result{};
+    if (parts.grid.has_levels())
+      return result;
+    for (unsigned int d = 0; d < dim; ++d)
+      for (const unsigned int end : {0u, 1u})
+        {
+          bool is_inside = true;
+          for (unsigned int a = 0; a < n_corners; ++a)
+            if ((a >> d & 1) == end)
+              {
+                const std::uint32_t node    = surroundings.node_of(cell, a);
+                const double *const of_node = record(node);
+                is_inside =
+                  is_inside && !(of_node[Record::at_surface] > 0) &&
+                  !(of_node[Record::shared] > 0) &&
+                  !rooms.is_at_obstacle(node) &&
+                  !(parts.grid.vertices.sides[node] >> (2 * d + end) & 1);
+              }
+          if (!is_inside)
+            continue;
+          const unsigned int  a = end << d;
+          const double *const seen =
+            record(surroundings.node_of(cell, a)) + Record::fillings;
+          const double own  = excess_of(seen[a]),
+                       next = excess_of(seen[a ^ 1u << d]);
+          result[d][end] =
+            (end == 1 ? 1 : -1) * factor / (4. * dim) * (own - next);
+        }
+    return result;
+  }
+
+
+
   template <int dim>
   void
   ParticleShifting<dim>::move_points(MaterialBody &body)
@@ -308,15 +427,24 @@ namespace limber
     for (unsigned int side = 0; side < 2 * dim; ++side)
       may_shift_to[side] = parts.problem.sides[side].velocity.empty();
     std::array<double, n_corners> excess;
+    Faces                         through;
+    std::uint32_t                 last = invalid_cell;
+    bool                          any  = false;
     for (std::size_t p = 0; p < points.size; ++p)
       {
         const std::uint32_t      number = points.cell[p];
         const CellGeometry<dim> &cell   = parts.grid.geometry[number];
-        bool                     any    = false;
-        for (unsigned int a = 0; a < n_corners; ++a)
+        if (number != last)
           {
-            excess[a] = record(surroundings.node_of(number, a))[Record::excess];
-            any       = any || excess[a] != 0;
+            last    = number;
+            through = shifts_at_faces(number, factor);
+            any     = through != Faces{};
+            for (unsigned int a = 0; a < n_corners; ++a)
+              {
+                excess[a] =
+                  record(surroundings.node_of(number, a))[Record::excess];
+                any = any || excess[a] != 0;
+              }
           }
         if (!any)
           continue;
@@ -335,8 +463,10 @@ namespace limber
               }
             const double edge = 1 / cell.inverse_edge[d];
             const double shift =
-              -std::min(std::max(factor * slope, -largest_shift),
-                        largest_shift) *
+              std::clamp((1 - xi[d]) * through[d][0] + xi[d] * through[d][1] -
+                           factor * slope,
+                         -largest_shift,
+                         largest_shift) *
               edge;
             const double       place = points.position[d][p] + shift;
             const unsigned int side  = 2 * d + (shift > 0);

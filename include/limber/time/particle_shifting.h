@@ -30,9 +30,24 @@ namespace limber
    * of T. Kugelstadt, A. Longva, N. Thuerey and J. Bender, IEEE TVCG 27, 2021),
    * with the room R_i of a node, the integral of N_i over what obstacles leave
    * of the box; s, in cells, is how far the fastest point has moved since the
-   * last time, and C the body's 'Particle shifting'. Next to cells at a surface
-   * R_i is not known to be filled: only an excess counts there. Nothing is done
-   * beside solids and other fields. Velocities stay; the potential energy that
+   * last time, and C the body's 'Particle shifting'.
+   *
+   * A density that alternates from cell to cell (stripes two cells wide, or a
+   * checkerboard) is in the null space of g: every node has as much of one as
+   * of the other. So the fillings of cells diffuse as well: across a face
+   * between the cells L and R points move by
+   *
+   *   C s h / (4 dim) (e_L - e_R),   e = V_in / V_cell - 1,
+   *
+   * with the volume V_in of the points in a cell, a point being a box that may
+   * cover parts of several cells, so that e is no noise where rows of points
+   * pass faces; and within a cell by the linear interpolation between opposite
+   * faces (lowest order Raviart-Thomas). It takes C s / dim of stripes.
+   *
+   * Next to cells at a surface R_i is not known to be filled: only an excess of
+   * nodes counts there, and nothing passes faces. Nothing is done beside solids
+   * and other fields, and neither phi nor faces count on cells of several
+   * sizes. Velocities stay; the potential energy that
    * this takes is on record as removed with histories.
    *
    * For linear functions, with means over cells. Theory:
@@ -90,6 +105,9 @@ namespace limber
       std::vector<MaterialBody *> liquids, neighbours, others;
     };
 
+    /** By direction, at both ends. */
+    using Faces = std::array<std::array<double, 2>, dim>;
+
     /** Of a vertex: the volume of points around it (m^3), later the excess g;
      * more than zero next to a cell at a surface, or one that others share. */
     struct Record
@@ -97,7 +115,12 @@ namespace limber
       static constexpr unsigned int excess     = 0;
       static constexpr unsigned int at_surface = 1;
       static constexpr unsigned int shared     = 2;
-      static constexpr unsigned int stride     = 3;
+      // Of the cells around it, by the corner of the cell that it is: the
+      // volume in them of points to which it is the nearest vertex (m^3), and
+      // how far they are filled
+      static constexpr unsigned int parts    = 3;
+      static constexpr unsigned int fillings = parts + n_corners;
+      static constexpr unsigned int stride   = fillings + n_corners;
     };
 
     void
@@ -108,6 +131,14 @@ namespace limber
     add_volumes(MaterialBody &body);
     void
     mark_cells(const Group &group);
+    void
+    add_parts(std::uint32_t                  cell,
+              const std::array<double, dim> &xi,
+              double                         volume);
+    void
+    find_fillings();
+    Faces
+    shifts_at_faces(std::uint32_t cell, double factor);
     void
     move_points(MaterialBody &body);
     bool
