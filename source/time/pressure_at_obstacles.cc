@@ -8,25 +8,28 @@
 /**
  * @file The equations of the implicit pressure at rigid obstacles. Pieces of
  * surface in cells have rows of their own; at nodes that obstacles hold one by
- * one, the direction is taken out of M^-1, as sides take components.
+ * one, the held directions are projected out of M^-1, as components that sides
+ * hold are removed.
  */
 
 namespace limber
 {
   namespace
   {
-    // Of a normal, what others have to leave of it at a node, or it does not
-    // count: as for the impulses, see ContactImpulses
+    // Gram-Schmidt: a contact normal of which the others at the node leave less
+    // than this depends on them and is dropped, as in ContactImpulses.
     constexpr double least_left = 0.1;
 
-    // Of the diagonal, added to it: where a surface is as others are, its
-    // pressure is that of them
+    // Regularisation of surface rows, relative to the diagonal, as the matrix
+    // is only semidefinite: a surface whose row depends on those of others gets
+    // their pressure.
     constexpr double give = 1e-12;
   } // namespace
 
 
 
-  // In the cells around any cell that has a row, on any rank.
+  // The largest number of surface pieces that a row couples to, on any rank:
+  // the number of their columns.
   template <int dim>
   unsigned int
   PressureSystem<dim>::most_surfaces_near() const
@@ -109,7 +112,7 @@ namespace limber
 
 
 
-  // What forces do to a node: not in the directions that are held.
+  // Project the held directions of a node out of a vector.
   template <int dim>
   void
   PressureSystem<dim>::move(const std::uint32_t node,
@@ -127,9 +130,10 @@ namespace limber
 
 
 
-  // The change of velocity is known along orthogonal directions, impulses act
-  // along normals: from the last one on, each has parts along those before.
-  // Nothing pulls.
+  // The change of velocity is known along the orthonormal directions, but
+  // impulses act along the contact normals, which also have parts along the
+  // directions before: back substitution from the last one on. Impulses that
+  // would pull are zero.
   template <int dim>
   std::vector<double>
   PressureSystem<dim>::impulses_on_nodes(const double step) const
@@ -203,7 +207,7 @@ namespace limber
 
 
 
-  // Whether it is a corner of a cell of which obstacles take a part or all.
+  // Whether it is a corner of a cell that obstacles cut or cover.
   template <int dim>
   bool
   PressureSystem<dim>::is_at_obstacle(const std::uint32_t node) const
@@ -227,7 +231,8 @@ namespace limber
 
 
 
-  // What a row does to a node, seen by the surfaces around it.
+  // Entries of a row in the columns of wet surfaces, dt^2 (B or A) M^-1 A^T, by
+  // one node: @p scaled is its part of dt^2 (B or A) M^-1.
   template <int dim>
   void
   PressureSystem<dim>::couple_surfaces(const std::uint32_t node,
@@ -268,8 +273,8 @@ namespace limber
 
 
 
-  // As the rows of cells, starting from the pressure in the cell; returns what
-  // they add to the sum of squares.
+  // Symmetric scaling as for the rows of cells, and the pressure in the cell as
+  // initial guess; returns what they add to the sum of squares in scale().
   template <int dim>
   double
   PressureSystem<dim>::scale_surfaces()

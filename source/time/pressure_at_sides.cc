@@ -5,19 +5,19 @@
 #include <algorithm>
 
 /**
- * @file The equations of the implicit pressure at the sides of the box. What
- * they hold is taken out of M^-1. One-sided ones hold only what presses, with
- * friction by how much it does: that depends on the pressures, so both are
- * found in turn. A node that a side held or let go against what the equations
- * assumed would leave a divergence, and this times the bulk modulus as an error
- * of the pressure.
+ * @file The equations of the implicit pressure at the sides of the box.
+ * Components that they hold are removed from M^-1. One-sided sides hold only
+ * nodes that press, and their friction depends on this force: both depend on
+ * the pressures, so they are found by fixed-point iteration. A node that a side
+ * held or let go against what the equations assumed would leave a divergence,
+ * and this times the bulk modulus as an error of the pressure.
  */
 
 namespace limber
 {
   namespace
   {
-    // Of what a side does to a node: friction that is known so well.
+    // Tolerance of the iteration: relative change of the friction at a node.
     constexpr double friction_known = 1e-6;
   } // namespace
 
@@ -52,7 +52,8 @@ namespace limber
 
 
 
-  // With the forces of all pressures, by nodes in the same order in a step.
+  // What one-sided sides do under the forces of all pressures. Nodes come in
+  // the same order throughout a step: meet_sides() compares entry by entry.
   template <int dim>
   std::vector<typename PressureSystem<dim>::AtSide>
   PressureSystem<dim>::find_at_sides(const double end, const double step)

@@ -8,8 +8,8 @@ namespace limber
 {
   namespace
   {
-    // Cells around the material that have numbers too, so that the same serve
-    // for some steps
+    // Layers of empty cells around the material that get unknowns too, so that
+    // the sparsity pattern serves for some steps
     constexpr int margin = 3;
   } // namespace
 
@@ -82,7 +82,7 @@ namespace limber
 
 
 
-  // Whether all cells that hold something have equations, on all ranks.
+  // Whether all occupied cells have unknowns, on all ranks.
   template <int dim>
   bool
   PressureCells<dim>::knows_all_cells() const
@@ -144,7 +144,7 @@ namespace limber
 
 
 
-  // Those that this rank knows from their owners.
+  // Cells of other ranks that are received from their owners.
   template <int dim>
   template <class Work>
   void
@@ -157,8 +157,8 @@ namespace limber
 
 
 
-  // What the cells of this rank hold, which know the points of all ranks, and
-  // what each rank knows of the pressure of its points.
+  // Records of the cells of this rank, whose sums contain the points of all
+  // ranks; and this rank's part of the pressure moments, before exchange().
   template <int dim>
   void
   PressureCells<dim>::gather(Medium &medium)
@@ -184,11 +184,12 @@ namespace limber
           continue;
         if (surfaces.cells() != nullptr && surfaces.cells()->is_covered(cell))
           {
-            // what is in there presses on nothing, or thin rests would lock
+            // material in covered cells has no pressure, or thin remains would
+            // lock
             of_cell[Record::volume] = 0;
             continue;
           }
-        // those of all of them, see LiquidMeans
+        // volume fraction of all liquids together, see LiquidMeans
         const double filling =
           any->volume_shares.size() > 0 ? any->volume_shares[cell] : 1;
         of_cell[Record::pattern] =
@@ -228,7 +229,8 @@ namespace limber
 
 
 
-  // Of nodes at a cell of this rank all cells around are known here.
+  // The cells of the medium around each node, complete for nodes of cells of
+  // this rank.
   template <int dim>
   void
   PressureCells<dim>::look_around(Medium &medium)
@@ -247,7 +249,6 @@ namespace limber
 
 
 
-  // From the owners of cells to all who hold them.
   template <int dim>
   void
   PressureCells<dim>::share(Medium &medium, const unsigned int slot)

@@ -4,14 +4,15 @@
 #include <algorithm>
 
 /**
- * @file The equations of the implicit pressure where cells have several sizes:
- * hanging nodes follow their masters, so that B is the mean divergence of what
- * is left, B Z with the interpolation Z, and its transpose pushes masters.
+ * @file The equations of the implicit pressure on adaptive meshes: hanging
+ * nodes are constrained to their masters by the interpolation Z, so the mean
+ * divergence is B Z, and its transpose gives nodal forces to the masters.
  */
 
 namespace limber
 {
-  // The cells that follow a node which a cell follows as well, ascending.
+  // Cells, ascending, that share an unconstrained node with a cell, directly or
+  // by hanging nodes: its row has entries for these.
   template <int dim>
   std::vector<std::uint32_t>
   PressureSystem<dim>::coupled_to(const std::uint32_t cell) const
@@ -75,7 +76,7 @@ namespace limber
 
 
 
-  // The place of a cell of a body in a row where cells have several sizes.
+  // Index of the entry of a cell of a medium in a row, on adaptive meshes.
   template <int dim>
   std::size_t
   PressureSystem<dim>::entry_of(const std::uint32_t row,
@@ -89,7 +90,8 @@ namespace limber
 
 
 
-  // Whether there is material in all cells around it, which are alike.
+  // Whether the medium is in all cells around a node and these have one size:
+  // only there the checkerboard control acts.
   template <int dim>
   bool
   PressureSystem<dim>::is_inside(const Medium       &medium,
@@ -109,7 +111,7 @@ namespace limber
 
 
 
-  // As on the lattice, with what corners follow.
+  // As couple_on_lattice(), with the masters of hanging corners.
   template <int dim>
   void
   PressureSystem<dim>::couple_over_levels(const double *const own,
@@ -156,7 +158,8 @@ namespace limber
 
 
 
-  // Of what a corner follows; the room of a node is its part of cells around.
+  // Overfill at a corner, interpolated from the masters if it hangs; the nodal
+  // volume is the sum of the shares of the cells around.
   template <int dim>
   double
   PressureSystem<dim>::excess_over_levels(const std::uint32_t corner,

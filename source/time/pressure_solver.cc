@@ -27,16 +27,16 @@ namespace limber
   {
     constexpr unsigned int most_iterations = 500;
 
-    // To make a multigrid takes as long as these.
+    // Setting up the multigrid takes as long as so many iterations.
     constexpr unsigned int iterations_of_making = 40;
 
-    // A factor that takes at most so many multiplications for a row is made in
-    // each step: it takes less time than the iterations. Ranks tell each other
-    // the equations; what so many rows have is soon told.
+    // The matrix is factorised in each step if this takes at most so many
+    // multiplications per row, less time than iterating, and there are at most
+    // so many rows, as every rank gathers the whole system.
     constexpr double        most_work_for_a_row = 3000;
     constexpr std::uint32_t most_rows_of_factor = 20000;
 
-    // So often what a factor leaves is solved for again.
+    // Most solutions with a factor: the first, then iterative refinement.
     constexpr unsigned int most_repetitions = 5;
 
     using Vector = dealii::TrilinosWrappers::MPI::Vector;
@@ -101,9 +101,9 @@ namespace limber
     std::vector<std::uint32_t> n_of_ranks;
     bool                       has_multigrid       = false;
     unsigned int               iterations_when_new = 0;
-    unsigned int more_iterations = 0; // that the old one has taken, summed
+    unsigned int more_iterations = 0; // with a reused one, beyond those
     dealii::TrilinosWrappers::SparseMatrix    matrix;
-    std::vector<double *>                     entries; // by place
+    std::vector<double *>                     entries; // by entry
     dealii::TrilinosWrappers::PreconditionAMG multigrid;
     Vector                                    x, b;
   };
@@ -150,8 +150,8 @@ namespace limber
 
 
 
-  // Where the matrix keeps the entries: to look each of them up in every step
-  // would take longer than to form them.
+  // Pointers to the entries in the matrix: to look each of them up in every
+  // step would take longer than to compute them.
   void
   PressureSolver::Methods::find_entries(const PressureEquations &equations)
   {
@@ -218,8 +218,8 @@ namespace limber
 
 
 
-  // Whether a factor is worth while. All ranks make it of all equations, which
-  // are few: so they agree with one rank to round-off.
+  // Whether to factorise. Every rank factorises the whole system, which is
+  // small: so results on several ranks agree with those on one to round-off.
   bool
   PressureSolver::Methods::prepare_factor(const PressureEquations &equations)
   {
@@ -275,9 +275,10 @@ namespace limber
 
 
 
-  // With the factor. Returns how often it was used: round-off leaves a residual
-  // in cells that hardly give way. Nothing where that does not get better, as
-  // in a closed vessel whose mean pressure nothing fixes.
+  // Direct solution with iterative refinement: round-off leaves a residual in
+  // nearly incompressible cells. Returns the number of solutions with the
+  // factor; nothing where the residual does not get small enough, as in a
+  // closed vessel whose mean pressure is undetermined.
   std::optional<unsigned int>
   PressureSolver::Methods::solve_directly(const PressureEquations &equations,
                                           const double             accuracy,
@@ -314,7 +315,8 @@ namespace limber
 
 
 
-  // With the matrix and the multigrid as they are, from the solution as it is.
+  // With the matrix and the multigrid as they are; @p solution is the initial
+  // guess.
   unsigned int
   PressureSolver::Methods::solve_iteratively(const PressureEquations &equations,
                                              const double             accuracy,

@@ -42,7 +42,7 @@ namespace limber
 
 
 
-  // Of the surfaces that the impulses on the nodes know, see ObstacleContact.
+  // Only surfaces that the contact impulses act on, see ObstacleContact.
   template <int dim>
   void
   PressureSurfaces<dim>::add(const Cell &cell)
@@ -94,8 +94,8 @@ namespace limber
 
 
 
-  // The owner of a cell alone knows which of the cells around it are closed,
-  // and so all of its surfaces: it tells the others.
+  // Only the owner of a cell knows which of the cells around it are closed, and
+  // so all of its surfaces: it sends their rows to the other ranks.
   template <int dim>
   void
   PressureSurfaces<dim>::learn_of_neighbours()
@@ -144,7 +144,7 @@ namespace limber
 
 
 
-  // Among those of its cell.
+  // Index of a piece among those of its cell.
   template <int dim>
   unsigned int
   PressureSurfaces<dim>::place_of(const std::size_t piece) const
@@ -154,7 +154,7 @@ namespace limber
 
 
 
-  // From the owners of cells to all who hold them.
+  // Copy values of pieces from the owners of cells to all ranks that hold them.
   template <int dim>
   template <class Get, class Set>
   void

@@ -8,18 +8,18 @@ namespace limber
 {
   namespace
   {
-    // Nodes may hold so much more, or less, than there is room for: places of
-    // points show no volume more exactly.
+    // Dead band of the density control, relative to the nodal volume: the
+    // positions of points do not give the volume more exactly.
     constexpr double excess_allowed = 0.02;
 
-    // Of the room around a node: where obstacles leave less, a single point
-    // would be far too much.
+    // As a share of the nodal volume: where obstacles leave less (small cut), a
+    // single point would overfill the node by far.
     constexpr double least_room = 0.1;
 
 
 
-    /** The signs of places around a node multiplied over the directions in
-     * @p pattern. */
+    /** Sign of a checkerboard mode in the cell at @p place around a node; it
+     * alternates in the directions (bits) of @p pattern. */
     double
     sign(const unsigned int pattern, const unsigned int place)
     {
@@ -30,9 +30,9 @@ namespace limber
 
     /**
      * Call work(pattern, weight) for the sets of two and more directions in
-     * which a pattern alternates. With the weights sum_d 1/h_d^2 over these
-     * directions d all of them together are the difference between the compact
-     * Laplacian of a cell's 2 dim neighbours and the wide one.
+     * which a checkerboard mode alternates. With the weights sum_d 1/h_d^2 over
+     * these directions d all of them together are the difference between the
+     * compact Laplacian of a cell's 2 dim neighbours and the wide one.
      */
     template <int dim, class Work>
     void
@@ -51,8 +51,8 @@ namespace limber
 
 
 
-    /** The place of the second cell around the first one, which share a node:
-     * corner a of the first and corner b of the second. */
+    /** Index of the second cell in the 3^dim stencil of the first one; the node
+     * they share is corner a of the first and corner b of the second. */
     template <int dim>
     unsigned int
     place_in_row(const unsigned int a, const unsigned int b)
@@ -213,8 +213,8 @@ namespace limber
 
 
 
-  // By how much of its room a node holds more than it may, at @p density now,
-  // or, as a negative number, less.
+  // Relative overfill of a node, V_material/V_node - 1 beyond the dead band, at
+  // the current @p density; negative where it is underfilled.
   template <int dim>
   double
   PressureSystem<dim>::excess(const std::uint32_t cell,
@@ -232,7 +232,7 @@ namespace limber
 
 
 
-  // Of a room, m^3, of which obstacles may take some.
+  // The same with the nodal volume @p room, m^3, before obstacles take a part.
   template <int dim>
   double
   PressureSystem<dim>::excess_in(double              room,
@@ -251,14 +251,14 @@ namespace limber
       }
     const double excess = held / room - 1;
     if (excess < 0 && at_surface[node] > 0)
-      return 0; // there is room left
+      return 0; // partly filled: at the free surface
     return std::copysign(std::max(0., std::abs(excess) - excess_allowed),
                          excess);
   }
 
 
 
-  // A cell of which some corner has an empty cell beside it is at a surface.
+  // A cell is at the free surface if any cell around its corners is empty.
   template <int dim>
   void
   PressureSystem<dim>::find_surface()
@@ -288,8 +288,8 @@ namespace limber
 
 
 
-  // The mass of a node that liquids share does not tell how much room they
-  // take.
+  // P2G of the current volumes J m/rho0: the mass of a node that several
+  // liquids share does not give their volume.
   template <int dim>
   void
   PressureSystem<dim>::sum_volumes()
@@ -421,8 +421,8 @@ namespace limber
     if (!(volume > 0))
       return;
 
-    // Those of one pressure, of which each takes what its stiffness lets it
-    double density  = 0; // of the last one, now: asked for where there is one
+    // The bodies of a medium have one pressure in a cell: compliances add up.
+    double density  = 0; // now, of the last body; used if there is but one
     double control  = 0;
     may_be_cut[row] = 1;
     medium.for_each_in(cell, [&](const auto &body, const double mass) {
@@ -541,7 +541,8 @@ namespace limber
 
 
 
-  // dt^2 B M^-1 B^T, and - dt B v* on the right.
+  // dt^2 B M^-1 B^T (Schur complement of the lumped mass), and - dt B v* on the
+  // right-hand side.
   template <int dim>
   void
   PressureSystem<dim>::couple_on_lattice(const double *const own,

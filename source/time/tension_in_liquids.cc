@@ -4,10 +4,10 @@
 #include <algorithm>
 
 /**
- * @file Where liquids bear no tension: P >= 0, cells that have no pressure do
- * not close, and no cell has both (complementarity), found by a primal-dual
- * active set (M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13, 2002,
- * 865-888).
+ * @file Tension cutoff of liquids: P >= 0, cells without pressure may expand
+ * but not be compressed, and no cell has both (complementarity), found by a
+ * primal-dual active set (M. Hintermueller, K. Ito and K. Kunisch, SIAM J.
+ * Optim. 13, 2002, 865-888).
  */
 
 namespace limber
@@ -72,8 +72,8 @@ namespace limber
 
 
 
-  // Times the scale of the row, m^3: by how much the cell grows beyond what
-  // belongs to its pressure.
+  // Residual of the full equation of a row, times the scale of the row, m^3: by
+  // how much the cell expands beyond what its pressure gives.
   template <int dim>
   double
   PressureSystem<dim>::opening(const std::uint32_t row) const
@@ -94,7 +94,8 @@ namespace limber
 
 
 
-  // Their equations become P = 0; others do not know of them.
+  // Rows of the active set become P = 0, and their columns are dropped from the
+  // other rows, so that the matrix stays symmetric.
   template <int dim>
   void
   PressureSystem<dim>::exclude_cut()

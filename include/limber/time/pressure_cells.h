@@ -14,12 +14,13 @@
 namespace limber
 {
   /**
-   * The cells of media whose pressure is implicit, numbered: one unknown for
-   * each cell of each medium, those of a rank together and in the order of
-   * ranks. All liquids are one medium: those in a cell have one pressure. Each
-   * solid is one. Empty cells near the material have numbers too, so that the
-   * same serve for some steps. The rows of a rank end with those of the pieces
-   * of surface of obstacles in the cells of the liquids (PressureSurfaces).
+   * The unknowns of the implicit pressure: one for each cell of each medium,
+   * numbered with those of a rank together and in the order of ranks. All
+   * liquids are one medium, with one pressure in a cell; each solid is one.
+   * Empty cells near the material have unknowns too, so that the sparsity
+   * pattern serves for some steps. The rows of a rank end with those of the
+   * pieces of surface of obstacles in the cells of the liquids
+   * (PressureSurfaces).
    */
   template <int dim>
   class PressureCells
@@ -27,11 +28,11 @@ namespace limber
   public:
     static constexpr unsigned int n_nodes = 1 << dim; // of a cell
 
-    /** What ranks tell each other of a cell of a medium. */
+    /** Offsets in the record of a cell of a medium, which ranks exchange. */
     struct Record
     {
       static constexpr unsigned int number = 0; // of the unknown, from 1 on
-      static constexpr unsigned int volume = 1; // V, without pressure, m^3
+      static constexpr unsigned int volume = 1; // reference volume V, m^3
       static constexpr unsigned int moment = 2; // sum of V J p, J
       // gamma V^2/m, m^6/kg, gamma being the mean checkerboard control
       static constexpr unsigned int pattern = 3;
@@ -39,7 +40,8 @@ namespace limber
       static constexpr unsigned int stride  = rows + n_nodes * dim;
     };
 
-    /** Pressure and dilation, for ranks that have points in a cell. */
+    /** Offsets in the results, pressure (Pa) and dilation Theta, which all
+     * ranks get that have points in a cell. */
     struct Result
     {
       static constexpr unsigned int pressure = 0, dilation = 1;
@@ -47,16 +49,18 @@ namespace limber
       static constexpr unsigned int stride = 2;
     };
 
-    /** Bodies whose pressure is implicit: the liquids, or a solid. */
+    /** Bodies with a common implicit pressure in a cell: the liquids, or a
+     * solid. */
     struct Medium
     {
       std::vector<MaterialBody<dim> *> bodies;
       LazyArray<double>                records; // by cell, far ones too
-      // By node, the cell of the medium at each place around it, from 1 on: the
-      // node is corner k of the cell at place k.
+      // By node and place around it: 1 + the cell of the medium there, or 0.
+      // The node is corner k of the cell at place k.
       LazyArray<std::uint32_t> around;
       LazyArray<double>        results; // by cell, far ones too
-      // Owned, in the order of their rows; the first of these, here
+      // Owned, in the order of their rows; and the first of these rows, counted
+      // on this rank
       std::vector<std::uint32_t> cells;
       std::uint32_t              first = 0;
 
@@ -127,23 +131,25 @@ namespace limber
     reinit();
 
     /**
-     * What cells hold now, as owners and their neighbours know it. Returns
-     * whether cells have got other numbers. Collective.
+     * Find volumes, B and pressures of the cells, on their owners and the ranks
+     * around. Returns whether the unknowns have been renumbered. Collective.
      */
     bool
     update();
 
-    /** Hand a slot of the results from the owners of cells to all who hold
-     * them. Collective. */
+    /** Copy a slot of the results from the owners of cells to all ranks that
+     * hold them. Collective. */
     void
     share(Medium &medium, unsigned int slot);
 
-    /** Call work(place, cell) for the cells at most @p n away, known here. */
+    /** Call work(place, cell) for the (2 n + 1)^dim cells around and including
+     * this, as far as this rank knows them. */
     template <class Work>
     void
     for_each_near(std::uint32_t cell, int n, const Work &work) const;
 
-    /** Call work(cell) for those of a medium and those that ranks share. */
+    /** Call work(cell) for the owned cells of a medium and all cells that ranks
+     * share. */
     template <class Work>
     void
     for_each_known(const Medium &medium, const Work &work) const
@@ -159,7 +165,7 @@ namespace limber
       return parts.grid.geometry[cell].node[corner] / NodeLayout<dim>::stride;
     }
 
-    /** The first row of this rank that belongs to a surface. */
+    /** The first row of a surface, counted on this rank. */
     std::uint32_t
     first_of_surfaces() const
     {

@@ -11,9 +11,9 @@
 namespace limber
 {
   /**
-   * Symmetric positive definite equations with a diagonal of ones, the rows of
-   * each rank together and in the order of ranks. Each row has the same number
-   * of places for entries, most of which are taken.
+   * Symmetric positive definite system with a diagonal of ones, the rows of
+   * each rank together and in the order of ranks, stored with the same number
+   * of entries in each row (ELLPACK), most of which are taken.
    */
   struct PressureEquations
   {
@@ -22,23 +22,23 @@ namespace limber
     std::uint32_t              n_all = 0;  // rows of all ranks
     std::uint32_t              first = 0;  // row of this rank
     std::uint32_t              n     = 0;  // rows of this rank
-    unsigned int               width = 0;  // places in a row
+    unsigned int               width = 0;  // entries in a row
     std::vector<std::uint32_t> columns;    // by row; no_column where none
     std::vector<double>        values;     // likewise
     std::vector<double>        right_side; // by row
-    // Of the accuracy that is asked for, what iterations have to reach: a
-    // factor leaves hardly more than round-off
+    // Factor on the accuracy that is asked for, for the iterative solver: the
+    // direct one leaves hardly more than round-off
     double share_of_accuracy = 1;
   };
 
 
 
   /**
-   * Where few cells make a narrow matrix, a factor of it
-   * (EnvelopeCholesky) in each step; else conjugate gradients, preconditioned
-   * by algebraic multigrid (Trilinos' ML). The multigrid of a former matrix
-   * serves the next ones as well until the iterations say that it has become
-   * too old.
+   * Direct solver with a Cholesky factor (EnvelopeCholesky) in each step where
+   * the matrix is small and has a small bandwidth; else conjugate gradients,
+   * preconditioned by algebraic multigrid (Trilinos' ML). The multigrid of a
+   * former matrix is reused until the number of iterations shows that it has
+   * become too old.
    */
   class PressureSolver
   {
@@ -46,22 +46,23 @@ namespace limber
     explicit PressureSolver(MPI_Comm communicator);
     ~PressureSolver();
 
-    /** Adopt other columns, those of all steps from now on. Collective. */
+    /** Adopt another sparsity pattern, for all steps from now on.
+     * Collective. */
     void
     set_pattern(const PressureEquations &equations);
 
     /**
-     * Improve @p solution, the start, until the residual is below @p accuracy
-     * (Euclidean norm over all ranks); returns the iterations that took.
-     * Throws ComputationError if it cannot be done. Collective.
+     * Solve from the initial guess @p solution until the residual is below @p
+     * accuracy (Euclidean norm over all ranks); returns the number of
+     * iterations. Throws ComputationError if it cannot be done. Collective.
      */
     unsigned int
     solve(const PressureEquations &equations,
           double                   accuracy,
           std::vector<double>     &solution);
 
-    /** The same with the matrix of the last solve() and another right side,
-     * from zero. Collective. */
+    /** The same with the matrix of the last solve(), another right-hand side
+     * and zero as initial guess. Collective. */
     unsigned int
     solve_again(const PressureEquations &equations,
                 double                   accuracy,

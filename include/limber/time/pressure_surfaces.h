@@ -35,14 +35,14 @@ namespace limber
     struct Piece
     {
       std::uint32_t cell  = 0;
-      unsigned int  place = 0; // among those of the cell, on its rank
+      unsigned int  place = 0; // Surface::piece, on the owner
       std::uint32_t row   = 0; // of all ranks
       // By node and component, m^(dim-1)
       std::array<double, n_nodes * dim> entries{};
 
       // In this step
       bool   is_wet   = false;
-      double leaving  = 0; // least volume that is to leave, m^dim/s
+      double leaving  = 0; // A v_o, least A v, m^dim/s
       double pressure = 0; // over the scale while the equations are solved
       double scale    = 1;
     };
@@ -60,7 +60,7 @@ namespace limber
       return cut_cells != nullptr && version != cut_cells->version();
     }
 
-    /** Choose those in cells of this rank for which is_asked(cell). */
+    /** Set up the pieces in cells of this rank for which is_asked(cell). */
     template <class IsAsked>
     void
     choose(const IsAsked &is_asked)
@@ -75,29 +75,30 @@ namespace limber
       n_own = pieces.size();
     }
 
-    /** Those of this rank have rows from here on; learn of those that other
-     * ranks have in shared cells. Collective. */
+    /** Number the rows of this rank's pieces from here on, and get the pieces
+     * of shared cells from their owners. Collective. */
     void
     number(std::uint32_t first_row);
 
-    /** Nothing is wet; for a new step. */
+    /** Begin a step: no piece is wet, i.e. has a pressure. */
     void
     dry();
 
-    /** What a surface in a cell is to do in this step: the mean velocity over
-     * it along its normal is to be at least this, m/s. */
+    /** Give a surface in a cell a pressure in this step: the mean normal
+     * velocity on it is to be at least this, m/s. */
     void
     wet(std::uint32_t cell, unsigned int surface, double least);
 
-    /** The piece of a surface in a cell, which has one. */
+    /** Index of the piece that a surface of a cell belongs to; or none. */
     std::uint32_t
     piece_of(std::uint32_t cell, unsigned int surface) const;
 
-    /** All have been told which of them are wet. Collective. */
+    /** After all wet(): exchange between ranks which pieces are wet.
+     * Collective. */
     void
     finish_wetting();
 
-    /** Hand a member from the ranks of pieces to all who know them. */
+    /** Copy a member from the owners of pieces to all ranks that know them. */
     void
     share(double Piece::*member);
 
@@ -114,7 +115,7 @@ namespace limber
       return n_own;
     }
 
-    /** That of a surface in a cell, m^(dim-1). */
+    /** Area of a surface in a cell, m^(dim-1). */
     double
     area_of(const std::uint32_t cell, const unsigned int surface) const
     {
@@ -127,7 +128,7 @@ namespace limber
       return cut_cells;
     }
 
-    /** Call work(number) for the pieces in a cell. */
+    /** Call work(index) for the pieces in a cell. */
     template <class Work>
     void
     for_each_in(const std::uint32_t cell, const Work &work) const
@@ -164,7 +165,7 @@ namespace limber
     unsigned int             most_in_cell = 0; // of all ranks
     std::size_t              n_known      = 0; // cells, far ones too
     LazyArray<std::uint32_t> first_of; // by cell, 1 + its first piece, or 0
-    // By cell: a number for each piece in it, and their entries
+    // Exchange buffer by cell: a number for each piece in it, and their entries
     LazyArray<double>             told;
     std::optional<RecordExchange> between_ranks;
     std::optional<ExchangePlan>   shared_cells;

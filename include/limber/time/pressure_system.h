@@ -13,9 +13,11 @@
 namespace limber
 {
   /**
-   * The equations of the implicit pressure, see ImplicitPressure: their
-   * pattern, C + dt^2 B M^-1 B^T + gamma T, and C P0 - dt B v*; V e; and those
-   * of the pressures on the surfaces of obstacles.
+   * The linear system of the implicit pressure, see ImplicitPressure: sparsity
+   * pattern, matrix C + dt^2 B M^-1 B^T + gamma T (Schur complement, as
+   * velocities are eliminated with the lumped mass), right-hand sides C P0 - dt
+   * B v* and V e (density control), and the rows of the pressures on surfaces
+   * of obstacles.
    */
   template <int dim>
   class PressureSystem
@@ -33,93 +35,105 @@ namespace limber
     void
     reinit();
 
-    /** Adopt the numbers of the cells. */
+    /** Build the sparsity pattern, after cells have been renumbered. */
     void
     find_columns();
 
     /**
-     * Of nodes that are advanced without these pressures, on which no side has
-     * acted yet, in a step of so many seconds until @p end; the density control
-     * acts with this @p share.
+     * Assemble matrix and right-hand side from nodes that are advanced without
+     * these pressures, before any boundary condition, in a step of so many
+     * seconds until @p end; the density control acts with this @p share.
      */
     void
     assemble(double end, double step, double share);
 
     /**
-     * Rows and columns such that the diagonal is one, which makes the equations
-     * of cells that hold little as large as others; and the pressures that
-     * points bring, with which to start. Returns the size of the right side if
-     * all volumes were to change by one. Collective.
+     * Scale rows and columns symmetrically to a diagonal of ones, so that the
+     * equations of hardly filled (cut) cells weigh as much as others; and set
+     * the initial guess, the mean pressure of the points. Returns the norm of
+     * the right-hand side if all volumes were to change by 100 %, a scale for
+     * residuals. Collective.
      */
     double
     scale();
 
-    /** Whether some pressures must not be negative: tension is cut off in any
-     * of the bodies, or there are surfaces that can only push. */
+    /** Whether there are constraints P >= 0: tension cutoff in any of the
+     * bodies, or surfaces of obstacles, which can only push. */
     bool
     cuts_tension() const;
 
     /**
-     * Where a solution asks for tension, let there be no pressure; and where
-     * the cell would be compressed without one, let it have one again, if
-     * @p may_return. Returns whether there is anything to be solved anew, from
-     * the pressures as they are now. After scale(); collective.
+     * One update of the active set: rows with negative pressure are removed
+     * (P = 0); removed ones whose cell would be compressed without pressure
+     * return, if @p may_return. Returns whether the set has changed and the
+     * system is to be solved again, from the pressures as they are now. After
+     * scale(); collective.
      */
     bool
     cut_tension(bool may_return);
 
     /**
-     * Let the right side be V e, where there is pressure, for the pressures
-     * that would make the room. Returns whether any room is wanting. After the
-     * pressures have been found; collective.
+     * Set the right-hand side to V e, where there is pressure, for the
+     * pressures P_e of the density control. Returns whether e is other than
+     * zero anywhere. After the pressures have been found; collective.
      */
     bool
     ask_for_room();
 
-    /** What a force on a node does to its velocity within a step of so many
-     * seconds, but for what holds it. */
+    /** Turn a force on a node, N, into its change of velocity dt M^-1 f in a
+     * step of so many seconds, m/s, without what sides and obstacles hold. */
     void
     push(std::uint32_t node, double step, double *force) const;
 
-    /** Of nodes that obstacles hold: what they are to do in a new step. */
+    /** Begin a step with these nodes that obstacles hold one by one; the list
+     * remains that of the caller. */
     void
     meet_nodes(const std::vector<HeldNode> *held);
 
     /**
-     * Let nodes go that an obstacle would have to pull, and hold those that
-     * come near, if they @p may_return, with the forces of all pressures at
-     * Layout::pressure_force. Returns whether there are any, so that all has to
-     * be assembled and solved anew. Collective.
+     * Update the active set of these nodes: release those that an obstacle
+     * would have to pull, and hold those again that approach, if they @p
+     * may_return, with the forces of all pressures at Layout::pressure_force.
+     * Returns whether it has changed, so that all has to be assembled and
+     * solved again. Collective.
      */
     bool
     release_nodes(double step, bool may_return);
 
-    /** What one-sided sides are to do to nodes in a new step until @p end, by
-     * the forces of expected pressures at Layout::pressure_force. */
+    /**
+     * Predict what one-sided sides (separating, friction) do to nodes in a new
+     * step until @p end, by the forces of expected pressures at
+     * Layout::pressure_force.
+     */
     void
     expect_at_sides(double end, double step);
 
     /**
-     * The same with the forces of all pressures: hold what presses, let go what
-     * sides would have to pull, if they @p may_release, and rub what slides.
-     * Returns whether the equations have not known it, so that all has to be
-     * assembled and solved anew. Collective.
+     * The same with the forces of all pressures: hold nodes that press, release
+     * those that sides would have to pull, if they @p may_release, and find the
+     * friction on those that slide. Returns whether this differs from what the
+     * equations assumed, so that all has to be assembled and solved again.
+     * Collective.
      */
     bool
     meet_sides(double end, double step, bool may_release);
 
-    /** What holds the nodes of meet_nodes() across the surface, kg m/s, with
-     * the forces of all pressures at Layout::pressure_force; nothing where they
-     * are let go. */
+    /**
+     * Normal contact impulses on the nodes of meet_nodes(), kg m/s, with the
+     * forces of all pressures at Layout::pressure_force; zero at released
+     * nodes.
+     */
     std::vector<double>
     impulses_on_nodes(double step) const;
 
-    /** The part of gamma T P in a cell, m^3, with the pressures that cells
-     * know of each other. */
+    /** Entry of gamma T P (checkerboard control) of a cell, m^3, with the
+     * pressures that ranks have shared. */
     double
     flux(std::size_t medium, std::uint32_t cell) const;
 
-    /** 1/m of a component of a node, or 0 where a side holds it. */
+    /**
+     * Entry of M^-1: 1/m of a component of a node, or 0 where a side holds it.
+     */
     double
     mobility_of(const std::uint32_t node, const int d) const
     {
@@ -136,20 +150,20 @@ namespace limber
     };
     std::vector<Former> former;
     std::vector<double> growth;        // e
-    std::vector<double> pressures;     // P1, Pa; over the scales while solved
-    std::vector<double> scales;        // of rows and columns
-    std::vector<unsigned char> is_cut; // its tension; empty: none is
+    std::vector<double> pressures;     // P1, Pa; divided by scales while solved
+    std::vector<double> scales;        // of rows and columns: 1/sqrt(diagonal)
+    std::vector<unsigned char> is_cut; // removed by active set; empty: none
 
-    /** What a body is in a cell. */
+    /** Contribution of a body to a cell of its medium. */
     struct Part
     {
       double volume;       // V, m^3
       double pressure;     // P0 of this body, Pa
       double compliance;   // V/kappa, m^3/Pa
-      double volume_ratio; // mean J of its points, or what a law has for it
+      double volume_ratio; // mean J of its points, or the law's measure
     };
 
-    /** Of @p mass kg in a cell of this rank. */
+    /** Of a body that has @p mass kg in a cell of this rank. */
     Part
     part_of(const Medium            &medium,
             const MaterialBody<dim> &body,
@@ -163,12 +177,12 @@ namespace limber
     using Piece  = typename PressureSurfaces<dim>::Piece;
     static constexpr unsigned int n_nodes = PressureCells<dim>::n_nodes;
 
-    // What one-sided sides do to a node
+    // Action of one-sided sides on a node
     struct AtSide
     {
       std::uint32_t node;
-      unsigned int  held;     // components (bits) that are at rest
-      Vector        friction; // on the others, m/s
+      unsigned int  held;     // bits: components at rest
+      Vector        friction; // change of the others, m/s
 
       bool
       holds(const int d) const
@@ -284,45 +298,47 @@ namespace limber
     const RunParts<dim>      parts;
     BoundaryConditions<dim> &boundaries;
     PressureCells<dim>      &cells;
-    unsigned int             in_body = 0; // places of a medium in a row
+    unsigned int             in_body = 0; // columns of a medium in a row
     unsigned int of_cells = 0; // of all media; those of surfaces follow
-    // By node and component: 1/m, or 0 where a side holds it; and the velocity
-    // without the pressures, or that of the side
+    // By node and component: M^-1, i.e. 1/m, or 0 where a side holds it; and
+    // v*, the velocity without the pressures, or that of the side
     LazyArray<double> mobility, velocity;
-    // By medium and node, for T: gamma dt^2 <V^2/m> / 4^(dim - 1) where all
-    // cells around are occupied, else 0
+    // By medium and node, factor of T: gamma dt^2 <V^2/m> / 4^(dim - 1) where
+    // all cells around are occupied, else 0
     std::vector<LazyArray<double>> pattern_scales;
-    // By place in a row: the cell, or piece of surface, that it stands for
+    // By entry of the matrix: the cell, or piece of surface, of its column
     std::vector<std::uint32_t> mates;
     const bool                 controls_density; // of any body
-    // By node, m^3: what liquids take of the room around it; only
-    // where a density control of several bodies asks for it
+    // By node: current volume of the liquids around it, m^3 (P2G); only with
+    // density control and several bodies
     const bool        needs_volumes;
     LazyArray<double> volumes;
     // Only with a density control; by node, how many of the cells around it are
-    // at a surface
+    // at the free surface
     Surroundings<dim>   surroundings;
     LazyArray<double>   at_surface;
     RecordExchange      node_exchange{1};
     std::vector<AtSide> at_sides; // by nodes
-    // Of a node that obstacles hold: orthogonal directions that are held
+    // Node held by obstacles, and its held directions: contact normals after
+    // Gram-Schmidt orthonormalisation
     struct Held
     {
       std::uint32_t           node;
       unsigned int            n = 0;
       std::array<Vector, dim> directions;
-      // By direction: of what has to be met, the part along it of the normal,
-      // and the number
+      // By direction: component along it of the contact normal, and the index
+      // of the contact in to_hold
       std::array<double, dim>      along;
       std::array<std::size_t, dim> contacts;
     };
     const std::vector<HeldNode> *to_hold = nullptr;
-    std::vector<char>            is_released; // of these
+    std::vector<char>            is_released; // by entry of to_hold
     std::vector<Held>            held;
     LazyArray<std::uint32_t>     held_as; // by node, 1 + place in these, or 0
-    // By row, whether none of the bodies in the cell bears tension
+    // By row, whether P >= 0 is required, as none of the bodies in the cell
+    // bears tension
     std::vector<unsigned char> may_be_cut;
-    // Matrix and right side of all cells, where some are cut off
+    // Full matrix and right-hand side, while the active set removes rows
     std::vector<double> whole, whole_right_side;
   };
 } // namespace limber
