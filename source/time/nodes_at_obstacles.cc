@@ -6,23 +6,23 @@
 #include <algorithm>
 #include <cmath>
 
-/** @file Nodes of liquids that obstacles hold one by one, where they cut no
+/** @file Contact of liquids with obstacles at single nodes, where these cut no
  * cells. */
 namespace limber
 {
   namespace
   {
-    // Of what the room at a node in a wall can hold: with more the liquid
-    // is there, whichever points touch.
+    // A node in a wall is full of liquid from this share of its nodal volume
+    // on, and held whichever points touch.
     constexpr double least_of_full = 0.8;
 
-    // Of the weight of points that touch, along the normal of a wall
+    // Least normal component on a wall of the mean normal of touching points
     constexpr double least_part = 0.1;
 
 
 
-    // Of the mass of a node that holds a liquid, what has to touch. Splines see
-    // more points beyond those that touch.
+    // Share of a node's mass that must be that of touching points for it to be
+    // held. The wider support of splines contains more points beyond these.
     double
     least_touching_share(const KernelKind kernel)
     {
@@ -40,9 +40,10 @@ namespace limber
 
 
 
-  // Or in its surface, to a thousandth of a cell; or, in the wall that a cell
-  // is which a moving obstacle closes, as far from it as that may be. Of an
-  // obstacle at rest each node asks once: with many facets that is dear.
+  // Whether a node is in an obstacle, or in its surface, to a thousandth of a
+  // cell; or, in the wall of a cell that a moving obstacle closes, within
+  // least_open_left(). Cached for obstacles at rest: with many facets distances
+  // are expensive.
   template <int dim>
   bool
   ObstacleContact<dim>::is_in(const std::uint32_t node,
@@ -106,10 +107,10 @@ namespace limber
 
 
 
-  // Where faces of cells are walls, as of a box that ends on the grid, these
-  // hold the nodes: all of them at a corner of the obstacle, or the liquid
-  // would flow through them there; and whether points touch or not where it
-  // fills the room, as inside it points are nowhere in particular.
+  // Where faces of cells are walls, as of a box aligned with the grid, these
+  // hold the nodes: in all of their directions at a corner of the obstacle, or
+  // the liquid would flow through them there; and whether points touch or not
+  // where it fills the nodal volume, as points inside a liquid are anywhere.
   template <int dim>
   void
   ObstacleContact<dim>::add_nodes(const std::vector<Way> &ways,
@@ -157,7 +158,7 @@ namespace limber
                          mass >= least_of_full * liquid_density[field] *
                                    cut_cells->rooms()[node] &&
                          is_in(node, obstacle, way, true);
-    const bool touches_somewhere = // and is not met from all sides alike
+    const bool touches_somewhere = // and the normals do not cancel
       weight > 0 && normal.norm() > 1e-6 * weight;
     if (!is_full && !touches_somewhere)
       return;
@@ -171,7 +172,7 @@ namespace limber
       weight > 0 ?
         dealii::Point<dim>(vector_in<dim>(touching + Sums::place) / weight) :
         vertices[node];
-    // its part of the impulse of the node
+    // this rank's share in the impulse of the node
     const double part = weight > 0 ? touching[Sums::own] / weight :
                                      double(parts.nodes.owns(node));
     Vector       velocity;

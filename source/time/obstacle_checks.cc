@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-/** @file What obstacles must not do: hold material at the start, or jump. */
+/** @file Checks of obstacles: no material in them at the start, no jumps. */
 namespace limber
 {
   template <int dim>

@@ -18,12 +18,13 @@ namespace limber
 {
   namespace
   {
-    // With four, water at rest starts with .03 g, with these .002 g.
+    // Jacobi iterations with cut cells: with four, water at rest starts with
+    // .03 g, with these .002 g.
     constexpr unsigned int passes_of_surfaces = 16;
 
 
 
-    /** Of a place in the box, m. */
+    /** Distance of a place in the box from a side, m. */
     template <int dim>
     double
     distance_from_side(const GridDescription<dim> &box,
@@ -135,7 +136,7 @@ namespace limber
 
 
 
-  // A body that is far from all sides is not looked at until it may have come
+  // A body that is far from all sides is not searched until it may have come
   // near; on no rank, as points change ranks.
   template <int dim>
   void
@@ -210,8 +211,8 @@ namespace limber
 
 
 
-  // Of the material in a cell, and how far any of it is from there, m. In the
-  // initial frame it has left the cell.
+  // Centre of the material in a cell, and how far any of it is from there, m.
+  // In the initial frame it has left the cell.
   template <int dim>
   dealii::Point<dim>
   ObstacleContact<dim>::middle_of(const PointView<dim> &points,
@@ -251,9 +252,10 @@ namespace limber
 
 
 
-  // Where this middle has come nearer in the frame of the obstacle since it
-  // asked, the distance is less by no more than that, or by twice as much if it
-  // is of first order. At rest each cell asks once.
+  // Whether the material of a cell is farther than @p reach from an obstacle,
+  // by a cached distance of its centre: where this has moved in the frame of
+  // the obstacle since, the distance is less by no more than that, or by twice
+  // as much if it is of first order. At rest each cell is evaluated once.
   template <int dim>
   bool
   ObstacleContact<dim>::is_beyond(const double              reach,
@@ -282,10 +284,10 @@ namespace limber
 
 
 
-  // Returns how far the others are from touching a side at least, m. Only
-  // points in cells that are as near as their material reaches and a point are
-  // asked; twice as far, as the distance from what a formula tells
-  // is of first order.
+  // Finds the contacts of a body's points; returns how far the others are from
+  // touching a side at least, m. Points are tested only in cells whose distance
+  // is within the extent of their material and a point; twice that for
+  // obstacles, as the distance of a formula is of first order.
   template <int dim>
   double
   ObstacleContact<dim>::find_points(const unsigned int      body,
@@ -476,8 +478,8 @@ namespace limber
 
 
 
-  // Seen from the box, impulses work with the velocity of the obstacle besides
-  // what points lose.
+  // In the frame of the box, impulses also do work with the velocity of the
+  // obstacle, besides what points lose.
   template <int dim>
   void
   ObstacleContact<dim>::exchange()

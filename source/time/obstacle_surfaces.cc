@@ -3,13 +3,11 @@
 
 #include <algorithm>
 
-/**
- * @file Where liquids touch the surfaces of obstacles in cells that these cut.
- */
+/** @file Contact of liquids with the surfaces of obstacles in cut cells. */
 
 namespace limber
 {
-  // Nodes of cells that obstacles cut are held by the surfaces in these.
+  // Whether a node belongs to a cut cell: the surfaces there have the contact.
   template <int dim>
   bool
   ObstacleContact<dim>::is_met_by_surface(const unsigned int  field,
@@ -21,8 +19,9 @@ namespace limber
 
 
 
-  // The mean flow through each surface, by the means of the functions over it.
-  // A surface in the face of a cell counts where it ends at one that is cut.
+  // One contact per surface, for the mean flow through it: a_pi are the means
+  // of N_i over the surface. One in the face of a cell counts where it ends at
+  // a cut cell.
   template <int dim>
   void
   ObstacleContact<dim>::add_cut_cells(const std::vector<Way> &ways,

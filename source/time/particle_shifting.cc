@@ -9,22 +9,22 @@ namespace limber
 {
   namespace
   {
-    // Way of the fastest point between two times, in cells: so short that what
-    // gathers meanwhile is little, so long that it costs little.
+    // Way of the fastest point between two shifts, in cells: so short that few
+    // points clump meanwhile, so long that it costs little.
     constexpr double interval = 0.2;
 
-    // C s: more would throw points beyond where they belong.
+    // Limit of C s: more would overshoot.
     constexpr double largest_factor = 0.5;
 
-    // In cells along an axis, each time.
+    // Limit of each shift along an axis, in cells.
     constexpr double largest_shift = 0.1;
 
-    // alpha: with C = 2, of what is even over many cells a fifth goes each
-    // time.
+    // alpha: with C = 2, a fifth of an overfill that is uniform over many cells
+    // goes with each shift.
     constexpr double share_of_room = 0.5;
 
-    // Of the excess either way. What flies apart leaves nodes nearly empty, and
-    // shall not be drawn together.
+    // Limit of |g|. What flies apart leaves nodes nearly empty, and shall not
+    // be drawn together.
     constexpr double largest_excess = 0.5;
 
     // How near to a side of the box points are shifted, in cells: closer ones
@@ -32,7 +32,7 @@ namespace limber
     // that moves, a cell: when it comes back it takes along what is in between.
     constexpr double least_distance = 0.05;
 
-    // Arrays of points are written a pack at a time.
+    // Padding: arrays of points are written a SIMD pack at a time.
     constexpr std::size_t room_for_pack = 16;
 
 
@@ -170,8 +170,8 @@ namespace limber
 
 
 
-  // m^3; 0 where it does not count. In cells that obstacles cut the control of
-  // semi-implicit steps alone keeps the volume better.
+  // Nodal volume, m^3; 0 where the node does not count: in cut cells the
+  // density control of semi-implicit steps alone keeps the volume better.
   template <int dim>
   double
   ParticleShifting<dim>::room_at(const std::uint32_t node) const
@@ -286,9 +286,10 @@ namespace limber
 
 
 
-  // Next to a surface it is not known what nodes should hold, and what excess
-  // alone counted would be noise that only grows. Where cells of several sizes
-  // meet noise is not even: a dam break with coarse cells inside rose.
+  // Add alpha phi to g. Next to a free surface it is not known what nodes
+  // should hold, and an excess that alone counted would be noise that only
+  // grows: no source there. On adaptive meshes noise is not even where cell
+  // sizes differ: a dam break with coarse cells inside rose.
   template <int dim>
   void
   ParticleShifting<dim>::make_room(const Group &group)

@@ -5,16 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
-/** @file Points of liquids that have come to be inside an obstacle. */
+/** @file Points of liquids that have penetrated an obstacle are put back. */
 namespace limber
 {
   namespace
   {
-    // So often a point is moved out of each obstacle and into the box in turn,
-    // where it is in a corner between them.
+    // Most turns of alternating projections, out of each obstacle and into the
+    // box, of a point that is in a corner between them.
     constexpr unsigned int most_turns = 8;
 
-    // Beyond the surface or within a side, in cells
+    // Where points are put: so far outside the surface or inside a side, in
+    // cells
     constexpr double beyond_surface = 1e-6;
   } // namespace
 
@@ -60,8 +61,8 @@ namespace limber
 
 
 
-  // Along the shortest way; where that leaves the box or enters another
-  // obstacle, back from there in turn.
+  // Projection onto the surface along the distance's gradient; where that
+  // leaves the box or enters another obstacle, back from there in turn.
   template <int dim>
   bool
   ObstacleContact<dim>::find_outside(const std::vector<Way>          &ways,
@@ -102,8 +103,8 @@ namespace limber
 
 
 
-  // As the impact of a point on the surface, in which it loses what of its
-  // velocity goes into it.
+  // Inelastic impact of a point on the surface: it loses its normal velocity
+  // into the obstacle.
   template <int dim>
   double
   ObstacleContact<dim>::put_out(const PointView<dim>            &points,

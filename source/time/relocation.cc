@@ -14,20 +14,20 @@ namespace limber
     // the longest way between two exchanges, in cells.
     constexpr double travel_limit = 0.9;
 
-    // How far beyond a side that holds it a point is put back, and where to,
-    // in cells. Those that go farther are lost, as the motion is unstable. What
-    // goes less far than the last has been rounded.
+    // How far beyond a closed side points may be to be put back, and where to,
+    // in cells. Those that are farther are lost, as the motion is unstable.
+    // Less than the last is round-off and not reported.
     constexpr double put_back_limit = 0.01, put_back_place = 1e-6,
                      round_off = 1e-9;
 
-    // The same of a body that feels a side at its surface: the material of a
-    // point may be thinner than it is pressed in for some steps. What goes less
-    // far than the last is nothing to tell.
+    // The same for a body that feels a side at its surface: the material of a
+    // point may be thinner than its penetration for some steps. Less than the
+    // last is not reported.
     constexpr double limit_at_surface = 0.5, usual_at_surface = 0.01;
 
 
 
-    /** Whether material cannot pass a side, which stays where it is. */
+    /** Whether material cannot pass a side, which is at rest. */
     template <int dim>
     bool
     holds_material(const Side<dim> &side)
@@ -37,12 +37,12 @@ namespace limber
 
 
 
-    /** Where points of a body are put that are hardly beyond closed sides. */
+    /** New place of a point that is hardly beyond closed sides. */
     template <int dim>
     struct PlaceInside
     {
       std::array<double, dim> x;
-      // How far beyond them a point was, cells; 0: not worth telling
+      // How far beyond them it was, in cells; 0: not to be reported
       double beyond = 0;
     };
 
@@ -81,7 +81,7 @@ namespace limber
 
 
 
-    /** A point in a cell is new there. */
+    /** Register a point in its new cell: occupied cells and cell sums. */
     template <int dim>
     void
     enter_cell(const GridView<dim>  &grid,
@@ -203,7 +203,7 @@ namespace limber
 
 
 
-  // The one reduction over ranks that every step needs.
+  // The only reduction over ranks that every step needs.
   template <int dim>
   void
   Relocation<dim>::reduce(StepExtremes &extremes)
@@ -284,8 +284,8 @@ namespace limber
 
 
 
-  // A rank knows all functions of its own cells, but of those around only
-  // linear ones.
+  // With kernels wider than a cell: a rank knows all shape functions of its own
+  // cells, but in ghost cells only linear ones.
   template <int dim>
   bool
   Relocation<dim>::bring_points_home()
@@ -299,7 +299,7 @@ namespace limber
 
 
 
-  // For points that have come to their cells other than by moving.
+  // Cell sums of points that have come to their cells other than by moving.
   template <int dim>
   void
   Relocation<dim>::gather_cells()

@@ -8,9 +8,10 @@ namespace limber
 {
   namespace
   {
-    // Eigenvalues of the matrix over its diagonal: the largest one of linear
-    // functions on squares and cubes is 1.5; the smallest one here is that of a
-    // layer of eight cells over a wall. What is deeper converges more slowly.
+    // Bounds of the eigenvalues of the matrix with Jacobi's preconditioner: the
+    // largest one of linear functions on squares and cubes is 1.5; the smallest
+    // one here is that of a layer of eight cells over a wall. What is deeper
+    // converges more slowly.
     constexpr double largest = 1.6, smallest = largest / 100;
 
     // Leaves at most 2 ((10 - 1) / (10 + 1))^20 = 4 % of the error.
@@ -75,7 +76,7 @@ namespace limber
 
 
 
-  // A slot that has been added to in cells of this rank, summed up.
+  // Sum over ranks of a slot to which cells of this rank have been added.
   template <int dim>
   void
   RoomPotential<dim>::sum_over_cells(const NodalFields<dim> &vertices,
@@ -112,7 +113,8 @@ namespace limber
 
 
 
-  // Y. Saad, Iterative methods for sparse linear systems, 2003, algorithm 12.1
+  // Chebyshev iteration: Y. Saad, Iterative methods for sparse linear systems,
+  // 2003, algorithm 12.1
   template <int dim>
   void
   RoomPotential<dim>::solve(const NodalFields<dim> &vertices)

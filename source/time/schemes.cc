@@ -6,9 +6,9 @@
 
 /**
  * @file The schemes of an explicit step: the order of its verbs. They differ in
- * when the stress follows the motion, and in whose velocity strains the
- * points: that which points bring to the nodes, the new one, or the one that
- * points would bring back with their new velocities (re-mapped).
+ * when the stress is updated (USF, USL, MUSL, USAVG), and in the velocity that
+ * strains the points: that which points bring to the nodes, the new one, or the
+ * re-mapped one, that of the points' new velocities.
  */
 namespace limber
 {
@@ -66,7 +66,7 @@ namespace limber
 
 
 
-  // The same by the velocity that the points give back to the nodes.
+  // Update stress last, by the re-mapped velocity.
   template <int dim>
   void
   ExplicitIntegrator<dim>::musl()
@@ -105,11 +105,12 @@ namespace limber
 
 
 
-  // MUSL and USAVG in the initial frame. There the functions at the points
-  // never change: what points give back to the nodes is what they bring to the
-  // next step. One velocity strains them at the end of a step and at the
-  // beginning of the next, in one sweep, which forms the forces as well.
-  // @p ahead (s) is the part that belongs to the beginning.
+  // MUSL and USAVG in the initial frame, as a leapfrog. There the shape
+  // functions at the points never change: what points give back to the nodes
+  // (re-mapped) is what they bring to the next step, without another P2G. One
+  // velocity strains them at the end of a step and at the beginning of the
+  // next, in one sweep, which forms the forces as well. @p ahead (s) is the
+  // part that belongs to the beginning.
   template <int dim>
   void
   ExplicitIntegrator<dim>::leapfrog(const double ahead)
@@ -133,7 +134,8 @@ namespace limber
 
 
 
-  // The strain of a step waits for the next, where forces are formed with it.
+  // The strain of a step is deferred to the next, where the same sweep forms
+  // the forces.
   template <int dim>
   void
   ExplicitIntegrator<dim>::usl_in_initial_frame()
@@ -152,9 +154,9 @@ namespace limber
 
 
 
-  // Steps with FLIP between two that filter the velocity. Strained by the new
-  // velocity, as these are, points would lose in each of them the work of the
-  // forces on what no point takes of it.
+  // Steps with FLIP between two that filter the velocity (XPIC, FMPM). Strained
+  // by the new velocity, as these are, points would lose in each of them the
+  // work of the forces on the part of it that no point takes.
   template <int dim>
   void
   ExplicitIntegrator<dim>::between_filters()
@@ -199,8 +201,8 @@ namespace limber
 
 
 
-  // Whether a side that lets go holds a node, or bodies press each other or an
-  // obstacle there, is up to the force as well.
+  // Whether contact or a separating side is active at a node depends on the
+  // force as well.
   template <int dim>
   bool
   ExplicitIntegrator<dim>::needs_trial_force() const
@@ -210,8 +212,8 @@ namespace limber
 
 
 
-  // Where nothing has touched in the step before, what does now is known before
-  // the forces: nearly always nothing.
+  // Without contact in the step before, it is looked for before the forces are
+  // known: nearly always there is none, and they are not needed.
   template <int dim>
   void
   ExplicitIntegrator<dim>::p2g_before_strain()
@@ -234,7 +236,8 @@ namespace limber
 
 
 
-  // All forces are known but those that stress does not make.
+  // From the forces of the stress to the new velocity: all other forces,
+  // contact and sides.
   template <int dim>
   void
   ExplicitIntegrator<dim>::accelerate_nodes()
@@ -252,13 +255,15 @@ namespace limber
 
 
 
-  // What makes f = 1 + a + c a^2 that by which points move, a being the part of
-  // the step that is strained at a time. With the new velocity x' = (1 + a) x;
-  // the velocity that points bring has moved them by (1 - a)^-1 before. The
-  // forces of USAVG are those of the middle of the step at the places of its
-  // beginning: strained as they move, 1 + a + b (c = -1/2 in each half), bodies
-  // that turn by w would gain w^2 dt t of their energy; strained by exp(a)
-  // exp(b) they keep it and grow by half of that.
+  // Coefficient c of the increment f = 1 + a + c a^2 of the deformation
+  // gradient, a = dt grad v over the part of the step that is strained at a
+  // time, so that f is that of the motion of the points. With the new velocity
+  // x' = (1 + a) x; the velocity that points bring (USF) has moved them by
+  // (1 - a)^-1 before. The forces of USAVG are those of the middle of the step
+  // at the places of its beginning: strained as they move, 1 + a + b (c = -1/2
+  // in each half), bodies that turn by w would gain the fraction w^2 dt t of
+  // their energy; strained by exp(a) exp(b) they keep it, and their radius
+  // grows by half of that.
   template <int dim>
   double
   ExplicitIntegrator<dim>::square_of_strain() const
@@ -281,9 +286,11 @@ namespace limber
 
 
 
-  // What would grow does so by gravity. With a tenth of this, water at rest
-  // around a disc on 32 x 48 cells has seven times the energy; without a limit
-  // the water that slips along a disc that moves is held.
+  // The motion that alternates along a surface grows by gravity
+  // (Rayleigh-Taylor), at a rate of about sqrt(g/h). With a tenth of this
+  // damping, water at rest around a disc on 32 x 48 cells has seven times the
+  // energy; without a limit the water that slips along a disc that moves is
+  // held.
   template <int dim>
   double
   ExplicitIntegrator<dim>::share_of_smoothing() const

@@ -6,10 +6,8 @@
 
 namespace limber
 {
-  /**
-   * The room of the vertices of a mesh, R_i, the integral of N_i over what
-   * obstacles leave of the box, in m^3: what a liquid fills around them.
-   */
+  /** Nodal volumes of the vertices of a mesh: R_i, the integral of N_i over
+   * what obstacles leave of the box, m^3; a liquid fills it inside. */
   template <int dim>
   class NodeRooms
   {
@@ -21,7 +19,7 @@ namespace limber
     void
     reinit();
 
-    /** Whether obstacles take some of the room of a vertex. */
+    /** Whether obstacles take some of the volume of a vertex. */
     bool
     is_at_obstacle(const std::uint32_t node) const
     {
@@ -29,8 +27,8 @@ namespace limber
                                       cut_cells->covered_corners()[node] > 0);
     }
 
-    /** R_i; zero where obstacles leave so little that a single point would be
-     * far too much. */
+    /** R_i; zero where obstacles leave so little (small cut) that a single
+     * point would overfill it by far. */
     double
     at(const std::uint32_t node) const
     {

@@ -13,40 +13,40 @@
 namespace limber
 {
   /**
-   * Contact of bodies with rigid obstacles (Obstacle) where the material of
-   * their points ends (ContactImpulses). With the distance phi(x_p) of a point
-   * from the obstacle, n = grad phi, and R_p, how far the material of the point
-   * goes towards it, the gap
+   * Contact of bodies with rigid obstacles (Obstacle) at the surface of their
+   * material, not at the points (ContactImpulses). With the signed distance
+   * phi(x_p) of a point from the obstacle, n = grad phi, and the extent R_p of
+   * the material of the point along -n, the gap
    *
    *   g_p = phi(x_p) - R_p
    *
-   * must not become negative. It grows by w . n, the velocity against the
-   * obstacle at the surface,
+   * must not become negative. Its rate is w . n with the velocity of the
+   * surface relative to the obstacle,
    *
    *   w = v(x_p) - R_p grad v(x_p) n - v_o = sum_i a_pi v_i - v_o,
    *   a_pi = N_i(x_p) - R_p n . grad N_i(x_p),
    *
-   * which is therefore at least -g_p / dt. The impulse that this takes acts at
-   * the surface, so that the stress reaches it. What has gone in nevertheless
-   * comes out slowly.
+   * and therefore at least -g_p / dt. The impulse that this takes acts at the
+   * surface, so that the stress reaches it. A penetration is removed slowly
+   * (least_growth()).
    *
-   * R_p is the stretch across the surface times what it is without: the
-   * distance of the point from the surface of its body where it is the last of
-   * its row there, half the edge of its cube else.
+   * R_p is the undeformed extent times the stretch along n: the distance from
+   * the surface of the body for the outermost point of a row, half the edge of
+   * the point's cube for others.
    *
    * In the initial frame grad N = F^-T grad_X N and b = F F^T.
    *
-   * A liquid has no surface that its points could tell: it is held at nodes of
-   * whose mass enough is that of points within half their edge of the obstacle,
-   * with the mean of their normals. At the corner of an obstacle that is not
-   * enough of it, though all the pressure around acts on a node there. A node
-   * in the surface is therefore held against forces in any case, and against
-   * the momentum of the points that touch, while what others bring goes on past
-   * the corner.
+   * The points of a liquid define no surface: it is held at nodes of whose mass
+   * a sufficient share is that of points within half their edge of the
+   * obstacle, along the mean of their normals. At a corner of an obstacle this
+   * share is too small, though the pressure in all cells around acts on the
+   * node there. A node in the surface is therefore held against forces in any
+   * case, and against the momentum of the points that touch, while that of
+   * other points passes the corner.
    *
-   * What presses in the new velocity does so in every other one of the step.
-   * The velocity of the obstacle is that of its way over the step, so that its
-   * place and that of what it pushes stay together.
+   * Contacts that are active for the new velocity are so for every other
+   * velocity of the step. The velocity of the obstacle is its displacement in
+   * the step over dt, so that it does not drift relative to what it pushes.
    *
    * Sides of the box that meet surfaces (Side) are half-spaces at rest beyond
    * their faces, for bodies of the nodal fields that feel them so
@@ -71,19 +71,17 @@ namespace limber
     void
     reinit();
 
-    /**
-     * Where obstacles are touched at the beginning of a step; collective. The
-     * masses of nodes are known.
-     */
+    /** Find the contacts at the beginning of a step; collective. The masses of
+     * nodes are known. */
     void
     find(double time, double step);
 
-    /** No point has gone farther in the step than @p way, about, m; the same on
-     * all ranks. */
+    /** No point has moved by more than about @p way, m, in the step: what was
+     * farther from a side needs no search yet. The same on all ranks. */
     void
     approach(double way);
 
-    /** Whether anything presses or may do so; of this rank. */
+    /** Whether this rank has contacts, active or possible ones. */
     bool
     any() const
     {
@@ -91,8 +89,9 @@ namespace limber
     }
 
     /**
-     * Hold the velocity at @p slot as the new one is going to be held, that is
-     * (p + dt f) / m + dt g, with the force in the records.
+     * Impose the contacts on the velocity at @p slot as they are going to be on
+     * the new one, that is (p + dt f) / m + dt g, with the force in the
+     * records.
      */
     void
     hold_before(unsigned int slot, double step);
@@ -104,12 +103,12 @@ namespace limber
       std::uint32_t          node;
       dealii::Tensor<1, dim> normal;
       double                 least;
-      // Of its impulse, the part that is one of this rank, number:
+      // Share of this rank in its impulse, and the number of that impulse:
       double      share;
       std::size_t place;
     };
 
-    /** Those of liquids that this rank knows, also by points of others. */
+    /** Nodes of liquids that this rank knows, also by points of others. */
     const std::vector<HeldNode> &
     held_nodes() const
     {
@@ -117,9 +116,10 @@ namespace limber
     }
 
     /**
-     * Call work(cell, k, least, number) for the surfaces that press a liquid or
-     * may do so: surface k of a cell of this rank (CutCells), which the mean
-     * velocity over it has to leave with at least @p least, m/s.
+     * Call work(cell, k, least, number) for the surfaces with an active or
+     * possible contact of a liquid: surface k of a cell of this rank
+     * (CutCells), on which the mean normal velocity is to be at least @p least,
+     * m/s.
      */
     template <class Work>
     void
@@ -135,26 +135,30 @@ namespace limber
         }
     }
 
-    /** On all ranks: surfaces are going to be given impulses. */
+    /** On all ranks: impulses of surfaces are going to be prescribed by
+     * give(). */
     void
     expect_given()
     {
       impulses.expect_given();
     }
 
-    /** What a surface is known to press with in this step, kg m/s, by the
-     * number that for_each_surface() has for it; or a node, by its place. */
+    /**
+     * Prescribe the impulse of a surface in this step, kg m/s, known from its
+     * implicit pressure, by the number that for_each_surface() has for it; or
+     * that of a node, by its place.
+     */
     void
     give(const std::size_t number, const double impulse)
     {
       impulses.give(number, impulse);
     }
 
-    /** Exchange momentum: changes new velocities and increments. */
+    /** Apply the contact impulses: changes new velocities and increments. */
     void
     exchange();
 
-    /** Hold another velocity as the new one has been held. */
+    /** Impose the contacts on another velocity as on the new one. */
     void
     hold(unsigned int slot);
 
@@ -166,11 +170,11 @@ namespace limber
     hold_after(unsigned int slot, double flip_share);
 
     /**
-     * Put points of liquids that a step has left inside an obstacle, as the
+     * Put points of liquids that a step has left inside an obstacle, as
      * surfaces in cells hold the mean flow only, back onto its surface, and
-     * take what of their velocity goes into it: the impact of a point, which is
-     * on record in the ledger. Returns the longest way on this rank in cells, 0
-     * where there was none: otherwise the sums of cells are out of date.
+     * remove their normal velocity into it: an inelastic impact, which is in
+     * the ledger. Returns the longest way on this rank in cells, 0 where there
+     * was none: otherwise the sums of cells are out of date.
      */
     double
     put_out(double time, double step);
@@ -180,12 +184,12 @@ namespace limber
     using Vector = dealii::Tensor<1, dim>;
     using Place  = typename ContactImpulses<dim>::Place;
 
-    /** What belongs to an impulse. */
+    /** What the balance of an obstacle needs of an impulse. */
     struct Touch
     {
       unsigned int obstacle;
       Vector       arm; // from the centre of the obstacle, m
-      // What the pressure there has beyond that of the piece presses, which
+      // Part of the hydrostatic pressure beyond the mean over the piece, which
       // acts on the nodes as a load (HydrostaticLoad), kg m/s
       double beyond = 0;
     };
@@ -246,11 +250,11 @@ namespace limber
       RecordExchange    exchange{stride};
     };
 
-    /** Faces at a node between cells that obstacles take and open ones: walls
-     * that hold it, where it is full, whether points touch them or not. */
+    /** Faces at a node between cells that obstacles cover and open ones: walls
+     * that hold a node full of liquid, whether points touch them or not. */
     struct Walls
     {
-      // By direction, towards what is open: -1 or 1; 0: none
+      // By direction, sign of the axis towards the open cells; 0: no wall
       std::array<int, dim> across{};
       // Share of the open cells around the node that have such a face
       double open_at_walls = 1;
@@ -335,7 +339,7 @@ namespace limber
     std::vector<Obstacle<dim>> rigid;
     std::vector<unsigned int>  sides_that_meet;
     SideConstraints<dim>       sides;
-    // Of fields that meet sides, what is left to their nodes
+    // Conditions at nodes for fields that meet sides at surfaces
     const Sides<dim>          other_sides;
     SideConstraints<dim>      of_other_sides;
     std::vector<double>       edge; // largest of the points of a body, m
@@ -346,15 +350,17 @@ namespace limber
     std::vector<SurfacePlace> surface_places;
     std::vector<HeldNode>     nodes_held;
     std::vector<Wall>         walls; // of the point that is put out
-    // Of an obstacle, from the middles of what is in cells when they asked, m,
-    // 0 where nobody has; and where these were in its frame then
+    // By obstacle and cell, cached: distance from the centre of the cell's
+    // material, m, 0 where not evaluated; and that centre then, in the
+    // obstacle's frame
     std::vector<LazyArray<double>> cell_distance;
-    // Of bodies, where there are sides alone: how far they still are from
+    // By body, where there are sides alone: how far it still is at least from
     // touching one, m
     std::vector<double> room;
     // Where the nodes are, in scenes with liquids, if they are vertices
     std::vector<dealii::Point<dim>> vertices;
-    // Of obstacles at rest, then by node: whether it is in them (2) or not (1)
+    // Cached for obstacles at rest, by node: whether it is in them (2) or not
+    // (1)
     std::vector<LazyArray<std::uint8_t>> known_nodes;
   };
 } // namespace limber

@@ -17,20 +17,20 @@ namespace limber
    * 1499-1523).
    *
    * The mean divergence of a cell conserves the volume of the flow, but points
-   * follow the velocity at their own places: they gather where its divergence
-   * is below the mean, and what has clumped weighs more than the pressure of
-   * its cells can tell. It sinks, and the liquid loses volume. So points move
-   * down the gradient of the excess g of what nodes hold,
+   * follow the velocity at their own places: they clump where its divergence is
+   * below the mean, and a clump is heavier than the pressure of its cells
+   * accounts for. It sinks, and the liquid loses volume. So points move down
+   * the gradient of the relative overfill g of nodes,
    *
    *   g_i = sum_p N_i(x_p) V_p / R_i - 1,
    *   delta_p = - C s h^2 grad (g + alpha phi)(x_p),
    *
-   * and, as an excess that is even has no gradient, of the potential phi that
-   * makes room for it (RoomPotential; compare the implicit density projection
-   * of T. Kugelstadt, A. Longva, N. Thuerey and J. Bender, IEEE TVCG 27, 2021),
-   * with the room R_i of a node, the integral of N_i over what obstacles leave
-   * of the box; s, in cells, is how far the fastest point has moved since the
-   * last time, and C the body's 'Particle shifting'.
+   * and, as a uniform overfill has no gradient, of the potential phi that makes
+   * room for it (RoomPotential; compare the implicit density projection of T.
+   * Kugelstadt, A. Longva, N. Thuerey and J. Bender, IEEE TVCG 27, 2021). R_i
+   * is the nodal volume, the integral of N_i over what obstacles leave of the
+   * box; s, in cells, is how far the fastest point has moved since the last
+   * time, and C the body's 'Particle shifting'.
    *
    * A density that alternates from cell to cell (stripes two cells wide, or a
    * checkerboard) is in the null space of g: every node has as much of one as
@@ -44,7 +44,7 @@ namespace limber
    * pass faces; and within a cell by the linear interpolation between opposite
    * faces (lowest order Raviart-Thomas). It takes C s / dim of stripes.
    *
-   * Next to cells at a surface R_i is not known to be filled: only an excess of
+   * Next to cells at a free surface R_i is not known to be filled: only an excess of
    * nodes counts there, and nothing passes faces. Nothing is done beside solids
    * and other fields, and neither phi nor faces count on cells of several
    * sizes. Velocities stay; the potential energy that
@@ -98,8 +98,8 @@ namespace limber
     using MaterialBody                      = limber::MaterialBody<dim>;
     static constexpr unsigned int n_corners = 1 << dim;
 
-    /** Liquids that give to the same nodes; other bodies that do, which take
-     * their room; and those with nodes of their own. */
+    /** Liquids of one nodal field; other bodies of this field, which take part
+     * of its nodal volumes; and bodies of other fields. */
     struct Group
     {
       std::vector<MaterialBody *> liquids, neighbours, others;
@@ -108,8 +108,11 @@ namespace limber
     /** By direction, at both ends. */
     using Faces = std::array<std::array<double, 2>, dim>;
 
-    /** Of a vertex: the volume of points around it (m^3), later the excess g;
-     * more than zero next to a cell at a surface, or one that others share. */
+    /**
+     * Offsets by vertex: volume of points around it (m^3), later the overfill
+     * g; more than zero next to a cell at a free surface, or next to one with
+     * bodies of other fields.
+     */
     struct Record
     {
       static constexpr unsigned int excess     = 0;

@@ -8,7 +8,7 @@
 
 namespace limber
 {
-  /** The largest that a step finds on its way, on this rank or over all. */
+  /** Maxima found during a step, on this rank or over all. */
   struct StepExtremes
   {
     double speed_squared = 0;     // of points, m^2/s^2
@@ -20,9 +20,9 @@ namespace limber
 
 
   /**
-   * What happens to points between the sweeps of two steps, however they are
-   * moved: cells and sums that follow them, order in memory, changes of rank,
-   * losses.
+   * Bookkeeping of points between the sweeps of two steps, however they are
+   * moved: their cells and the sums over cells, order in memory, migration
+   * between ranks, losses.
    */
   template <int dim>
   class Relocation
@@ -35,7 +35,7 @@ namespace limber
     void
     reinit();
 
-    /** The extremes over all ranks, in place. */
+    /** Reduce the extremes over all ranks, in place. */
     void
     reduce(StepExtremes &extremes);
 
@@ -50,15 +50,16 @@ namespace limber
     }
 
     /**
-     * After the points have moved: the extremes over all ranks, losses, cells
-     * that were entered, and the complete sums of the new places; where any
-     * have @p moved_again since they were added to these, so far in cells, of
-     * all points anew.
+     * After the points have moved: reduce the extremes over all ranks, handle
+     * losses and newly occupied cells, and complete the cell sums at the new
+     * places. If points have @p moved_again after they were added to these
+     * (their longest way, in cells), the sums are formed anew from all points.
      */
     void
     end_step(StepExtremes &extremes, double moved_again = 0);
 
-    /** See Integrator; the last step has moved points so far, in cells. */
+    /** See Integrator; @p displacement is the way of points in the last step,
+     * in cells. */
     bool
     reorganise(double displacement);
 
@@ -77,7 +78,7 @@ namespace limber
     void
     adopt_places();
 
-    /** Of the cells that hold points, over all ranks, m. */
+    /** Smallest edge of the cells that hold points, over all ranks, m. */
     double
     smallest_edge() const
     {
@@ -112,7 +113,7 @@ namespace limber
 
     std::vector<LostPointOfBody<dim>> lost; // in the last step, on this rank
 
-    // Over all ranks
+    // Maxima over all ranks
     double any_lost            = 0;
     double farthest_again      = 0; // in cells
     double any_entered_shared  = 0;

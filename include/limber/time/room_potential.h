@@ -9,16 +9,17 @@
 namespace limber
 {
   /**
-   * Where a liquid has to go that takes less room than it should everywhere:
-   * the potential phi with
+   * Displacement potential phi that makes room for a liquid whose nodes are
+   * uniformly overfilled, its points taking less volume than they should:
+   * Poisson's equation
    *
    *   - div (grad phi) = g,   phi = 0 at free surfaces,
    *
-   * in natural coordinates of the cells, by linear functions. What moves
-   * by - grad phi (in cells) grows by the excess g of what nodes hold, walls
-   * let nothing pass, and the surface gives way. Chebyshev's iteration, of few
-   * steps: it needs no sums over all nodes, and waves longer than it resolves
-   * are left to the next time. For cells of one size.
+   * with natural conditions (no flux) at walls, in natural coordinates of the
+   * cells, by linear functions. Points that move by - grad phi (in cells)
+   * expand by the overfill g. Solved by few steps of Chebyshev's iteration: it
+   * needs no sums over all nodes (dot products), and waves longer than it
+   * resolves are left to the next time. For cells of one size.
    */
   template <int dim>
   class RoomPotential
@@ -32,7 +33,7 @@ namespace limber
     void
     reinit();
 
-    /** Begin anew with these nodes, active of @p vertices. */
+    /** Start a new system with these nodes, active of @p vertices. */
     void
     clear(const NodalFields<dim> &vertices);
 
@@ -41,8 +42,8 @@ namespace limber
     void
     add_cell(std::uint32_t cell, double volume);
 
-    /** The source of a node: its excess g times its room, m^3. A node at a
-     * free surface is fixed. Once per node, the same on all ranks. */
+    /** Set the source of a node: its overfill g times its nodal volume, m^3. A
+     * node at a free surface is fixed. Once per node, the same on all ranks. */
     void
     set_source(const std::uint32_t node, const double source, const bool fixed)
     {
