@@ -17,7 +17,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::clear()
   {
-    if (unstrained > 0) // what else they know is still wanted
+    if (unstrained > 0) // strain is deferred: other slots are still needed
       for (const std::uint32_t node : parts.nodes.active_nodes())
         std::fill_n(parts.nodes.record(node) + Layout::force, dim, 0.);
     else
@@ -116,7 +116,7 @@ namespace limber
       gravity_step[d] = step * parts.problem.loads.gravity[d];
 
     double total_mass = 0, checked_speed = 0, all = 0;
-    // A node that only touches the material may be fast for a moment.
+    // A node of hardly any mass (small cut) may be fast for a moment.
     const double checked_mass = 0.1 * extremes.largest_mass;
     extremes.largest_mass     = 0;
     parts.nodes.for_each_field([&]() {
@@ -157,7 +157,7 @@ namespace limber
 
 
 
-  // Their largest speed, anew, after something else has changed it.
+  // Find the largest nodal speed anew, after velocities have been changed.
   template <int dim>
   void
   ExplicitIntegrator<dim>::measure_nodes()
@@ -268,7 +268,8 @@ namespace limber
 
 
 
-  // Before obstacles act: by what the velocities before the step ask for.
+  // Damps what alternates along surfaces of obstacles (SmoothSurfaces), before
+  // contact: by what the velocities before the step ask for.
   template <int dim>
   void
   ExplicitIntegrator<dim>::smooth_surfaces(const double share)
@@ -317,7 +318,7 @@ namespace limber
 
 
 
-  // A velocity that strains points: mass and momentum are known.
+  // The velocity that strains points, from mass and a momentum.
   template <int dim>
   void
   ExplicitIntegrator<dim>::form_velocity(const unsigned int momentum)
@@ -340,7 +341,8 @@ namespace limber
 
 
 
-  // That which points bring, with the sides on it.
+  // The same of the momentum that points bring, with contact and sides: for
+  // strain at the start of a step (USF, USAVG).
   template <int dim>
   void
   ExplicitIntegrator<dim>::form_velocity_before()
@@ -363,7 +365,8 @@ namespace limber
 
 
 
-  // That which they give back.
+  // The same of the re-mapped momentum: for strain at the end of a step (MUSL,
+  // USAVG).
   template <int dim>
   void
   ExplicitIntegrator<dim>::form_velocity_after()
@@ -375,7 +378,7 @@ namespace limber
       obstacles->hold_after(Layout::strain_velocity, flip_share());
     lap(Verb::touch);
     parts.nodes.for_each_field([&]() {
-      if (!leapfrogs()) // which keeps other things where increments have been
+      if (!leapfrogs()) // whose former velocities take the slot of increments
         {
           const auto action =
             boundaries.action_on_remapped(parts.nodes, Layout::strain_velocity);
@@ -477,7 +480,7 @@ namespace limber
 
 
 
-  // Pictures of the nodes want a velocity where the momentum is.
+  // For output of nodal velocities: their slot holds momenta in a leapfrog.
   template <int dim>
   void
   ExplicitIntegrator<dim>::show_velocity()
@@ -493,8 +496,8 @@ namespace limber
 
 
 
-  // From the new velocity to that of the middle of the step, with which points
-  // move to second order in time; or the mean of the two that strain them.
+  // The midpoint velocity, with which points move to second order in time; or
+  // the mean of the two velocities that strain them.
   template <int dim>
   void
   ExplicitIntegrator<dim>::centre_velocity()

@@ -17,9 +17,9 @@ namespace limber
 
 
 
-  // Forces on the nodes at a time, N; @p given are those of them that are not
-  // the weight, with what holds part of it while the load grows. Pressures are
-  // not among them (FollowerLoads).
+  // External forces on the nodes at a time, N, without follower loads. @p
+  // given: the same less the full weight, i.e. loads and, as long as the load
+  // factor is not 1, what it changes of the weight.
   template <int dim>
   typename NewtonIntegrator<dim>::Values
   NewtonIntegrator<dim>::loads_at(const double time, Values *const given)
@@ -50,12 +50,11 @@ namespace limber
 
 
 
-  // Loads and sides work along the way of the step with the mean of their
-  // forces; what is spent on jumps of the strain is lost. So is, in
-  // equilibrium, the work of forces that were out of balance when the step
-  // began: points that have crossed cells give theirs to other nodes, the ghost
-  // penalty begins anew, and what is loaded springs to its new place as if
-  // damped.
+  // Loads and sides do work on the displacement with the mean of their forces
+  // at both ends; the work of the ghost penalty is lost. So is, in equilibrium,
+  // the work of residual forces at the start of the step: points that have
+  // crossed cells act on other nodes, the ghost penalty starts from zero, and a
+  // body jumps to its new equilibrium as if damped.
   template <int dim>
   void
   NewtonIntegrator<dim>::account(const StepQuestion &question,
@@ -66,7 +65,7 @@ namespace limber
                                  const double        time,
                                  const double        step)
   {
-    // All ranks know the same of nodes; what is on record they sum up.
+    // Nodal values are the same on all ranks, but ledgers are summed.
     if (dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator) > 0)
       return;
     Ledger<dim> &ledger = parts.ledger;
@@ -97,8 +96,8 @@ namespace limber
             const double change = masses[k] * (new_velocity[k] - velocities[k]);
             force = mean = change / step -
                            0.5 * (question.external[k] - equations.forces()[k]);
-            // What points bring and the side does not have is lost as in an
-            // impact.
+            // What the velocity of the points differs from that of the side is
+            // lost as in an impact.
             ledger.viscous +=
               change * (displacement[k] / step -
                         0.5 * (new_velocity[k] + velocities[k]));

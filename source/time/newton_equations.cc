@@ -13,12 +13,11 @@ namespace limber
 {
   namespace
   {
-    // In mixed form the matrix keeps what volumes resist with in a material
-    // whose bulk modulus is that many shear moduli (nu = .35): multigrid then
-    // sees one that is well compressible, and not the deviator alone. In cells
-    // that are cut it is more, over the square root of the part that is filled:
-    // their nodes hang on those of others, which are stiffer. Found by counting
-    // iterations.
+    // The bulk modulus that remains in the matrix of displacements in mixed
+    // form, in shear moduli (nu = .35): multigrid then sees a compressible
+    // material, not the deviator alone. In cut cells it is more, over the
+    // square root of the filled fraction: their nodes depend on those of
+    // others, which are stiffer. Found by counting iterations.
     constexpr double kept_bulk = 3;
   } // namespace
 
@@ -100,7 +99,7 @@ namespace limber
 
 
 
-  // Young's, of the stiffest body
+  // Young's modulus of the stiffest body
   template <int dim>
   double
   NewtonEquations<dim>::largest_modulus() const
@@ -113,7 +112,7 @@ namespace limber
 
 
 
-  // g E of the softest body in each cell, Pa.
+  // Stiffness of the ghost penalty: g E of the softest body in each cell, Pa.
   template <int dim>
   std::vector<double>
   NewtonEquations<dim>::moduli_of_penalty() const
@@ -172,6 +171,7 @@ namespace limber
   std::optional<FreeMotion<dim>>
   NewtonEquations<dim>::free_motion() const
   {
+    // Connected components by union-find with path halving
     std::vector<std::uint32_t> root(nodes.n_cells());
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](std::uint32_t i) {
@@ -342,7 +342,8 @@ namespace limber
 
 
 
-  // Into the tangent, but for what pressures of the mixed form carry.
+  // Volumetric stiffness of a cell: into the tangent, but for the part that the
+  // mixed form has in its pressure unknowns.
   template <int dim>
   void
   NewtonEquations<dim>::add_volume(
@@ -377,7 +378,7 @@ namespace limber
 
 
 
-  // What mixed form has kept apart, for a factorisation of the whole
+  // Static condensation of the pressures of the mixed form, for a factorisation
   template <int dim>
   void
   NewtonEquations<dim>::condense_volumes()
@@ -400,9 +401,10 @@ namespace limber
 
 
 
-  // Where nodes are at the start of the step. In the initial frame the lattice
-  // stays where the body was at first; what moves with each node follows from
-  // the points in its cells, as far as they tell a linear motion exactly.
+  // Positions of the nodes at the start of the step. In the initial frame the
+  // lattice stays where the body was at first; the current position of a node
+  // follows from the points in its cells, extrapolated by their F: exactly for
+  // a linear motion.
   template <int dim>
   void
   NewtonEquations<dim>::find_places()
@@ -444,7 +446,8 @@ namespace limber
 
 
 
-  // One after the other, of the body as it was where the tangent was taken
+  // Rigid body modes (for multigrid), one after the other, in the configuration
+  // of the last tangent
   template <int dim>
   std::vector<double>
   NewtonEquations<dim>::rigid_motions() const
@@ -508,8 +511,8 @@ namespace limber
     double all = 0;
     for (std::size_t k = 0; k < size(); ++k)
       {
-        // multigrid leaves round-off on what is held, by which Newton's method
-        // would never arrive
+        // multigrid leaves round-off on held components, with which Newton's
+        // method would never converge
         correction[k] = is_held(k) ? of_held[k] : solution[k];
         all += std::abs(correction[k]);
       }

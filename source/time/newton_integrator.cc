@@ -249,7 +249,7 @@ namespace limber
 
   namespace
   {
-    // Sweeps that map velocities map accelerations of such a view.
+    // View by which P2G and G2P of velocities map accelerations.
     template <int dim>
     PointView<dim>
     with_acceleration_as_velocity(PointView<dim> points)
@@ -276,7 +276,8 @@ namespace limber
 
 
 
-  // Means by mass of velocities or accelerations; also the masses.
+  // P2G: mass-weighted means of velocities or accelerations at the nodes; also
+  // the lumped masses.
   template <int dim>
   void
   NewtonIntegrator<dim>::gather(const bool of_acceleration, Values &means)
@@ -333,7 +334,7 @@ namespace limber
     followers.set(time, load_factor(time));
     equations.evaluate(displacement, nullptr);
     const Values former_followers = equations.follower_forces();
-    Values       net(equations.size()); // as they would accelerate
+    Values       net(equations.size()); // out of balance
     for (std::size_t k = 0; k < equations.size(); ++k)
       net[k] = former_loads[k] + former_followers[k] - equations.forces()[k];
     if (!in_motion)
@@ -347,7 +348,7 @@ namespace limber
     followers.add_forces(displacement, question.followers_at_rest);
     equations.numbered_nodes().sum(question.followers_at_rest);
 
-    // What starts has the acceleration that its forces give it.
+    // Consistent initial acceleration from the forces
     Values former_acceleration = accelerations;
     if (scheme.needs_acceleration() && time == 0)
       for (std::size_t k = 0; k < equations.size(); ++k)
@@ -374,8 +375,8 @@ namespace limber
     if (!stays_with_ranks(displacement))
       return false;
 
-    // Pressures are known now; to the account they are loads like others, and
-    // the forces of both ends count alike.
+    // Follower loads are known now; to the account they are loads like others,
+    // and the forces of both ends count alike.
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         question.external[k] +=
@@ -385,7 +386,7 @@ namespace limber
           0.5 * (former_followers[k] + equations.follower_forces()[k]);
       }
 
-    // Sides say how fast they are at the end, and how much faster than before.
+    // Velocities of sides at the end, and accelerations by their change.
     Values new_velocity(equations.size()), new_acceleration(equations.size());
     if (in_motion)
       {
@@ -416,7 +417,8 @@ namespace limber
 
 
 
-  // Of several ranks: each knows one layer of cells around its own.
+  // On several ranks no node may move by more than a cell: there is one layer
+  // of ghost cells.
   template <int dim>
   bool
   NewtonIntegrator<dim>::stays_with_ranks(const Values &displacement)
@@ -460,7 +462,7 @@ namespace limber
 
 
 
-  // The points take what has been found, at their former places.
+  // Update the points, at their former places, and account for it.
   template <int dim>
   void
   NewtonIntegrator<dim>::take_motion(const Values &displacement,
@@ -488,7 +490,7 @@ namespace limber
     });
     if (in_motion)
       {
-        // Points get less of short waves than lumped masses have.
+        // G2P gives points less of short waves than the lumped masses have.
         double expected = kinetic_energy();
         for (std::size_t k = 0; k < equations.size(); ++k)
           if (nodes.owns(k / dim))

@@ -15,19 +15,21 @@ namespace limber
     constexpr double infinite = std::numeric_limits<double>::infinity();
 
     constexpr unsigned int most_newton_iterations = 20;
-    constexpr unsigned int most_searches          = 8; // of a line, by halves
+    constexpr unsigned int most_searches          = 8;    // backtracking steps
     constexpr double       sufficient_decrease    = 1e-4; // Armijo
-    // Where a body flies freely, inertia is a difference of numbers that are
-    // alike, and below this share of them nothing but round-off.
+    // Where a body flies freely, inertia is a difference of nearly equal
+    // numbers, and below this share of them nothing but round-off.
     constexpr double known_share = 1e-6;
-    // The ghost penalty begins anew so often within a step, each time from what
-    // is out of balance by less than this share. A beam that has been bent by
-    // its length and let go stays bent by 1.4 % without, by 0.04 % with one, by
-    // 1e-5 with two, which cost less than one iteration.
+    // The ghost penalty is restarted so often within a step (its reference is
+    // set to the current displacement), each time when the relative residual is
+    // below this share. A beam that has been bent by its length and let go
+    // stays bent by 1.4 % without, by 0.04 % with one restart, by 1e-5 with
+    // two, which cost less than one iteration.
     constexpr unsigned int most_renewals = 2;
     constexpr double       nearly_found  = 0.1;
-    // As a share of the strain energy: too little to matter. Cook's membrane
-    // would take twice the iterations with a tenth of it.
+    // Share of the strain energy below which the ghost penalty does not matter
+    // and is not restarted. Cook's membrane would take twice the iterations
+    // with a tenth of it.
     constexpr double known_ghost_energy = 1e-4;
 
 
@@ -74,8 +76,6 @@ namespace limber
 
 
 
-  // As if nothing accelerated, where that is nearer to balance than no
-  // displacement.
   template <int dim>
   void
   NewtonMethod<dim>::guess(const StepQuestion &question, Values &displacement)
@@ -130,8 +130,8 @@ namespace limber
 
 
 
-  // Whose derivative is the unbalance, but for the work of follower loads,
-  // which is that of the mean of their forces before and after.
+  // Total potential, whose derivative is the residual, but for the work of
+  // follower loads, which is that of the mean of their forces before and after.
   template <int dim>
   double
   NewtonMethod<dim>::potential(const StepQuestion &question,
@@ -165,15 +165,15 @@ namespace limber
     rest = unbalance(question, displacement, left);
     while (true)
       {
-        double remaining = 0; // of the way of held components
+        double remaining = 0; // of prescribed displacements
         for (std::size_t k = 0; k < equations.size(); ++k)
           if (equations.is_held(k))
             {
               of_held[k] = question.held[k] - displacement[k];
               remaining  = std::max(remaining, std::abs(of_held[k]));
             }
-        // What has nearly been found need not be resisted: nodes that hardly
-        // anything holds are where they are going to be.
+        // Near convergence the ghost penalty is relaxed: nodes of small cuts
+        // are about where they are going to be.
         if (remaining == 0 && rest <= nearly_found && n_iterations > 0 &&
             renewals < most_renewals &&
             equations.ghost_energy() > known_ghost_energy * equations.energy())
@@ -203,7 +203,7 @@ namespace limber
         clock.lap(NewtonVerb::solve_equations);
         if (!solved)
           {
-            // shorter steps have this first correction, too
+            // shorter steps would fail alike with their first correction
             if (equations.is_too_large() && n_iterations == 1)
               refuse(equations.obstacle());
             reason = equations.obstacle();
@@ -230,8 +230,9 @@ namespace limber
 
 
 
-  // Goes along the correction until energy or unbalance are less; where these
-  // are infinite, until no point is turned inside out.
+  // Backtracking line search along the correction, until the potential (Armijo)
+  // or the residual decreases enough; where these are infinite, until no point
+  // is inverted.
   template <int dim>
   bool
   NewtonMethod<dim>::improves(const StepQuestion &question,

@@ -159,7 +159,7 @@ namespace limber
 
 
 
-  // What this rank's grid knows of them
+  // Nodes on this rank's grid, and the owners of all
   template <int dim>
   void
   NumberedNodes<dim>::find_on_grid(const std::vector<std::uint32_t> &own_cells)
@@ -248,8 +248,8 @@ namespace limber
 
 
 
-  // On one rank, and handed out: MPI_Allreduce may round differently here and
-  // there.
+  // Reduced on one rank and broadcast: MPI_Allreduce may round differently on
+  // different ranks.
   template <int dim>
   void
   NumberedNodes<dim>::sum(double *const values, const std::size_t n) const

@@ -10,7 +10,8 @@ namespace limber
 {
   namespace
   {
-    // More change little, one is less: found with water around a disc at rest.
+    // Jacobi iterations: more change little, one is less; found with water
+    // around a disc at rest.
     constexpr unsigned int n_passes = 2;
 
     /** Unit vectors across a normal. */
@@ -60,7 +61,7 @@ namespace limber
 
 
 
-  // Sides are asked anew, as a run that is resumed has no step before.
+  // Held components are found anew, as a resumed run has no step before.
   template <int dim>
   void
   SmoothSurfaces<dim>::apply(BoundaryConditions<dim> &boundaries,
@@ -178,8 +179,8 @@ namespace limber
 
 
 
-  // What moves with the obstacle is no motion against it: its velocity is
-  // linear in the place, as the functions of the nodes are.
+  // One Jacobi iteration. The velocity of the obstacle is subtracted at the
+  // nodes: it is linear in the place, as the shape functions are.
   template <int dim>
   void
   SmoothSurfaces<dim>::damp_once(const Ways  &ways,

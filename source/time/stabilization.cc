@@ -8,8 +8,9 @@
 
 namespace limber
 {
-  // Waves in a liquid with an implicit pressure may cross many cells in a step,
-  // but no more than the motion that is there can be taken away.
+  // Wave speed of the hourglass viscosity. Waves in a liquid with an implicit
+  // pressure may cross many cells in a step, but no more than the motion that
+  // is there can be taken away.
   template <int dim>
   double
   Stabilization<dim>::speed_of_resistance(const MaterialBody<dim> &body,
@@ -46,14 +47,14 @@ namespace limber
         gather_checkerboards<dim>(vertices.owned_occupied_cells(),
                                   vertices.view(),
                                   body->cell_sums->view());
-        // A node in the middle of an edge has not all cells around it.
+        // A hanging node does not have all cells around it.
         for (const HangingNode &hanging : parts.grid.vertices.hanging)
           std::fill_n(vertices.record(hanging.node),
                       NodeLayout<dim>::stride,
                       0.);
         vertices.start_sum(0, n_checkerboard_slots<dim>);
         vertices.finish_sum();
-        // The others of a change of size have cells that are not of one size.
+        // Nor have masters where sizes change: the cells around are not alike.
         for (const std::uint32_t master : parts.grid.vertices.masters)
           std::fill_n(vertices.record(master), NodeLayout<dim>::stride, 0.);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
@@ -93,8 +94,8 @@ namespace limber
 
 
 
-  // Bodies that may part from each other, which have fields of their own, do
-  // not resist each other's motion.
+  // Bodies in contact, which have nodal fields of their own, do not resist each
+  // other's motion.
   template <int dim>
   void
   Stabilization<dim>::resist_hourglass_of_field(const double step)
@@ -138,9 +139,9 @@ namespace limber
 
 
 
-  // The twists of the cells and their means around nodes. A hanging node has
-  // none: what its cells do there is not smooth, as it follows its masters
-  // along straight lines.
+  // Hourglass amplitudes (twists) of the cells and their means around nodes. A
+  // hanging node has none: motion there is not smooth, as it follows its
+  // masters along straight lines.
   template <int dim>
   void
   Stabilization<dim>::find_twists(const double step)
@@ -179,7 +180,7 @@ namespace limber
 
 
 
-  // A cell with a hanging corner moves as its masters say. The mass only limits
+  // Give hanging nodes velocity and mass of their masters. The mass only limits
   // the resistance; around a master the cells of a change of size have more
   // corners that hang on it than those of a lattice have in it, up to five
   // quarters in 2d and 20 instead of 8 in 3d, most of them by hanging nodes.

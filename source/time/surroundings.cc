@@ -62,7 +62,7 @@ namespace limber
 
 
 
-  // A corner in the face there knows, if it does not hang; one does not.
+  // A corner in the face there has the bits, if it does not hang; one does not.
   template <int dim>
   bool
   Surroundings<dim>::has_neighbour(const std::uint32_t cell,

@@ -82,8 +82,7 @@ namespace limber
 
 
 
-  // Where bodies touch each other and obstacles, as soon as their masses at the
-  // nodes are known.
+  // Find contact of bodies and obstacles, as soon as nodal masses are known.
   template <int dim>
   void
   ExplicitIntegrator<dim>::find_contact()
@@ -152,9 +151,10 @@ namespace limber
 
 
 
-  // For APIC, in masses of a full cell. Of two directions in which nodes may be
-  // light C^2/2 is the least that is stable; four times as much costs no energy
-  // that one would notice (dam break). AFLIP has no such bound.
+  // For APIC: nodes with less mass than this share of that of a full cell are
+  // light. Of two directions in which nodes may be light C^2/2 is the least
+  // that is stable; four times as much costs no energy that one would notice
+  // (dam break). AFLIP has no such bound.
   template <int dim>
   double
   ExplicitIntegrator<dim>::light_share() const
@@ -168,7 +168,7 @@ namespace limber
 
 
 
-  // The share of increments in the velocities of points; the rest is PIC.
+  // Share of FLIP in the velocities of points; the rest is PIC.
   template <int dim>
   double
   ExplicitIntegrator<dim>::flip_share() const
@@ -231,7 +231,7 @@ namespace limber
 
 
 
-  // In the initial frame. Ranks have yet to sum up the forces.
+  // In the initial frame. Forces have yet to be summed over ranks.
   template <int dim>
   void
   ExplicitIntegrator<dim>::strain_and_give_force(const double length)
@@ -247,9 +247,9 @@ namespace limber
 
 
 
-  // Wave speeds are those of the steps: the next one is to be as long whether
-  // anybody has looked or not. Where a step has failed, nodes may hold
-  // anything.
+  // Bring stress up to date, for output. Wave speeds remain those of the steps:
+  // the next one is to be as long whether anybody has looked or not. Where a
+  // step has failed, nodes may hold anything.
   template <int dim>
   void
   ExplicitIntegrator<dim>::synchronise()
@@ -272,10 +272,9 @@ namespace limber
 
 
 
-  // Loaded faces and surfaces that touch something are strained by the same
-  // velocity. The means over
-  // cells are those of the beginning of the step: volumetric histories tend to
-  // them once, before anything is strained.
+  // Loaded faces and surfaces in contact are strained by the same velocity. The
+  // means over cells are those of the beginning of the step: volumetric
+  // histories relax towards them once, before anything is strained.
   template <int dim>
   void
   ExplicitIntegrator<dim>::strain(StressSweep what)

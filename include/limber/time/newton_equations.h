@@ -24,29 +24,28 @@ namespace limber
 
 
   /**
-   * The equations of a step whose unknowns are the displacements of nodes in
-   * it: nodes of occupied cells alone, dim equations each, in the order of
-   * NumberedNodes. They are made anew when points have moved. For cells of one
-   * size.
+   * The nonlinear equations of a step in the displacements of nodes: nodes of
+   * occupied cells alone, dim equations each, in the order of NumberedNodes.
+   * They are set up anew when points have moved. For cells of one size.
    *
-   * Each rank finds what its points resist with; then every rank knows the
-   * equations of all and solves them, alike to the last bit.
+   * Each rank finds internal forces and tangents of its points, which are
+   * summed; then every rank solves all equations, alike to the last bit.
    *
-   * Besides what the points resist with (TrialStress) there is the
-   * GhostPenalty in equilibrium.
+   * Besides the internal forces (TrialStress) there is the GhostPenalty in
+   * quasi-static steps.
    */
   template <int dim>
   class NewtonEquations
   {
   public:
     /**
-     * Up to @p largest_direct unknowns are factorised. More are solved for with
-     * conjugate gradients, or where a body has averaged volumes and a bulk
-     * modulus of @p mixed_beyond shear moduli and more, with linear functions,
-     * in mixed form with generalised minimal residuals; unless the tangent is
-     * not symmetric. Where conjugate gradients take more than @p
-     * most_iterations, or generalised minimal residuals fail, up to @p
-     * most_factorised unknowns are factorised instead, from then on.
+     * Up to @p largest_direct unknowns are factorised. Larger systems are
+     * solved by conjugate gradients, or where a body has averaged volumes and a
+     * bulk modulus of @p mixed_beyond shear moduli and more, with linear
+     * functions, in mixed form (displacements and pressures) by generalised
+     * minimal residuals (GMRES); unless the tangent is not symmetric. Where
+     * conjugate gradients take more than @p most_iterations, or GMRES fails, up
+     * to @p most_factorised unknowns are factorised instead, from then on.
      */
     explicit NewtonEquations(const RunParts<dim> &parts,
                              std::size_t  largest_direct  = default_direct,
@@ -55,7 +54,7 @@ namespace limber
                              unsigned int most_iterations = 2000);
     ~NewtonEquations();
 
-    /** Loads that evaluate() takes account of; those of the caller. */
+    /** Follower loads that evaluate() includes; those of the caller. */
     void
     set_followers(FollowerLoads<dim> *const of_scene)
     {
@@ -70,7 +69,7 @@ namespace limber
     void
     begin_step();
 
-    /** Of the unknowns. */
+    /** Number of unknowns. */
     std::size_t
     size() const
     {
@@ -102,17 +101,18 @@ namespace limber
     held_velocities(double time);
 
     /**
-     * Of what hangs together by faces of cells (with splines, which reach over
-     * cells, by nodes), if something of it is not held.
+     * A rigid body motion that the sides leave free, if there is one, of any
+     * part that is connected by faces of cells (with splines, whose support is
+     * wider, by nodes).
      */
     std::optional<FreeMotion<dim>>
     free_motion() const;
 
     /**
-     * Strain energy, the forces that resist these displacements, and on
+     * Find strain energy and internal forces at these displacements, and on
      * request the tangent, to which the diagonal @p inertia (kg/s^2) is added.
-     * False where a point is turned inside out. @p former: see TrialStress, may
-     * be null. Collective.
+     * False where a point is inverted (det F <= 0). @p former: see TrialStress,
+     * may be null. Collective.
      */
     bool
     evaluate(const std::vector<double> &displacement,
@@ -125,31 +125,31 @@ namespace limber
       return total_energy;
     }
 
-    /** Of it, what is against jumps of the strain, J. */
+    /** Part of it in the ghost penalty, J. */
     double
     ghost_energy() const
     {
       return energy_of_jumps;
     }
 
-    /** Of the mean of the forces against these jumps at the beginning of the
-     * step, where there are none, and now, on the way of the step, J. */
+    /** Work of the ghost penalty on the displacement of the step, by the mean
+     * of its forces at the beginning, where there are none, and now, J. */
     double
     ghost_work() const
     {
       return work_on_jumps;
     }
 
-    /** Jumps are resisted from these displacements on; at the beginning of a
-     * step, from none. */
+    /** The ghost penalty acts on jumps of the displacement since this one; at
+     * the beginning of a step, since zero. */
     void
     count_jumps_from(const std::vector<double> &displacement)
     {
       begin_of_jumps = displacement;
     }
 
-    /** Forces this small are noise after these displacements: stresses know a
-     * strain to the last bits of these. */
+    /** Norm of forces that are round-off at these displacements: stresses know
+     * a strain to the last bits of these. */
     double
     round_off(const std::vector<double> &displacement) const;
 
@@ -167,9 +167,9 @@ namespace limber
     }
 
     /**
-     * The correction of displacements by the last tangent, with held
-     * components corrected by @p of_held, to the last bit. False where there is
-     * none, with an obstacle().
+     * Newton's correction of the displacements by the last tangent, from the
+     * residual @p unbalanced; held components are corrected by @p of_held, to
+     * the last bit. False if there is none, with an obstacle().
      */
     bool
     solve(const std::vector<double> &unbalanced,
@@ -206,7 +206,7 @@ namespace limber
       return n_linear_iterations;
     }
 
-    /** Cells have pressures of their own where equations are iterated. */
+    /** Iterative solutions use the mixed form, with pressures of cells. */
     bool
     is_mixed() const
     {
@@ -220,7 +220,7 @@ namespace limber
       return factorises_all;
     }
 
-    /** Let the points take these displacements. */
+    /** Update the points by these displacements. */
     AcceptedMotion
     accept(const std::vector<double> &displacement);
 

@@ -10,13 +10,12 @@
 namespace limber
 {
   /**
-   * Steps at whose end forces are in equilibrium (quasi-static), or those of
-   * beginning and end together give the change of momentum (implicit: Newmark's
-   * trapezoidal rule, beta = 1/4, gamma = 1/2, or GeneralisedAlpha, whose
-   * acceleration points carry). The displacements of the nodes
-   * in the step are found by Newton's method with line search; points take them
-   * when they are found, so that a step that fails leaves all as it was. It is
-   * then tried with half the length. doc/theory/implicit_steps.md
+   * Quasi-static steps, at whose end forces are in equilibrium, or implicit
+   * ones with inertia (Newmark's trapezoidal rule, beta = 1/4, gamma = 1/2, or
+   * GeneralisedAlpha, whose acceleration points carry). The displacements of
+   * the nodes in the step are found by Newton's method with line search; points
+   * are updated only afterwards, so that a step that fails leaves all as it
+   * was. It is then tried with half the length. doc/theory/implicit_steps.md
    */
   template <int dim>
   class NewtonIntegrator final : public Integrator<dim>
@@ -132,7 +131,7 @@ namespace limber
     fail(double time, double step) const;
 
     const RunParts<dim>  parts;
-    const bool           in_motion; // has inertia
+    const bool           in_motion; // has inertia; else quasi-static
     ExternalLoads<dim>   loads;
     Relocation<dim>      relocation;
     NewtonEquations<dim> equations;

@@ -11,7 +11,7 @@
 
 namespace limber
 {
-  /** What a step that is solved for spends its time on. */
+  /** Parts of an implicit step whose time is reported. */
   enum class NewtonVerb
   {
     number_nodes,
@@ -37,26 +37,26 @@ namespace limber
 
 
 
-  /** What Newton's method asks for in a step; all by equation. */
+  /** Data of the nonlinear equations of a step; all by equation. */
   struct StepQuestion
   {
     std::vector<double> held;     // displacements of held components, m; else 0
-    std::vector<double> external; // forces that do not depend on those, N
-    std::vector<double> followers_at_rest; // of follower loads at none, N
+    std::vector<double> external; // forces independent of displacements, N
+    std::vector<double> followers_at_rest; // follower loads at zero u, N
     std::vector<double> inertia; // what multiplies displacements, kg/s^2
-    // displacement without acceleration, m
+    // displacement without acceleration (predictor), m
     std::vector<double> inertial_displacement;
-    // In equilibrium, N: what is unloaded has no forces at the end to compare
-    // with.
+    // Quasi-static, N: a scale of forces for what is unloaded and has none at
+    // the end to compare with.
     double largest_former_force = 0;
   };
 
 
 
   /**
-   * The displacement of a step by Newton's method, at first with whole
-   * corrections, which take fewer iterations, then with a line search, which
-   * arrives more often (doc/theory/implicit_steps.md).
+   * The displacement of a step by Newton's method, at first with full
+   * corrections, which take fewer iterations; if these fail, with a line
+   * search, which converges more often (doc/theory/implicit_steps.md).
    */
   template <int dim>
   class NewtonMethod
@@ -74,11 +74,12 @@ namespace limber
 
     using Values = std::vector<double>; // by equation
 
-    /** Start as if nothing accelerated, where that is nearer to balance. */
+    /** Initial guess: the motion without acceleration, where its residual is
+     * less than that of @p displacement. */
     void
     guess(const StepQuestion &question, Values &displacement);
 
-    /** From the given displacement on; false with an obstacle(). */
+    /** Iterate from the given displacement; false with an obstacle(). */
     bool
     find(const StepQuestion &question, Values &displacement);
 
@@ -89,14 +90,14 @@ namespace limber
       return reason;
     }
 
-    /** That led to the last displacement. */
+    /** Iterations that led to the last displacement. */
     unsigned long
     iterations() const
     {
       return n_iterations;
     }
 
-    /** Of all tries. */
+    /** Corrections (linear solutions) of all tries. */
     unsigned long
     corrections() const
     {
@@ -123,7 +124,7 @@ namespace limber
     NewtonEquations<dim> &equations;
     const double          tolerance;
     NewtonClock          &clock;
-    double                rest = 0; // unbalanced share of the forces
+    double                rest = 0; // relative residual
     std::string           reason;
     unsigned long         n_iterations = 0, n_corrections = 0;
   };

@@ -12,9 +12,9 @@
 namespace limber
 {
   /**
-   * The matrix of NewtonEquations. Rows and columns of held components meet
-   * nothing else in it; what their correction does to the others is kept
-   * besides.
+   * The tangent matrix of NewtonEquations. Held components (Dirichlet) are
+   * eliminated: their rows and columns keep the diagonal alone, and the columns
+   * are stored for the right-hand side.
    */
   template <int dim>
   class NewtonTangent
@@ -24,32 +24,34 @@ namespace limber
     NewtonTangent(const NumberedNodes<dim>         &nodes,
                   const std::vector<unsigned char> &held);
 
-    /** Room for what cells and the faces of the penalty give. */
+    /** Set up the sparsity pattern of cells and faces of the ghost penalty. */
     void
     reinit(const GhostPenalty<dim> &ghost);
 
     void
     clear();
 
-    /** A block of the nodes with these numbers, row by row, N/m. */
+    /** Add a block of the nodes with these numbers, row by row, N/m. */
     void
     add(const std::uint32_t *numbers,
         unsigned int         n_nodes,
         const double        *block);
 
-    /** To the diagonal of what is free, N/m. */
+    /** Add to the diagonal of free components, N/m. */
     void
     add_to_diagonal(const std::vector<double> &values);
 
-    /** Each rank has added what its points resist with; collective. */
+    /** Sum up what ranks have added for their points; collective. */
     void
     sum_over_ranks(MPI_Comm communicator);
 
-    /** Nothing more comes: what is held is as stiff as the rest. */
+    /** Finish assembly: held components get the largest diagonal entry of the
+     * others. */
     void
     finish();
 
-    /** For corrections @p of_held of what is held. */
+    /** Right-hand side for the residual @p unbalanced and corrections @p
+     * of_held of the held components. */
     NodalVector
     right_side(const std::vector<double> &unbalanced,
                const std::vector<double> &of_held) const;
@@ -70,9 +72,9 @@ namespace limber
     const NumberedNodes<dim>              &nodes;
     const std::vector<unsigned char>      &held;
     dealii::TrilinosWrappers::SparseMatrix matrix;
-    std::vector<std::uint32_t>             rows, columns; // of held columns
+    std::vector<std::uint32_t>             rows, columns; // eliminated entries
     std::vector<double>                    of_columns;
-    // Of a row of a block, while it is added
+    // Buffers for a row of a block
     std::vector<dealii::types::global_dof_index> row_places;
     std::vector<double>                          row_values;
     double                                       largest = 0; // of the diagonal

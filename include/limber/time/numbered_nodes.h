@@ -26,12 +26,12 @@ namespace limber
   class NumberedNodes
   {
   public:
-    /** Of the nodes of a cell, in the order of the basis. */
+    /** Numbers of the nodes of a cell, in the order of the basis. */
     using Numbers = dealii::ArrayView<const std::uint32_t>;
 
     explicit NumberedNodes(const RunParts<dim> &parts);
 
-    /** Find them anew; points must be sorted. Collective. */
+    /** Number the nodes anew; points must be sorted. Collective. */
     void
     update();
 
@@ -41,23 +41,23 @@ namespace limber
       return keys.size();
     }
 
-    /** On this rank's grid, by number; invalid_cell where it has no points
-     * around a node. */
+    /** Nodes of this rank's grid, by number; invalid_cell where it has no
+     * points around a node. */
     const std::vector<std::uint32_t> &
     on_grid() const
     {
       return local;
     }
 
-    /** Whether this rank speaks for a node: the first that has points around
-     * it, and so knows the sums over all points. */
+    /** Whether this rank owns a node: the first rank that has points around it,
+     * and so knows the sums over all points. */
     bool
     owns(const std::size_t number) const
     {
       return speakers[number] == this_rank;
     }
 
-    /** In m, by number. */
+    /** Positions, m, by number. */
     const std::vector<dealii::Point<dim>> &
     places() const
     {
@@ -68,28 +68,29 @@ namespace limber
     std::uint8_t
     sides(std::size_t number) const;
 
-    /** Along each direction: 2 of linear functions, 3 of splines. */
+    /** Nodes of a cell along each direction: 2 of linear functions, 3 of
+     * splines. */
     unsigned int
     n_along() const
     {
       return along;
     }
 
-    /** With points, on whatever rank. */
+    /** Number of cells with points, on whatever rank. */
     std::size_t
     n_cells() const
     {
       return cell_keys.size();
     }
 
-    /** Of such a cell, in the order of the lattice. */
+    /** Nodes of such a cell, in the order of the lattice. */
     Numbers
     of_cell(const std::size_t cell) const
     {
       return {&numbers[cell * in_cell], in_cell};
     }
 
-    /** Of a cell of this rank's grid in which it has points, among those with
+    /** Index among these of a cell of this rank's grid in which it has
      * points. */
     std::size_t
     number_of(const std::uint32_t cell) const
@@ -97,7 +98,7 @@ namespace limber
       return index_of_local[cell];
     }
 
-    /** Of its nodes. */
+    /** Nodes of such a cell. */
     Numbers
     numbers_in(const std::uint32_t cell) const
     {
@@ -108,7 +109,7 @@ namespace limber
     std::array<bool, 2>
     at_sides(std::size_t cell, unsigned int direction) const;
 
-    /** One step along a direction from a cell with points. */
+    /** The next cell along a direction from a cell with points. */
     struct Neighbour
     {
       bool                       in_box;
@@ -117,14 +118,14 @@ namespace limber
     Neighbour
     neighbour(std::size_t cell, unsigned int direction, int step) const;
 
-    /** Of a cell, m. */
+    /** Edge of a cell, m. */
     double
     edge(const unsigned int direction) const
     {
       return edges[direction];
     }
 
-    /** Of a whole cell, m^dim. */
+    /** Volume of a whole cell, m^dim. */
     double
     volume_of_cell() const
     {

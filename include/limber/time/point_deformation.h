@@ -8,25 +8,22 @@
 #include <limber/state/material_body.h>
 #include <limber/stress/stress_update.h>
 
-/**
- * @file How the material at single points is deformed: for loads on faces, and
- * for surfaces that touch something. Sweeps over all points have faster ways.
- */
+/** @file Deformation of the material at single points: for loads on faces, and
+ * for surfaces in contact. Sweeps over all points have faster ways. */
 namespace limber
 {
-  /**
-   * Takes a short vector at a point to what the gradients of the functions
-   * have to meet: itself, or F^-1 of it in the initial frame.
-   */
+  /** Pulls a spatial vector at a point back to where the gradients of the shape
+   * functions are evaluated: itself, or F^-1 of it in the initial frame. */
   template <int dim>
   dealii::Tensor<2, dim>
   pull_back(const PointView<dim> &points, std::size_t p);
 
   /**
-   * f - 1 of a point of a body, with these points and nodal field, over
-   * what.step, before it is moved: by the same velocity and square as the
-   * stress; with @p mean_gradients of the dual domain method
-   * (DualDomainLayout), if there are any.
+   * Increment f - 1 of the deformation gradient of a point of a body, with
+   * these points and nodal field, over what.step, before it is moved: by the
+   * same velocity and second-order term (StressSweep::square) as the stress;
+   * with @p mean_gradients of the dual domain method (DualDomainLayout), if
+   * there are any.
    */
   template <int dim>
   dealii::Tensor<2, dim>
@@ -37,10 +34,8 @@ namespace limber
                         const StressSweep    &what,
                         const double         *mean_gradients);
 
-  /**
-   * b becomes f b f^T at the points of a surface that keep it
-   * (PointView::stretch).
-   */
+  /** Update the left Cauchy-Green tensor, b becomes f b f^T, at the points of a
+   * surface that keep it (PointView::stretch). */
   template <int dim>
   void
   deform_surface(NodalFields<dim>        &nodes,
@@ -49,10 +44,10 @@ namespace limber
                  const double            *mean_gradients);
 
   /**
-   * How much wider the material at a point is along a unit vector, between
-   * surfaces across it, than at the start: sqrt(n . b . n), where b is that of
-   * the initial frame, that which the point keeps, or what its law knows. What
-   * flows without end comes between its points, and is never wider.
+   * Stretch of the material at a point along a unit vector, between surfaces
+   * across it: sqrt(n . b . n), where b is that of the initial frame, that
+   * which the point keeps, or what its law knows. Where other points come
+   * between those of the surface, as in granular flow, it is at most 1.
    */
   template <int dim>
   double

@@ -8,8 +8,11 @@
 
 namespace limber
 {
-  /** The corners of the simplices of the unit cube: along each of the ways
-   * from its first corner to its last. Seen across a face they meet. */
+  /**
+   * Kuhn's (Freudenthal's) triangulation of the unit cube: the corners of dim!
+   * simplices, one for each path along edges from the first corner to the last.
+   * Those of neighbouring cubes match across faces.
+   */
   template <int dim>
   std::vector<std::array<unsigned int, dim + 1>>
   simplices_of_cube()

@@ -10,15 +10,16 @@
 namespace limber
 {
   /**
-   * Liquids at surfaces of obstacles that run across cells: the mean flow
-   * through each piece of surface is held by its impulse or pressure
-   * (ObstacleContact, PressureSurfaces), but what alternates along the surface
-   * is not, as the nodes are as many as the pieces. It would grow, as what
-   * sinks into the obstacle makes the nodes there heavier. So the first moments
-   * of the relative normal velocity over each piece
+   * Damps the motion of liquids that alternates along surfaces of obstacles in
+   * cut cells. The mean flow through each piece of surface is held by its
+   * impulse or pressure (ObstacleContact, PressureSurfaces), but what
+   * alternates is not, as the nodes are as many as the pieces. It would grow as
+   * in a Rayleigh-Taylor instability, as what sinks into the obstacle makes the
+   * nodes there heavier. So the first moments of the relative normal velocity
+   * over each piece
    *
-   *   b_k = int (v - v_o) . n t_k . (x - x_s) dS = sum_i A_ki . (v_i -
-   * v_o(x_i))
+   *   b_k = int (v - v_o) . n t_k . (x - x_s) dS
+   *       = sum_i A_ki . (v_i - v_o(x_i))
    *
    * with its tangents t_k and centroid x_s, which are zero in an exact motion,
    * are damped at the start of a step, by impulses - A_ki b_k / d_k,
@@ -27,7 +28,7 @@ namespace limber
    *
    * over all moments l at the node: some steps of Jacobi's method that do not
    * overshoot. Nothing happens at rest. Explicit steps take a share of it, the
-   * shorter they are the less. Cells with corners that hang are left alone.
+   * shorter they are the less. Cells with hanging corners are left alone.
    */
   template <int dim>
   class SmoothSurfaces
@@ -40,10 +41,9 @@ namespace limber
     reinit();
 
     /**
-     * Change new velocities and increments of nodes by what the velocities
-     * before the step ask for, a @p share of it, but for components that sides
-     * hold at its end.
-     * Collective.
+     * Change new velocities and increments of nodes by a @p share of the
+     * damping that the velocities before the step ask for, except for
+     * components that sides hold at its end. Collective.
      */
     void
     apply(BoundaryConditions<dim> &boundaries,
@@ -51,8 +51,10 @@ namespace limber
           double                   step,
           double                   share);
 
-    /** Put on record what the impulses of the step have taken from the points,
-     * which work with the mean of the velocities before and after it. */
+    /**
+     * Record the energy that the impulses of the step have taken from the
+     * points: they do work with the mean of the velocities before and after it.
+     */
     void
     account(unsigned int velocity_after);
 

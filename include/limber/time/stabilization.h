@@ -10,8 +10,9 @@
 namespace limber
 {
   /**
-   * What keeps motions and pressures in check that means over cells do not
-   * see. A body that asks for none costs nothing.
+   * Stabilisation of modes that means over cells do not see: checkerboard
+   * control of the pressure and hourglass control of the motion. A body that
+   * asks for none costs nothing.
    */
   template <int dim>
   class Stabilization
@@ -20,18 +21,18 @@ namespace limber
     explicit Stabilization(const RunParts<dim> &parts);
 
     /**
-     * Find what the volumetric variable of the points in each cell is to lose
-     * over @p step, s, with waves of that speed, m/s. Before points give
-     * anything to the nodes: the records of those at the corners of cells
-     * serve here. Collective.
+     * Checkerboard control: find what the volumetric variable of the points in
+     * each cell is to lose over @p step, s, with waves of that speed, m/s. To
+     * be called before P2G: the records of nodes at the corners of cells serve
+     * here. Collective.
      */
     void
     control_checkerboards(double step, double wave_speed);
 
     /**
-     * Add viscous forces against hourglass motion to those of the nodes, and
-     * their heat to the ledger. Their own places are zero afterwards.
-     * Collective.
+     * Hourglass control: add viscous forces against hourglass modes to those of
+     * the nodes, and their heat to the ledger. Their own slots are zero
+     * afterwards. Collective.
      */
     void
     resist_hourglass(double step, double wave_speed);

@@ -9,10 +9,11 @@
 namespace limber
 {
   /**
-   * The area vectors a_i of the pieces of a closed surface have no sum and no
-   * moment: a uniform pressure neither pushes a body nor turns it. Pieces that
-   * follow one point each lose this, and a free body would drift and spin. What
-   * is missing is spread over the pieces by their area,
+   * Corrects the area vectors a_i of the pieces of a closed surface so that
+   * they have no sum and no moment: then a uniform pressure neither pushes a
+   * body nor turns it. Pieces that follow one point each lose this, and a free
+   * body would drift and spin. What is missing is spread over the pieces by
+   * their area,
    *
    *   a_i <- a_i - |a_i| (alpha + beta x (x_i - c)),
    *
@@ -40,7 +41,7 @@ namespace limber
     change(const dealii::Point<dim>     &place,
            const dealii::Tensor<1, dim> &area) const;
 
-    /** About the largest change over the area, no unit. */
+    /** Closure error: about the largest change over the area, no unit. */
     double
     opening() const;
 

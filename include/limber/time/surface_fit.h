@@ -11,11 +11,11 @@
 namespace limber
 {
   /**
-   * The plane in which the points of a body say that its surface is near a
-   * node: z = c + beta . s, with z the height along a guess of the normal and s
-   * the place across it, by least squares. Rows of points oblique to the grid
-   * end in a flight of stairs, but each point there knows how far from the
-   * surface it is: of a plane the fit is exact.
+   * Least-squares fit of the plane of a body's surface near a node: z = c +
+   * beta . s, with z the height along a guess of the normal and s the place
+   * across it, through the places where the material of the points ends. Rows
+   * of points oblique to the grid end in a flight of stairs, but each point
+   * there knows how far from the surface it is: of a plane the fit is exact.
    *
    * Points count by the function of the node, and the less the lower they are,
    * by exp(z / edge): these belong to other faces of the body.
@@ -28,7 +28,7 @@ namespace limber
 
     static constexpr int across = dim - 1;
 
-    /** How many sums: of 1, z, s, s z and s s^T. */
+    /** Number of weighted sums: of 1, z, s, s z and s s^T. */
     static constexpr int n = 2 + 2 * across + across * dim / 2;
 
     /** Over the points, with their weights. */
@@ -64,7 +64,7 @@ namespace limber
         }
     }
 
-    /** Of length 1. */
+    /** The guess, of length 1. */
     const Vector &
     guess() const
     {
@@ -95,16 +95,14 @@ namespace limber
         }
     }
 
-    /**
-     * Of the plane, of length 1; the guess if the points are too few for one:
-     * in some direction they cover less than about an edge.
-     */
+    /** Normal of the plane, of length 1; the guess if the points are too few
+     * for one: in some direction they cover less than about an edge. */
     Vector
     normal() const
     {
       if (!(sums[0] > 0))
         return upwards;
-      // means, and the products of what differs from these
+      // means, covariances and variances
       const double                                   z = sums[1] / sums[0];
       std::array<double, across>                     s, with_z;
       std::array<std::array<double, across>, across> spread;

@@ -9,8 +9,9 @@
 namespace limber
 {
   /**
-   * Which of the cells around the vertices of a mesh hold something. A vertex
-   * that hangs is no corner of the larger cells around it; its masters are.
+   * Which of the cells around the vertices of a mesh hold material: finds free
+   * surfaces. A hanging vertex is no corner of the larger cells around it; its
+   * masters are.
    */
   template <int dim>
   class Surroundings
@@ -24,10 +25,12 @@ namespace limber
     void
     reinit();
 
-    /** Look which cells hold something, asked for each of those of this rank
-     * that may; collective. Others of which @p taken tells by vertex, in the
-     * same way as this class, do in any case: what takes them is no surface of
-     * what others hold. */
+    /**
+     * Find which cells hold material, asking holds(cell) for each occupied one
+     * of this rank; collective. Others that @p taken marks by vertex, in the
+     * same way as this class (covered by obstacles), count as holding in any
+     * case: next to them there is no free surface.
+     */
     template <class Holds>
     void
     find(const NodalFields<dim> &vertices,
@@ -50,24 +53,24 @@ namespace limber
         find_inside(*cells);
     }
 
-    /** Whether all cells around a vertex do that was active when find() looked.
-     */
+    /** Whether all cells around a vertex hold material; for vertices that were
+     * active in find(). */
     bool
     is_surrounded(const std::uint32_t node) const
     {
       return surrounded[node];
     }
 
-    /** Whether all cells around the vertices of a cell do that was occupied
-     * then. */
+    /** Whether all cells around the vertices of a cell hold material; for cells
+     * that were occupied in find(). */
     bool
     is_inside(const std::uint32_t cell) const
     {
       return inside[cell];
     }
 
-    /** Whether a neighbour of a cell does, at the lower end (0) of a direction
-     * or the upper (1). */
+    /** Whether the neighbour of a cell holds material, at the lower end (0) of
+     * a direction or the upper (1). */
     bool
     has_neighbour(std::uint32_t cell,
                   unsigned int  direction,
@@ -114,8 +117,8 @@ namespace limber
     }
 
     const BackgroundGrid<dim> &grid;
-    // By vertex, which cells have it as a corner, and which of these hold
-    // something: the sum of 2^k, the vertex being their corner k
+    // By vertex, bits: which cells have it as a corner, and which of these hold
+    // material; the sum of 2^k, the vertex being their corner k
     LazyArray<double> cells_at, holding;
     RecordExchange    exchange{1};
     LazyArray<bool>   surrounded; // by vertex
