@@ -81,7 +81,8 @@ namespace limber
             {
               const double lost = lost_share * record[Layout::momentum + d];
               record[Layout::force + d] -= lost / step;
-              // A hanging node, without mass, shows what its masters have.
+              // A hanging node has no mass; its momentum is that of its
+              // masters.
               if (parts.nodes.owns(node) && record[Layout::mass] > 0)
                 parts.ledger.load_impulse[d] -= lost;
             }
@@ -408,7 +409,7 @@ namespace limber
 
 
 
-  // The stress has changed since; see p2g_before_strain().
+  // Clear the forces of p2g_before_strain(): the stress has changed since.
   template <int dim>
   void
   ExplicitIntegrator<dim>::clear_trial_force()

@@ -89,15 +89,15 @@ namespace limber
               between_steps += 0.5 * net[k] * displacement[k];
             continue;
           }
-        // What the side gives, at the end and as the mean of the step
+        // Reaction of the side, at the end and as the mean of the step
         double force = 0, mean = 0;
         if (in_motion)
           {
             const double change = masses[k] * (new_velocity[k] - velocities[k]);
             force = mean = change / step -
                            0.5 * (question.external[k] - equations.forces()[k]);
-            // What the velocity of the points differs from that of the side is
-            // lost as in an impact.
+            // The difference between the velocities of the points and of the
+            // side is lost as in an impact.
             ledger.viscous +=
               change * (displacement[k] / step -
                         0.5 * (new_velocity[k] + velocities[k]));

@@ -47,7 +47,7 @@ namespace limber
                                                    body->description.frame,
                                                    parts.problem.grid.kernel));
         factorises_all |= !responses.back()->has_symmetric_tangent();
-        // what preconditions the pressures is for linear functions
+        // the preconditioner of the pressures is for linear functions
         mixed |= parts.problem.grid.kernel == KernelKind::linear &&
                  responses.back()->bulk_over_shear() > mixed_beyond;
       }

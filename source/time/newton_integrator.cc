@@ -324,12 +324,12 @@ namespace limber
     for (std::size_t k = 0; k < equations.size(); ++k)
       given[k] = 0.5 * (given[k] + new_given[k]);
 
-    // a side goes on its way with the velocity of the middle of the step
+    // sides move with their velocity at the middle of the step
     question.held = equations.held_velocities(time + 0.5 * step);
     for (double &displacement : question.held)
       displacement *= step;
 
-    // The forces of the beginning, at the present places
+    // Forces at the start of the step, on the present nodes
     Values displacement(equations.size());
     followers.set(time, load_factor(time));
     equations.evaluate(displacement, nullptr);

@@ -73,7 +73,7 @@ namespace limber
 
 
 
-  // Those of all ranks, each once, sorted.
+  // Keys of all ranks, sorted and unique.
   template <int dim>
   std::vector<typename NumberedNodes<dim>::Key>
   NumberedNodes<dim>::united(std::vector<Key> own) const

@@ -274,7 +274,7 @@ namespace limber
       {
         asked[0] = place.distance(middle).value;
         if (asked[0] == 0)
-          asked[0] = 1e-300; // zero is what nobody has asked for
+          asked[0] = 1e-300; // zero means: not evaluated
         for (int d = 0; d < dim; ++d)
           asked[1 + d] = start[d];
         way = 0;
@@ -499,7 +499,7 @@ namespace limber
         ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
         const Vector         beyond = touch.beyond * place.normal,
                      impulse        = place.impulse + beyond;
-        parts.ledger.load_impulse -= beyond; // which is none of a load
+        parts.ledger.load_impulse -= beyond; // counted there as a load
         action.impulse += impulse;
         action.moment += moment_of<dim>(touch.arm, impulse);
         parts.ledger.boundary_work += place.impulse * place.velocity;

@@ -79,7 +79,7 @@ namespace limber
     account_loads(Layout::strain_velocity);
     move_as_strained();
     interpolate_hanging();
-    // one field to look up where both are the same
+    // a single nodal velocity to look up, where that moves points as well
     update_stress_and_move(step, !moves_as_strained);
   }
 

@@ -101,7 +101,7 @@ namespace limber
 
 
 
-  // About the centroid of what counts as one piece.
+  // One (in the plane) or two moments about the centroid of each piece.
   template <int dim>
   void
   SmoothSurfaces<dim>::add(const typename CutCells<dim>::Cell &cell)

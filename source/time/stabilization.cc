@@ -54,7 +54,8 @@ namespace limber
                       0.);
         vertices.start_sum(0, n_checkerboard_slots<dim>);
         vertices.finish_sum();
-        // Nor have masters where sizes change: the cells around are not alike.
+        // Masters at a change of size have cells of several sizes around: no
+        // control there either.
         for (const std::uint32_t master : parts.grid.vertices.masters)
           std::fill_n(vertices.record(master), NodeLayout<dim>::stride, 0.);
         for (const auto *const cells : {&vertices.owned_occupied_cells(),
@@ -64,7 +65,8 @@ namespace limber
                                         body->cell_sums->view(),
                                         strength * wave_speed * step,
                                         body->cell_shift.data());
-        // Also those that the field has reached since its nodes were noted
+        // Clear the records again, also those of nodes that the field has
+        // reached since its nodes were noted
         for (const std::uint32_t node : vertices.active_nodes())
           std::fill_n(vertices.record(node), NodeLayout<dim>::stride, 0.);
       }
@@ -128,7 +130,7 @@ namespace limber
           {
             const double force =
               std::exchange(record[Layout::hourglass_force + d], 0);
-            // heat, but for the change of velocity within the step
+            // heat, with the velocity at the start of the step
             if (nodes.owns(node))
               parts.ledger.viscous -=
                 step * force * record[Layout::momentum + d] / mass;

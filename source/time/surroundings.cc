@@ -62,7 +62,7 @@ namespace limber
 
 
 
-  // A corner in the face there has the bits, if it does not hang; one does not.
+  // Read from a corner of the face there that does not hang; one does not.
   template <int dim>
   bool
   Surroundings<dim>::has_neighbour(const std::uint32_t cell,

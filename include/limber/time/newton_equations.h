@@ -76,7 +76,7 @@ namespace limber
       return nodes.size() * dim;
     }
 
-    /** By number of equations / dim. */
+    /** The nodes: equation k belongs to node k / dim. */
     const NumberedNodes<dim> &
     numbered_nodes() const
     {
@@ -119,6 +119,7 @@ namespace limber
              const std::vector<double> *inertia,
              const std::vector<double> *former = nullptr);
 
+    /** Strain energy of the last evaluate(), with the ghost penalty, J. */
     double
     energy() const
     {
@@ -140,8 +141,8 @@ namespace limber
       return work_on_jumps;
     }
 
-    /** The ghost penalty acts on jumps of the displacement since this one; at
-     * the beginning of a step, since zero. */
+    /** The ghost penalty acts on the displacement beyond this one; at the
+     * beginning of a step, beyond zero. */
     void
     count_jumps_from(const std::vector<double> &displacement)
     {
@@ -153,6 +154,7 @@ namespace limber
     double
     round_off(const std::vector<double> &displacement) const;
 
+    /** Internal forces of the last evaluate(), with the ghost penalty, N. */
     const std::vector<double> &
     forces() const
     {

@@ -26,7 +26,7 @@ namespace limber
     bool
     reorganise(double) override
     {
-      // to their ranks, as if they might pass a cell
+      // exchange points between ranks, as they may move by up to a cell
       return equations.numbered_nodes().is_parallel() &&
              relocation.reorganise(1);
     }

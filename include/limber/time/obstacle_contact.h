@@ -162,10 +162,8 @@ namespace limber
     void
     hold(unsigned int slot);
 
-    /**
-     * The same of the velocity that points have given back, and account for
-     * what they lose by that beyond exchange(), by the share of FLIP.
-     */
+    /** Impose the contacts on the re-mapped velocity, and account for what
+     * points lose by this beyond exchange(), times the share of FLIP. */
     void
     hold_after(unsigned int slot, double flip_share);
 

@@ -53,7 +53,7 @@ namespace limber
     void
     reinit(const CornersOfNodes<dim> &corners);
 
-    /** Whether the pieces are no longer those of the obstacles. */
+    /** Whether cut cells have changed since the pieces were set up. */
     bool
     are_old() const
     {

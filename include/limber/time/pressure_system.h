@@ -64,10 +64,10 @@ namespace limber
 
     /**
      * One update of the active set: rows with negative pressure are removed
-     * (P = 0); removed ones whose cell would be compressed without pressure
-     * return, if @p may_return. Returns whether the set has changed and the
-     * system is to be solved again, from the pressures as they are now. After
-     * scale(); collective.
+     * (P = 0); removed ones return whose cell would be compressed without
+     * pressure, or whose surface the liquid would enter, if @p may_return.
+     * Returns whether the set has changed and the system is to be solved again,
+     * from the pressures as they are now. After scale(); collective.
      */
     bool
     cut_tension(bool may_return);

@@ -42,7 +42,8 @@ namespace limber
     void
     begin_step();
 
-    /** Note the batches of the first sweep of a step. */
+    /** Note the number of batches (runs of points in one cell) of the first
+     * sweep of a step. */
     void
     note_batches(const std::size_t n)
     {

@@ -37,7 +37,7 @@ namespace limber
     void
     clear(const NodalFields<dim> &vertices);
 
-    /** A cell of this rank that liquid is in, with the volume in m^3 that
+    /** Add a cell of this rank that holds liquid, with the volume in m^3 that
      * obstacles leave of it. */
     void
     add_cell(std::uint32_t cell, double volume);

@@ -32,11 +32,11 @@ namespace limber
     void
     add(const dealii::Point<dim> &place, const dealii::Tensor<1, dim> &area);
 
-    /** When all have been added; collective. */
+    /** Find alpha and beta over all ranks, after all add(); collective. */
     void
     finish(MPI_Comm communicator);
 
-    /** What the area vector of a piece changes by. */
+    /** Correction of the area vector of a piece, m^(dim-1). */
     dealii::Tensor<1, dim>
     change(const dealii::Point<dim>     &place,
            const dealii::Tensor<1, dim> &area) const;

@@ -97,7 +97,7 @@ namespace limber
   private:
     static constexpr unsigned int n_corners = 1 << dim;
 
-    /** To the corners of a cell. */
+    /** Set the bits of a cell at its corners. */
     void
     add(LazyArray<double> &to, const std::uint32_t cell) const
     {
@@ -123,7 +123,8 @@ namespace limber
     RecordExchange    exchange{1};
     LazyArray<bool>   surrounded; // by vertex
     LazyArray<bool>   inside;     // by cell
-    // By vertex, what it hangs on; null: it does not. Empty where none hangs
+    // By vertex, its constraint as a hanging node; null: it does not hang.
+    // Empty where none hangs
     std::vector<const HangingNode *> masters_of;
   };
 } // namespace limber
