@@ -13,14 +13,16 @@ namespace limber
 {
   namespace
   {
-    // Pieces of surface in a cell are one where their normals are within some 6
-    // degrees.
+    // Facets in a cell are merged into one Surface if their normals differ by
+    // less than some 6 degrees.
     constexpr double least_cosine = 0.995;
 
-    // A surface lies across an axis where the cosine of its normal is larger.
+    // A facet counts as normal to an axis if the cosine of the angle between
+    // its normal and the axis is larger.
     constexpr double across_axis = 1 - 1e-5;
 
-    // What of a part of a cell is nothing
+    // Corners of sub-cells closer to a surface than this fraction of their
+    // shortest edge are snapped onto it, which avoids sliver simplices.
     constexpr double nothing = 1e-3;
 
     template <int dim>
@@ -84,8 +86,8 @@ namespace limber
 
 
 
-  // Where the middle is further off than the corners are from it, nothing runs
-  // across.
+  // Classify a cell and cut it. If the distance at its centre exceeds the
+  // diagonal (see is_as_before()), no surface can intersect the cell.
   template <int dim>
   void
   CutCells<dim>::look_at(const std::uint32_t number, const Places &places)
@@ -128,7 +130,7 @@ namespace limber
 
 
 
-  // Whether most of the surface lies across the axes, as that of boxes does.
+  // Whether most of the surface's area is normal to an axis, as on boxes.
   template <int dim>
   bool
   CutCells<dim>::is_layer(const std::uint32_t cell,
@@ -170,7 +172,8 @@ namespace limber
 
 
 
-  // Where the obstacles begin, and in faces behind which there is only a rest.
+  // Collect the facets that bound the open part: on the zero level set of phi,
+  // and in faces towards neighbours that count as closed.
   template <int dim>
   void
   CutCells<dim>::find_surfaces(Cell            &cell,
@@ -251,8 +254,8 @@ namespace limber
 
 
 
-  // Of the corners of a face, those that are open: by their distances from the
-  // obstacles, with the sum one. None where all are in these.
+  // Weights of the corners of a face that are outside obstacles, proportional
+  // to their distance from these, with the sum 1; all 0 if none is outside.
   template <int dim>
   typename CutCells<dim>::Shares
   CutCells<dim>::open_corners(const unsigned int direction,
@@ -323,7 +326,8 @@ namespace limber
 
 
 
-  // Of all parts of the cell: those that are open, work(simplex).
+  // Split all sub-cells into simplices, cut these at phi = 0 and call
+  // work(simplex) for the open ones.
   template <int dim>
   template <class Work>
   void
@@ -363,7 +367,8 @@ namespace limber
 
 
 
-  // In two where an edge runs from one side to the other, until none does.
+  // Bisect recursively at the zero of phi on edges on which phi changes sign,
+  // until no simplex is cut.
   template <int dim>
   template <class Work>
   void
@@ -408,7 +413,7 @@ namespace limber
     double of_cell = 1; // m^dim
     for (unsigned int d = 0; d < dim; ++d)
       of_cell /= geometry.inverse_edge[d];
-    // of the degree of x grad N_i; no mean that anybody needs has more
+    // exact for x grad N_i; no other integrand has a higher degree
     static const dealii::QGaussSimplex<dim> rule(dim);
     for (unsigned int q = 0; q < rule.size(); ++q)
       {
@@ -433,8 +438,9 @@ namespace limber
 
 
 
-  // The facet opposite to a corner that is open. Before a tip that counts as
-  // closed it stands for the wall behind, along which all may slide.
+  // Add the facet opposite to an open corner of a simplex. In a face towards a
+  // tip it stands for the wall behind the tip, along which liquid may slide:
+  // only the part of its normal along that of the obstacle counts.
   template <int dim>
   void
   CutCells<dim>::add_surface(const Simplex     &simplex,
@@ -477,7 +483,7 @@ namespace limber
           obstacle      = o;
           from_obstacle = from;
         }
-    Vector along_wall; // of the normal, that part
+    Vector along_wall; // tangential part of the face's normal
     if (at_tip != nullptr)
       {
         const Vector across =
@@ -489,7 +495,7 @@ namespace limber
     if (!(area > 0))
       return;
 
-    // of the third degree, as are the functions
+    // exact to the third degree, that of the shape functions
     static const dealii::QGaussSimplex<dim - 1> rule(dim);
     std::array<double, n_nodes>                 functions{};
     std::array<Vector, n_nodes>                 moments{};

@@ -4,23 +4,23 @@
 #include <algorithm>
 
 /**
- * @file What is known of a cell that obstacles cut, from sums over its open
- * part and its surfaces.
+ * @file Final quantities of a cut cell, from the integrals over its open part
+ * and its surfaces: means, hydrostatic load, groups of facets.
  */
 
 namespace limber
 {
   namespace
   {
-    // What is one piece of the surfaces in a cell: where the normal of the next
-    // is within some 37 degrees of the mean of those before.
+    // A facet joins a piece if its normal is within some 37 degrees of the mean
+    // normal of those already in it.
     constexpr double least_cosine_of_piece = 0.8;
   } // namespace
 
 
 
-  // From sums to means, and to the pressure against its mean: less what the
-  // depth of the centroid does, by the means of the gradients.
+  // Divide moments by the open fraction, and make the hydrostatic load that of
+  // the pressure relative to its mean p_c: subtract (g . x_c) int grad N_i dV.
   template <int dim>
   void
   CutCells<dim>::finish_volume(Cell &cell) const
@@ -38,7 +38,8 @@ namespace limber
       }
     for (unsigned int d = 0; d < dim; ++d)
       {
-        // the mean of a product of linear functions by way of its monomials
+        // means of grad N_i, a product of linear functions, expanded in
+        // monomials
         auto means = cell.monomials;
         for (unsigned int k = 0; k < n_nodes; ++k)
           if (k >> d & 1)
@@ -58,9 +59,10 @@ namespace limber
 
 
 
-  // The pressures of several surfaces that turn little in a cell would hardly
-  // be told apart by the few nodes there: implicit ones are one. So are the
-  // moments of the flow through them (SmoothSurfaces).
+  // Group the facets of a curved surface into pieces. Each piece has one
+  // implicit pressure, as the few nodes of a cell could hardly tell those of
+  // its facets apart, and one set of moments of the flow through it
+  // (SmoothSurfaces).
   template <int dim>
   void
   CutCells<dim>::find_pieces(Cell &cell) const
@@ -91,7 +93,7 @@ namespace limber
         piece->place += surface.area * surface.place;
         piece->area += surface.area;
       }
-    if (!is_implicit) // the flat ones have pressures of their own
+    if (!is_implicit) // each facet has a pressure of its own
       return;
     for (Surface &surface : cell.surfaces)
       surface.beyond =

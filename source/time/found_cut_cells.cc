@@ -5,21 +5,22 @@
 #include <cmath>
 
 /**
- * @file Which cells obstacles cut. Where some obstacles move, only the cells
- * near these are looked at anew in a step.
+ * @file Search for cut cells. If obstacles move, only cells near these are
+ * classified and cut anew in a step.
  */
 
 namespace limber
 {
   namespace
   {
-    // In diagonals of a cell: where what moves is further off, neither the cell
-    // nor those around, which may be twice as large, have anything of it.
+    // In diagonals of a cell: a moving obstacle further away from its centre
+    // affects neither the cell nor its neighbours, which may be twice as large.
     constexpr double far_off = 6;
 
 
 
-    /** From the middle of a cell to the obstacles that do, or do not, move. */
+    /** Signed distance of the centre of a cell from the nearest obstacle that
+     * moves, or that is at rest, m. */
     template <int dim>
     double
     distance_of_middle(const CellGeometry<dim>               &cell,
@@ -86,7 +87,8 @@ namespace limber
 
 
 
-  // What a given step is of that in which sound crosses a cell.
+  // If the time step is given, its ratio to the time in which sound crosses the
+  // smallest cell.
   template <int dim>
   double
   CutCells<dim>::courant_number() const
@@ -140,7 +142,8 @@ namespace limber
 
 
 
-  // Of what is furthest out, as obstacles are rigid.
+  // Largest displacement of moving obstacles since the last update, m. Their
+  // motion is rigid, so it is largest at a corner of the grid's box.
   template <int dim>
   double
   CutCells<dim>::way_since_found(const Places &places) const
@@ -193,9 +196,11 @@ namespace limber
 
 
 
-  // The distance from what moves is asked for where it may matter: twice as
-  // far as the corners are from the middle, as that from a formula is of first
-  // order. Of cells that are cut by what is at rest more has to be known.
+  // Whether moving obstacles are, and were, too far away to affect a cell, so
+  // that its former result holds. Their distance is evaluated anew only where
+  // its bound is below the diagonal: twice the distance of the corners from the
+  // centre, as the distance of a formula is of first order. For cells that an
+  // obstacle at rest may cut the limit is that of is_untouched.
   template <int dim>
   bool
   CutCells<dim>::is_as_before(const std::uint32_t cell, const Places &places)
@@ -234,7 +239,7 @@ namespace limber
     cells.swap(cells_before);
     kinds.swap(kinds_before);
     distances_of_cells.clear();
-    std::vector<std::size_t> found; // those that are not as before
+    std::vector<std::size_t> found; // cells that are cut anew
     for (std::uint32_t cell = 0; cell < n; ++cell)
       {
         if (!is_as_before(cell, places))
@@ -281,7 +286,7 @@ namespace limber
 
 
 
-  // A rank does not know what others have in ghost cells.
+  // Sum up over ranks, as ghost cells hold points of other ranks.
   template <int dim>
   void
   CutCells<dim>::find_holding()

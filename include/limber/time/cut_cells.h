@@ -10,29 +10,31 @@
 namespace limber
 {
   /**
-   * The cells that the surfaces of obstacles run across, for liquids with one
-   * mean divergence in a cell.
+   * Cut cells: cells intersected by the surfaces of rigid obstacles, for
+   * liquids with one mean divergence per cell (treatment `cell`, B-bar).
    *
-   * Between the corners of parts of a cell the distance phi from the obstacles
-   * is taken as linear on simplices, the same on either side of a face. What
-   * has phi > 0 is open. Of it are known its share of the volume, the means of
-   * the monomials in natural coordinates, and the pieces of surface that bound
-   * it with the means of the functions of the nodes over them. As
+   * The signed distance phi from the obstacles (level set) is interpolated
+   * linearly on the simplices of sub-cells, continuously across faces. The
+   * region phi > 0 is open. Known are its volume fraction, the means of the
+   * monomials in natural coordinates over it (moments), and the facets of the
+   * obstacles' surfaces that bound it, with the means of the shape functions
+   * over them. As
    *
    *   sum over cells of (int_open grad N_i dV) = - int_surface N_i n dS
    *
-   * with n out of the obstacle, a constant pressure in the open part is borne
-   * by the same pressure on the surface, at every node. What a pressure that
-   * grows with the depth adds to that is known as well, see Cell::hydrostatic.
+   * with n out of the obstacle, a constant pressure in the open part is in
+   * equilibrium with the same pressure on the surface, at every node. For the
+   * hydrostatic part of the pressure see Cell::hydrostatic.
    *
-   * A cell that is open by less than least_open() counts as closed, a layer
-   * across an axis by less than least_open_layer(), one that points have left
-   * before a moving obstacle by less than least_open_left(). Faces towards such
-   * cells are surfaces of others that are cut, with the part of their normals
-   * along that of the obstacle before a tip at rest, else with their own, so
-   * that they sweep the volume that the obstacle does; nodes of faces that no
-   * cut cell has are held one by one, see ObstacleContact. Theory:
-   * doc/theory/obstacles.md.
+   * Small-cut cells count as closed: below the open volume fraction
+   * least_open(), below least_open_layer() where the surface is normal to an
+   * axis (a layer), below least_open_left() where points have left a cell that
+   * a moving obstacle closes. The faces of open cells towards closed ones then
+   * act as their surfaces. Towards a tip (closed_to_a_rest) only the part of
+   * the face's normal along that of the obstacle counts; other faces keep
+   * their normals and so sweep the same volume as the moving obstacle. Nodes of
+   * faces that belong to no cut cell are constrained one by one, see
+   * ObstacleContact. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class CutCells
@@ -41,39 +43,41 @@ namespace limber
     static constexpr unsigned int n_nodes = 1 << dim;
     using Vector                          = dealii::Tensor<1, dim>;
 
-    /** A piece of surface in a cell: nearly flat, of one obstacle. */
+    /** Nearly flat facet of the surface of one obstacle in a cell. */
     struct Surface
     {
       unsigned int                obstacle = 0;
       Vector                      normal; // out of the obstacle, of unit length
       dealii::Point<dim>          place;  // its centroid, m
       double                      area = 0;    // m^(dim-1)
-      std::array<double, n_nodes> functions{}; // means of N_i over it
+      std::array<double, n_nodes> functions{}; // means of N_i over the facet
       std::array<Vector, n_nodes> normals{};   // int N_i n dS, m^(dim-1)
       std::array<Vector, n_nodes> moments{};   // means of N_i x over it, m
-      // Those of a cell with the same number have one pressure p_s, at their
-      // centroid x_s: each its own in explicit steps
+      // With an implicit pressure the facets of a cell with the same number
+      // share one surface pressure p_s, at their common centroid x_s; in
+      // explicit steps each has its own
       unsigned int piece  = 0;
       double       beyond = 0; // g . (place - x_s), m^2/s^2
     };
 
-    /** A cell with surfaces across it or in its faces. */
+    /** A cell with facets of surfaces inside it or in its faces. */
     struct Cell
     {
       std::uint32_t number = 0;
-      double        open   = 1; // share of its volume
+      double        open   = 1; // open volume fraction
       // Means of the monomials (CellMeans) over the open part
       std::array<double, n_nodes> monomials{};
       std::vector<Surface>        surfaces;
-      // What the pressure rho g . x has beyond its means p_c over the open part
-      // and p_s over each surface does to the nodes, without rho:
+      // Nodal forces, over rho, of the hydrostatic pressure rho g . x relative
+      // to its means p_c over the open part and p_s over each surface:
       //   int_open g . (x - x_c) grad N_i dV
       //     + sum_s int_s g . (x - x_s) N_i n dS, m^(dim+1)/s^2
       std::array<Vector, n_nodes> hydrostatic{};
-      // Before tips that count as closed: what puts the part of the pressure
-      // that acts along the surface there, over the pressure, into the corners
-      // that the tip leaves open, m^(dim-1). There that on all of its faces
-      // cancels; the sum over the nodes is zero.
+      // In cells next to tips (closed_to_a_rest): nodal forces per unit
+      // pressure, m^(dim-1), that move the part of the pressure on the face
+      // which acts along the obstacle to the corners that the tip leaves open.
+      // There the parts of all faces of a tip cancel; the sum over the nodes of
+      // the cell is zero.
       std::array<Vector, n_nodes> beside_tips{};
       bool                        is_beside_tip = false;
 
@@ -86,35 +90,36 @@ namespace limber
 
     explicit CutCells(const RunParts<dim> &parts);
 
-    /** Whether a scene may have any: liquids with obstacles on vertices. */
+    /** Whether a scene may have cut cells: obstacles, linear shape functions,
+     * and a liquid with the treatment `cell`. */
     static bool
     may_be(const RunParts<dim> &parts);
 
-    /** Whether the liquids of a field of nodes know of them. */
+    /** Whether the liquids of a nodal field take cut cells into account. */
     bool
     knows(const unsigned int field) const
     {
       return knowing[field];
     }
 
-    /** Share of a cell: where less is open it counts as closed. */
+    /** Open volume fraction below which a cell counts as closed. */
     double
     least_open() const
     {
       return least_share;
     }
 
-    /** The same where the surface lies across an axis, so that the faces of
-     * cells do for it: more with an explicit pressure, as water that passes the
-     * corner of a thin layer is held too much. */
+    /** The same where the surface is normal to an axis, so that faces of cells
+     * can replace it. Larger with an explicit pressure: the surface would hold
+     * back too much of the water that passes the corner of a thin layer. */
     double
     least_open_layer() const
     {
       return least_of_layer;
     }
 
-    /** The same of a cell that a moving obstacle closes and the last points
-     * have left: about what their material reaches beyond them, half an edge.
+    /** The same for a cell that a moving obstacle closes and that holds no more
+     * points: about the extent of a point's material, half its edge, in cells.
      */
     static constexpr double
     least_open_left()
@@ -122,9 +127,9 @@ namespace limber
       return 0.3;
     }
 
-    /** What the pressure in a cell answers its dilation with, over that in any
-     * other: less where so little is open that it would be too stiff for the
-     * step, as if C^2 / 4 were open. */
+    /** Factor on the dilation of a cell that limits the stiffness of small-cut
+     * cells to what the explicit step (CFL) admits: open / (C^2 / 4) where the
+     * open fraction is below C^2 / 4, with the Courant number C, else 1. */
     double
     softness(const std::uint32_t number) const
     {
@@ -138,7 +143,8 @@ namespace limber
     void
     reinit(double time);
 
-    /** Follow the obstacles to the beginning of a step; collective. */
+    /** Update cut cells for obstacles that move, to the start of a step;
+     * collective. */
     void
     find(double time);
 
@@ -162,14 +168,14 @@ namespace limber
       return any_cut;
     }
 
-    /** Another one whenever the cells have been found anew. */
+    /** Changes whenever the cut cells have been updated, for caches. */
     unsigned int
     version() const
     {
       return times_found;
     }
 
-    /** That of a cell of the grid; null where it has none. */
+    /** The record of a cell of the grid; null where it has none. */
     const Cell *
     cell(const std::uint32_t number) const
     {
@@ -177,30 +183,30 @@ namespace limber
       return kind >= first_cut ? &cells[kind - first_cut] : nullptr;
     }
 
-    /** Whether obstacles take all of a cell, or all but a rest. */
+    /** Whether a cell is inside obstacles, or counts as closed. */
     bool
     is_covered(const std::uint32_t number) const
     {
       return kinds[number] == covered || is_closed(number);
     }
 
-    /** Whether they leave a rest that counts as closed. */
+    /** Whether a cell is cut but its open fraction counts as closed. */
     bool
     is_closed(const std::uint32_t number) const
     {
       return kinds[number] == closed || kinds[number] == closed_to_a_rest;
     }
 
-    /** Whether what is in a cell, if anything, has room to press on anything.
-     */
+    /** Whether material in a cell can exert a pressure: not in cells inside
+     * obstacles, nor in tips. */
     bool
     has_room(const std::uint32_t number) const
     {
       return kinds[number] != covered && kinds[number] != closed_to_a_rest;
     }
 
-    /** By vertex, of which cells that obstacles take it is a corner: the sum
-     * of 2^k, it being their corner k. */
+    /** By vertex, bit mask of the covered cells around it, see is_covered():
+     * the sum of 2^k over those of which it is the corner k. */
     const double *
     covered_corners() const
     {
@@ -214,15 +220,16 @@ namespace limber
       return at_cut[node] > 0;
     }
 
-    /** By vertex, the integral of N_i over what obstacles leave open, m^dim. */
+    /** By vertex, the integral of N_i over the volume outside obstacles, m^dim.
+     */
     const double *
     rooms() const
     {
       return open_rooms.data();
     }
 
-    /** Whether a surface ends at a cell that is cut, as those across one do;
-     * others in faces of cells need not. */
+    /** Whether a surface shares a node with a cut cell: always true for those
+     * inside one, not for those in faces towards closed cells. */
     bool
     meets_cut(const Cell &cell, const Surface &surface) const
     {
@@ -234,8 +241,8 @@ namespace limber
       return false;
     }
 
-    /** Whether the liquid of a field reaches the surfaces in a cell, a record
-     * that others keep here. */
+    /** Whether the liquid of a field reaches the surfaces in a cell: a flag
+     * that other classes set and read here; find() clears it. */
     char &
     wets(const std::uint32_t cell, const unsigned int field)
     {
@@ -246,22 +253,22 @@ namespace limber
     enum Kind : std::uint32_t
     {
       open,
-      covered,
-      closed,           // but for what may hold points; with walls for faces
-      closed_to_a_rest, // a tip, its faces stand for the obstacle behind
+      covered,          // inside obstacles
+      closed,           // open part may hold points; its faces are walls
+      closed_to_a_rest, // tip: its faces stand for the obstacle behind them
       first_cut
     };
 
     struct Simplex
     {
       std::array<dealii::Point<dim>, dim + 1> corners;  // natural coordinates
-      std::array<double, dim + 1>             distance; // m
+      std::array<double, dim + 1>             distance; // signed, m
     };
 
     using Places = std::vector<ObstaclePlace<dim>>;
 
-    // Parts of a cell along an edge, and the distances of their corners from
-    // the obstacles, m, x fastest
+    // Sub-cells along an edge of a cell, and the signed distances of their
+    // corners from the obstacles, m, x fastest
     static constexpr unsigned int n_parts = dim == 2 ? 4 : 2;
     static constexpr unsigned int n_corners =
       (n_parts + 1) * (n_parts + 1) * (dim == 2 ? 1 : n_parts + 1);
@@ -331,24 +338,24 @@ namespace limber
     LazyArray<double>          at_cut, at_covered, open_rooms; // by node
     RecordExchange             exchange{1};
     std::vector<char>          wet; // by cell, field
-    // Of the middles of cells from what is at rest, m; and from what moves,
-    // less what it has moved by since
+    // Signed distances of cell centres, m, from obstacles at rest; from moving
+    // ones, reduced towards 0 by their motion since the distance was computed
     std::vector<double> distance_at_rest, distance;
     Places              former;
     bool                moves = false;
-    // By cell: positive where it holds points of any rank; empty where that is
-    // not known yet, or nothing moves
+    // Mass of the points of all ranks by cell, kg; empty while it is not known
+    // yet, or if no obstacle moves
     std::vector<double> holding;
-    // By cell, whether what moves was too far off to do anything to it or to
-    // those around when cells were last found
+    // By cell, whether moving obstacles were too far away to affect it or its
+    // neighbours when cut cells were last updated
     std::vector<char> is_untouched;
-    // Of the cells that are being found anew, in their order
+    // Of the cells that are cut anew in this update, in their order
     std::vector<Distances>  distances_of_cells;
     const bool              is_implicit; // the pressure
     static constexpr double least_share    = 0.01;
     double                  least_of_layer = least_share;
-    // Below it a cell is too stiff for the step: C^2 / 4, with the Courant
-    // number C; 0 where the pressure is implicit
+    // Open fraction below which a cell is too stiff for the step: C^2 / 4, with
+    // the Courant number C; 0 if the pressure is implicit
     double       stiff_share = 0;
     bool         any_cut     = false;
     unsigned int times_found = 0;
