@@ -74,7 +74,7 @@ namespace limber
 
 
 
-  // What one field would have: the means over masses.
+  // Perfect stick: the mass-weighted mean, as one common field would have it.
   template <int dim>
   void
   Contact<dim>::join(const unsigned int slot)

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-/** @file Points near other bodies by place: a hash table of bins. */
+/** @file Contact search: spatial hash of the points near other bodies. */
 namespace limber
 {
   template <int dim>
@@ -32,8 +32,8 @@ namespace limber
 
 
 
-  // That of the key, or the free one where it would be. (Fibonacci hashing;
-  // Knuth, The Art of Computer Programming 3, 6.4)
+  // The entry of the key, or the free one where it would be inserted: Fibonacci
+  // hashing with linear probing (Knuth, The Art of Computer Programming 3, 6.4)
   template <int dim>
   std::size_t
   Contact<dim>::Bins::entry(const std::uint64_t key) const
@@ -72,7 +72,8 @@ namespace limber
 
 
 
-  // Points come in the order of cells: many ask for the same bin.
+  // The last result is kept: points come in the order of cells, so many in
+  // succession ask for the same bin.
   template <int dim>
   const std::vector<std::uint32_t> &
   Contact<dim>::Bins::around(const dealii::Point<dim> &place)

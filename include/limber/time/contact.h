@@ -13,7 +13,7 @@
 
 namespace limber
 {
-  /** How many fields of nodes the bodies of a problem give to. */
+  /** Number of nodal velocity fields that the bodies of a problem use. */
   template <int dim>
   unsigned int
   n_nodal_fields(const Problem<dim> &problem);
@@ -21,40 +21,40 @@ namespace limber
 
 
   /**
-   * Contact of bodies that have fields of nodes of their own, where the
-   * material of their points ends (ContactImpulses). A point p of a that faces
-   * the points q of b, with the normal n out of a, and how far the material of
-   * points goes towards the other body, R, has the gap
+   * Multi-field contact: contact of bodies that have nodal fields of their own,
+   * at the surfaces of their material (ContactImpulses). A point p of a that
+   * faces the points q of b, with the normal n out of a and the extent R of the
+   * material of a point towards the other body, has the gap
    *
    *   g_p = sum_q w_q ((x_q - x_p) . n - R_q) - R_p
    *
    * over points whose edges overlap along the surface, with weights that fall
-   * linearly with the distance along it: from point to point of b, its surface
-   * is what lies between their ends. The gap grows by the relative velocity
-   * there,
+   * linearly with the distance along it, so that the surface of b interpolates
+   * between its points. The rate of the gap is the relative velocity there,
    *
    *   sum_q w_q (v_b + grad v_b d_q)(x_q) - (v_a + grad v_a R_p n)(x_p),
    *
-   * with d_q from x_q to the place, which is therefore at least -g_p / dt. The
+   * with d_q from x_q to the contact point. It must be at least -g_p / dt; the
    * impulse that this takes acts there, on both. a is the one whose points are
    * smaller.
    *
-   * With linear functions the velocity of what is outside its cell depends on
-   * nodes that hardly have any mass, and jumps when points enter cells. There
-   * impulses act at nodes at which both have mass, w = v_a - v_b, if the points
-   * that see them touch, min_b (x . n - R) - max_a (x . n + R) <= 0.
+   * With linear functions the velocity extrapolated out of a point's cell
+   * depends on nodes with hardly any mass, and jumps when points cross cells.
+   * There impulses act at nodes at which both have mass, w = v_a - v_b, if the
+   * points around them touch, min_b (x . n - R) - max_a (x . n + R) <= 0.
    *
-   * What presses in the new velocity does so in every other one of the step. So
-   * momentum is kept, and energy does not grow.
+   * Contacts that are active in the new velocity are so in every other velocity
+   * of the step. So momentum is conserved, and energy does not grow.
    *
    * Normals are those of nodes at which both bodies have mass. That of a body
-   * there has the direction of its gradient of volume, g = sum V grad N, turned
-   * so that it is normal to the surface in which its points say that it ends
-   * (SurfaceFit). Of those of a, of b and the mean it is the one along which
-   * the material of the two is furthest apart.
+   * there is its volume gradient, g = sum V grad N, corrected by a plane fitted
+   * to the surface of its points (SurfaceFit). Of those of a, of b and the mean
+   * the one is taken along which the material of the two is furthest apart.
    *
    * Bodies of different fields that are in no pair stick together: both have
    * the velocity and the increment that one field would give them.
+   *
+   * Theory: doc/theory/contact.md.
    */
   template <int dim>
   class Contact
@@ -62,15 +62,16 @@ namespace limber
   public:
     explicit Contact(const RunParts<dim> &parts);
 
-    /** Adopt a changed mesh, or another share of it. */
+    /** Adopt a changed mesh, or another partition of it. */
     void
     reinit();
 
-    /** Where bodies touch; the masses of nodes are known. Collective. */
+    /** Contact search: normals, gaps and contact points of this step. The
+     * masses of nodes are known. Collective. */
     void
     find(double step);
 
-    /** Whether anything presses or may do so; of this rank. */
+    /** Whether there may be active contacts, see ContactImpulses::any(). */
     bool
     any() const
     {
@@ -78,23 +79,24 @@ namespace limber
     }
 
     /**
-     * Hold the velocity at @p slot as the new one is going to be held, that is
-     * (p + dt f) / m + dt g, with the force in the records.
+     * Constrain the velocity at @p slot with the contacts that a prediction of
+     * the new one, (p + dt f) / m + dt g, makes active; the force is in the
+     * records.
      */
     void
     hold_before(unsigned int slot, double step);
 
-    /** Exchange momentum: changes new velocities and increments. */
+    /** Apply contact impulses to new velocities and increments. */
     void
     exchange();
 
-    /** Hold another velocity as the new one has been held. */
+    /** Constrain another velocity with the active contacts of exchange(). */
     void
     hold(unsigned int slot);
 
     /**
-     * The same of the velocity that points have given back, and account for
-     * what they lose by that beyond exchange(), by the share of FLIP.
+     * The same for the re-mapped velocity, and account for the energy that
+     * points lose by that beyond exchange(), by the share of FLIP.
      */
     void
     hold_after(unsigned int slot, double flip_share);
@@ -120,7 +122,7 @@ namespace limber
     struct Candidate
     {
       dealii::Point<dim> place;
-      Vector             normal;   // out of its body
+      Vector             normal;   // outward
       Vector             velocity; // m/s
       double             reach;    // from the point to the end of its material
       double             width;    // half of its edge along the surface, m
@@ -129,10 +131,10 @@ namespace limber
       unsigned int       rank;
     };
 
-    /** Those of the two sides of a pair. */
+    /** Candidates of the two bodies of a pair. */
     using Sides = std::array<std::vector<Candidate>, 2>;
 
-    /** Candidates by place, in a table of bins of equal edges. */
+    /** Spatial hash of candidates: a table of bins of equal edges. */
     struct Bins
     {
       void
@@ -163,17 +165,18 @@ namespace limber
       std::vector<std::uint32_t> found; // around the last one
     };
 
-    /** What places of this rank have of points of another one. */
+    /** Parts of contact points of this rank that come from points of another
+     * rank. */
     struct PartsElsewhere
     {
       std::vector<std::uint32_t> places;
       std::vector<double>        numbers;     // see ask_for_part()
-      std::size_t                n_parts = 0; // where their number stands
+      std::size_t                n_parts = 0; // index of their count in these
     };
 
     /**
-     * What ranks tell each other of the touches of two fields: n numbers a
-     * node, of which the sums or the largest are wanted.
+     * Reduction over ranks at the touches of two fields: sums or maxima of n
+     * numbers per node.
      */
     struct SharedSlots
     {
@@ -185,36 +188,37 @@ namespace limber
 
       const unsigned int n;
       const bool         of_largest;
-      const double       nothing; // of nodes that nothing was gathered at
+      const double       nothing; // neutral element of the reduction
       LazyArray<double>  records;
       RecordExchange     exchange{n};
     };
 
-    /** What two fields do where they meet. */
+    /** Contact law of two fields. */
     struct Law
     {
       ContactLaw law      = ContactLaw::stick;
       double     friction = 0;
     };
 
-    /** Corners of a cell, [first, last), for the bodies of a field. */
+    /** Nodes of a cell at which the bodies of a field may touch others: range
+     * [first, last) of the corners. */
     struct Rim
     {
       std::uint32_t first, last;
     };
 
-    /** Those of a body in cells with corners: [first, last). */
+    /** Batches of a body in cells with such nodes: range [first, last). */
     struct Group
     {
       unsigned int body;
       std::size_t  first, last;
     };
 
-    /** How much longer than without stress the points of a body are. */
+    /** Stretch of the points of a body in contact. */
     struct Stretch
     {
-      double       largest = 1; // across its surface
-      unsigned int age     = 0; // steps since it has been looked at
+      double       largest = 1; // normal to its surface
+      unsigned int age     = 0; // steps counted; updated every some of them
     };
 
     const Law &
@@ -303,7 +307,7 @@ namespace limber
     void
     join(unsigned int slot);
 
-    /** A point of the other body that one faces. */
+    /** A point of the other body that a point faces, see add_places(). */
     struct Facing
     {
       std::uint32_t candidate;
@@ -314,7 +318,8 @@ namespace limber
     bool
     is_covered(const Facing &q, const std::vector<Candidate> &other) const;
 
-    /** What points of one cell have of a place, before its nodes get it. */
+    /** Share of a contact point that comes from the points of one cell, summed
+     * up before it goes to ContactImpulses. */
     struct Part
     {
       static constexpr std::uint32_t no_cell = invalid_cell;
@@ -328,23 +333,23 @@ namespace limber
     const unsigned int  n_fields;
     std::vector<Law>    laws;
     std::vector<double> edge;  // of the largest point of a field, m
-    std::vector<double> reach; // the furthest of a point of a field, m
-    // Fields a < b that may part, in the same order on all ranks
+    std::vector<double> reach; // largest extent of a point of a field, m
+    // Pairs of fields a < b that may separate, in the same order on all ranks
     std::vector<std::array<unsigned int, 2>> parting;
     GridView<dim>                            grid;   // as of this step
     std::vector<PointView<dim>>              points; // of the bodies, likewise
-    // Of the bodies: the cells of their points when last looked at
+    // By body, the cells of its points in the step before
     std::vector<std::vector<std::uint32_t>> cells_of;
-    bool                     cells_are_others = true; // in this step
+    bool                     cells_are_others = true; // changed in this step
     std::vector<Touch>       touches;  // those of a node side by side
     std::vector<Touch>       found;    // those of this step
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0
     // By node: 1 + its number among those that hang, or 0; empty if none may
     LazyArray<std::uint32_t> hanging_of;
-    // By field and cell: 2 + number of the rim, 1 without corners, 0 where
-    // nobody has looked since the touches were others
+    // By field and cell: 2 + number of the rim, 1 without corners, 0 where not
+    // yet determined since the touches last changed
     LazyArray<std::uint32_t>     rim_of;
-    std::vector<std::uint32_t>   looked_at; // others than 0 of these
+    std::vector<std::uint32_t>   looked_at; // entries of these that are not 0
     std::vector<Rim>             rims;
     std::vector<MeetingCorner>   corners; // of the rims
     std::vector<MeetingBatch>    batches; // of points in cells with a rim
@@ -366,7 +371,7 @@ namespace limber
     std::vector<Facing>          facing;
     Part                         part;
     const unsigned int           this_rank;
-    // Of vertices that other ranks hold as well: who does
+    // Ranks that share a vertex with this one
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
                                            ranks_of_vertex;
     std::map<unsigned int, PartsElsewhere> parts_elsewhere;
@@ -374,8 +379,8 @@ namespace limber
 
 
 
-  // Each rank has gathered over its points at the touches; all that hold the
-  // node get the same. Without other ranks there is nothing to do.
+  // Reduce over all ranks that share a node what each has summed over its own
+  // points.
   template <int dim>
   template <class SlotsOf>
   void

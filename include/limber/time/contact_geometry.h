@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-/** @file What contact with bodies and with obstacles have in common. */
+/** @file Common to contact between bodies and with rigid obstacles. */
 namespace limber
 {
-  /** The part of a vector across a unit normal: along the surface. */
+  /** Tangential part of a vector at a surface with this unit normal. */
   template <int dim>
   inline dealii::Tensor<1, dim>
   along_surface(const dealii::Tensor<1, dim> &vector,
@@ -22,9 +22,9 @@ namespace limber
 
 
   /**
-   * Whether material that goes @p reach (m) from its point may press in a step
-   * over a gap (m) that it closes by @p nearer (m) in the step by itself: with
-   * some room for what else may move it.
+   * Whether a gap (m) may close in a step, so that contact is considered:
+   * @p nearer is the approach (m) at the present velocity, @p reach the extent
+   * of the material of a point (m). The margin is for other forces in the step.
    */
   inline bool
   may_press(const double gap, const double nearer, const double reach)
@@ -35,8 +35,8 @@ namespace limber
 
 
   /**
-   * The least of what a gap may grow by in a step, m: it may close; of what has
-   * gone in, a tenth comes out, and no more than a fiftieth of the reach.
+   * Lower bound for the growth of a gap in a step, m: an open gap may close;
+   * a tenth of a penetration is removed, at most a fiftieth of the reach.
    */
   inline double
   least_growth(const double gap, const double reach)
@@ -47,11 +47,12 @@ namespace limber
 
 
   /**
-   * How far what flows goes from its points is not known well: others come
-   * between those of its surface, and all are sheared. Pushed out of what it
-   * touches it would gain energy, so where a @p gap (m) is negative, it ends
-   * there instead. How much is left of the way (m) that it goes from its
-   * points; the rest is no longer part of the gap.
+   * For material that may flow plastically: no penetration is removed. The
+   * extent of its material beyond its points is not known well, as other points
+   * come between those of its surface and all are sheared; pushed out it would
+   * gain energy. So where a @p gap (m) is negative, the extent @p way (m) is
+   * shortened until it is closed, at most to zero. Returns the remaining
+   * fraction of the extent and updates the gap.
    */
   inline double
   share_left(double &gap, const double way)
@@ -65,8 +66,8 @@ namespace limber
 
 
 
-  /** Of an impulse (kg m/s) at the end of an arm (m), kg m^2/s; in the plane
-   * the last of three. */
+  /** Angular impulse, kg m^2/s, of an impulse (kg m/s) with a lever arm (m);
+   * in the plane only the third component. */
   template <int dim>
   inline dealii::Tensor<1, 3>
   moment_of(const dealii::Tensor<1, dim> &arm,

@@ -14,40 +14,42 @@
 namespace limber
 {
   /**
-   * Impulses at places that touch. At place p the velocity of the nodes
-   * against what it touches is
+   * Contact impulses with Coulomb friction at contact points ("places"). The
+   * relative velocity at place p is
    *
    *   w_p = sum_i a_pi v_i - v_p,
    *
-   * with a_pi the functions of the nodes there. The impulses J_p that it gets
-   * go to the nodes with the same numbers, m_i dv_i = sum_p a_pi J_p, and are
-   * those with
+   * with the coefficients a_pi of the nodal velocities there and the velocity
+   * v_p of the obstacle. The impulses J_p are distributed to the nodes with the
+   * transpose, m_i dv_i = sum_p a_pi J_p, and satisfy the contact conditions
    *
    *   J_n >= 0,  w_n >= least,  J_n (w_n - least) = 0,
    *   |J_t| <= mu J_n,  w_t = 0 where it is less        (Coulomb),
    *
    * found by some passes of a projected Jacobi method. With the masses M_i of
-   * nodes that belong to the places, M_i = sum_p |a_pi| m_p, a pass changes
-   * J_p by m_p (least - w_n) / s_p with s_p = sum_i |a_pi| M_i / m_i: what is
-   * the same at all places is right after one pass, and nothing overshoots.
-   * Without friction M_i has masses times |n_q . n_p| at most (Borne): what
-   * presses across does not matter.
-   * All of them are found together, so that it does not matter how many places
-   * or obstacles a node sees; functions may be those of any kernel.
+   * the places as seen by a node, M_i = sum_p |a_pi| m_p, a pass changes J_p by
+   * m_p (least - w_n) / s_p with s_p = sum_i |a_pi| M_i / m_i: this is exact
+   * after one pass if the values are the same at all places, and never
+   * overshoots. Without friction masses count by |n_q . n_p| at most (Borne),
+   * as impulses across n_p do not change w_n.
+   * All impulses are solved together, so that a node may see any number of
+   * places and obstacles; functions may be those of any kernel.
    *
-   * Of a step, FLIP points lose by them what ContactLoss tells: with the
-   * velocity b that they bring to a place, r that they give back, the increase
-   * a by all other forces, and the impulses K_b and K_r that hold these
-   * velocities where they strain the points,
+   * The energy that FLIP points lose by them in a step is in ContactLoss: with
+   * the velocity b at a place mapped from the points at the start of the step,
+   * r re-mapped from them at its end, the increment a by all other forces, and
+   * the impulses K_b and K_r that constrain b and r where these strain the
+   * points,
    *
    *   - J . (b + r) / 2 + a . (K_b + K_r) / 2,
    *
-   * since forces have done a . (K_b + K_r) / 2 less on the points than they
-   * have lost to strain. Points that nothing has strained at the beginning of
-   * the step are strained by r alone. Where places are nodes, what strains the
-   * points has nothing left of what is held, K = -m_p b or r where it presses.
+   * since forces have done a . (K_b + K_r) / 2 less work on the points than the
+   * points have lost to strain. If points are not strained at the start of the
+   * step, they are strained by r alone. Where places are nodes, the velocity
+   * that strains the points keeps nothing of a constrained component,
+   * K = -m_p b or r in active contacts.
    *
-   * Nodes that no place sees are not met by any of this.
+   * Only nodes that some place sees are visited.
    */
   template <int dim>
   class ContactImpulses
@@ -57,11 +59,11 @@ namespace limber
 
     struct Place
     {
-      Vector normal;        // out of what is touched, of unit length
-      Vector velocity;      // v_p: of what is touched, m/s
-      double least    = 0;  // m/s
-      double friction = 0;  // mu; infinite where what presses sticks
-      double mass     = 0;  // m_p, kg: by what share it bears
+      Vector normal;        // outward from the other body or obstacle, unit
+      Vector velocity;      // v_p: of the obstacle, m/s
+      double least    = 0;  // lower bound of w_n, m/s
+      double friction = 0;  // mu; infinite for stick
+      double mass     = 0;  // m_p, kg: its weight among the places of a node
       Vector impulse;       // J, kg m/s
       bool   is_own = true; // counted on this rank
 
@@ -71,25 +73,26 @@ namespace limber
         return impulse * normal > 0;
       }
 
-      bool   is_given   = false; // the impulse across the surface
+      bool   is_given   = false; // the normal impulse, see give()
       double relaxation = 0;     // m_p / s_p, kg
       bool   sticks     = false;
 
-      // What ContactLoss wants to know: a, b or r, the new velocity; K
+      // For ContactLoss: a; b or r; the new velocity; K
       Vector increase, brought, after, held;
     };
 
-    /** Places that have parts on two ranks, in the same order on both. */
+    /** Places with nodes on this and another rank, in the same order on both.
+     */
     struct Peer
     {
       unsigned int               rank;
-      std::vector<std::uint32_t> own;   // those of this rank, a part is there
-      std::vector<std::uint32_t> parts; // those of that rank, a part is here
+      std::vector<std::uint32_t> own;   // of this rank, with a part there
+      std::vector<std::uint32_t> parts; // of that rank, with a part here
     };
 
     /**
-     * With @p leapfrogs (the initial frame) the velocity that points give back
-     * in a step strains them in the next as well: K_b is K_r of the step
+     * With @p leapfrogs (the initial frame) the re-mapped velocity of a step
+     * strains the points in the next one as well: K_b is K_r of the step
      * before.
      */
     explicit ContactImpulses(NodalFields<dim> &nodes, bool leapfrogs = false);
@@ -107,10 +110,10 @@ namespace limber
     add_place();
 
     /**
-     * Of the last place: nodes that it sees, by the offsets of their records in
-     * the grid, with a_pi. A place has one share of a node, however often it is
-     * told. The sizes are sums of |a_pi| over the points that it comes from: of
-     * the share itself they would depend on how ranks have divided these.
+     * Add coefficients a_pi to the last place, for nodes given by the offsets
+     * of their records in the grid. Repeated shares of a node are summed. The
+     * sizes are sums of |a_pi| over the contributing points: |sum a_pi| would
+     * depend on how these are distributed over ranks.
      */
     template <class Offsets>
     void
@@ -157,7 +160,7 @@ namespace limber
       shares.begin.back() = end;
     }
 
-    // A node with a share of zero would not be known on other ranks.
+    // Shares of zero are left out: other ranks would not know of the node.
     void
     add_share(const unsigned int  field,
               const std::uint32_t node,
@@ -168,8 +171,8 @@ namespace limber
     }
 
     /**
-     * Call work(node, weight) with the nodes whose velocities make up that of
-     * a node of the grid: itself, or the masters of one that hangs.
+     * Call work(node, weight) for a node, or for the masters of a hanging node
+     * with their weights.
      */
     template <class Work>
     void
@@ -184,22 +187,22 @@ namespace limber
     }
 
     /**
-     * What sides of the box are going to hold of the nodes of a field, after
-     * all impulses: places see there what the sides leave, and do not wait for
-     * what they do not let happen. Of a place without friction a node counts
-     * with the part of its normal n that the sides leave, |P n|; where that is
-     * less than .1, not at all. What they give to components that a side always
-     * holds goes to the side, see for_each_given_to_side(). To be told before
-     * these end.
+     * Take into account boundary conditions of the sides of the box that are
+     * applied to the nodes of a field after all impulses: relative velocities
+     * are computed with the constrained nodal velocities. For a place without
+     * friction a node counts by the unconstrained part of the normal, |P n|,
+     * and not at all if that is below .1. Impulses on components that a side
+     * always holds go to the side, see for_each_given_to_side(). To be called
+     * before finish_adding().
      */
     void
     heed_sides(unsigned int field, const std::vector<Constraint> &constraints);
 
     /**
-     * After all of these; masses of nodes are known. Collective. Places of a
-     * rank are its own, apart from those with parts elsewhere, which @p peers
-     * names by rank. After four passes points that are pressed or roll do what
-     * they do after sixteen.
+     * To be called after the last place has been added; masses of nodes are
+     * known. Collective. @p peers lists, by rank, places with nodes on other
+     * ranks. Four passes give the same results as sixteen for bodies that are
+     * pressed or roll.
      */
     void
     finish_adding(std::vector<Peer> &&peers  = {},
@@ -208,21 +211,21 @@ namespace limber
     static constexpr unsigned int passes_of_points = 4;
 
     /**
-     * The same of places at nodes, of two fields each, of which each rank has
-     * all that it holds: nothing has to be summed up.
+     * The same for places at nodes, of two fields each: every rank that holds a
+     * node has all its places, so that no sums over ranks are needed.
      */
     void
     finish_adding_nodes();
 
-    /** On all ranks: some places have impulses known from elsewhere. */
+    /** Announce, on all ranks, that some normal impulses are set by give(). */
     void
     expect_given()
     {
       gives_some = true;
     }
 
-    /** That of a place across the surface, kg m/s, after these have ended:
-     * exchange() finds those of the others, and what rubs. */
+    /** Prescribe the normal impulse of a place, kg m/s, after
+     * finish_adding(): exchange() finds those of the others, and friction. */
     void
     give(const std::size_t place, const double across)
     {
@@ -230,7 +233,8 @@ namespace limber
       places[place].impulse  = across * places[place].normal;
     }
 
-    /** Whether there is any on any rank. */
+    /** Whether any rank has a place (for places at nodes: whether this one has)
+     */
     bool
     any() const
     {
@@ -244,20 +248,22 @@ namespace limber
     }
 
     /**
-     * Hold the velocity that points bring, at a slot of the records, as the new
-     * one is going to be held: (p + dt f) / m + g dt.
+     * Constrain the velocity that strains points at the start of the step, at a
+     * slot of the records, with the contacts that a prediction of the new one,
+     * (p + dt f) / m + g dt, makes active.
      */
     void
     hold_before(unsigned int slot, double step, const Vector &gravity);
 
     /**
-     * Find the impulses that the new velocities have, from what was expected,
-     * and give them to these and to their increments. Returns what PIC loses.
+     * Solve for the impulses of the step, starting from those of the prediction
+     * if there are any, and apply them to new velocities and increments.
+     * Returns the energy that PIC loses.
      */
     ContactLoss
     exchange();
 
-    /** Of the impulses of places, what has gone to sides instead of nodes:
+    /** Parts of the impulses that sides of the box have taken instead of nodes:
      * work(side, component, impulse, kg m/s). */
     template <class Work>
     void
@@ -275,15 +281,16 @@ namespace limber
     }
 
     /**
-     * Hold the velocity that points have given back, at a slot of the records.
-     * Returns what they lose beyond that, by the share of FLIP.
+     * Constrain the re-mapped velocity, at a slot of the records, as hold()
+     * does. Returns the energy that points lose beyond exchange(), by the share
+     * of FLIP.
      */
     ContactLoss
     hold_after(unsigned int slot, double flip_share);
 
     /**
-     * Bring another velocity to the least one where places press, and to rest
-     * along the surface where they stick.
+     * Constrain another velocity in active contacts: w_n = least, and w_t = 0
+     * where they stick.
      */
     void
     hold(unsigned int slot);
@@ -306,16 +313,16 @@ namespace limber
       const Constraint *constraint;
     };
 
-    // The masses of places that bear on a node: of all of them, M_i, and times
-    // |n_d| by direction
+    // Masses of the places of a node: of all of them, M_i, and weighted by
+    // |n_d| for each direction d
     struct Borne
     {
       static constexpr unsigned int all = 0, along = 1;
       static constexpr unsigned int stride = 1 + dim;
     };
 
-    // What ranks tell each other of the nodes of a field: momentum that places
-    // give in a pass, or the masses; a record has both
+    // Sums over ranks at the nodes of a field: momentum from places in a pass,
+    // or the masses; a record has both
     struct Given
     {
       static constexpr unsigned int momentum = 0;
@@ -415,9 +422,9 @@ namespace limber
              (held_components[node] >> component & 1);
     }
 
-    // What of the velocities of nodes the sides have left already, or are going
-    // to leave: of components that they always hold theirs, or their increment,
-    // which is zero; pressing, what they let go
+    // How nodal values are constrained by sides before they are summed at
+    // places: components always held become zero (increment) or the velocity of
+    // the side; pressing also applies one-sided (separating) conditions
     enum class Seen
     {
       increment,
@@ -466,21 +473,21 @@ namespace limber
     const bool                 leapfrogs;
     std::vector<Place>         places;
     PlaceShares                shares;
-    std::vector<double>        share_sizes; // of each share
+    std::vector<double>        share_sizes; // sum of |a_pi|, of each share
     std::vector<Node>          seen;
     std::vector<std::uint32_t> after_share;        // 1 + the last of each, or 0
     std::size_t                first_share = 0;    // of the last place
     std::vector<LazyArray<std::uint32_t>> seen_as; // per field, by node: 1 +
                                                    // its place in these, or 0
-    // Of those seen: 1 / m_i; M_i; the velocity that is dealt with; the
-    // momentum that places give in a pass. Of places: w_p; what
-    // they give; whether they are asked, or give any
+    // By seen node: 1 / m_i; M_i; the velocity at hand; the momentum from
+    // places in a pass. By place: w_p; the change of its impulse; whether it
+    // takes part in the sums
     std::vector<double> inverse_mass, bears, velocity, momentum;
     std::vector<double> relative, given_by_place;
     std::vector<char>   takes_part;
-    // What sides hold of nodes that are seen, empty where nobody heeds any:
-    // fields with their constraints; of nodes, the components always held
-    // (bits), by which sides, and the velocity that sides leave
+    // Constraints of seen nodes by sides, empty without heed_sides(): fields
+    // with their constraints; by node, the components always held (bits), the
+    // sides that do so, and the constrained velocity
     std::vector<std::pair<unsigned int, const std::vector<Constraint> *>>
                                heeded;
     std::vector<HeldOfNode>    held;
