@@ -112,8 +112,7 @@ namespace limber
 
 
 
-  // Where no node has two of them, they do not know of each other: one pass is
-  // exact.
+  // If no node has two places, these are not coupled and one pass is exact.
   template <int dim>
   void
   ContactImpulses<dim>::finish_adding_nodes()
@@ -130,8 +129,9 @@ namespace limber
 
 
 
-  // Each rank knows the velocity of the nodes that its part of a place sees.
-  // The owner adds them up and tells the sum: all do the same with it.
+  // Sum relative velocities of places over the ranks of their nodes: the owner
+  // adds up the parts and sends back the sum, so that all ranks go on with the
+  // same value.
   template <int dim>
   void
   ContactImpulses<dim>::complete()
@@ -227,7 +227,7 @@ namespace limber
 
 
 
-  // The others are not asked for it.
+  // Relative velocities w_p: of all places, or only those in active contact.
   template <int dim>
   void
   ContactImpulses<dim>::find_relative(const bool only_of_pressing,
@@ -268,7 +268,7 @@ namespace limber
 
 
 
-  // From places that take part to the velocities of the nodes.
+  // Distribute impulses of places that take part to the velocities of nodes.
   template <int dim>
   void
   ContactImpulses<dim>::give_impulses()
@@ -297,7 +297,9 @@ namespace limber
 
 
 
-  // From the impulses that places have and the velocity has.
+  // Projected Jacobi method with the Coulomb law (radial return of the
+  // tangential impulse), starting from the present impulses, which the velocity
+  // includes already.
   template <int dim>
   void
   ContactImpulses<dim>::press(bool relative_is_known)
@@ -367,7 +369,8 @@ namespace limber
 
 
 
-  // What is brought is without the increase.
+  // The velocity b at the start of the step is the new one without impulses,
+  // less the increment.
   template <int dim>
   ContactLoss
   ContactImpulses<dim>::exchange()
@@ -422,8 +425,7 @@ namespace limber
 
 
 
-  // What has been held at the end of the step before was held at the beginning
-  // of this one as well.
+  // With leapfrogs: K_r of the step before is K_b of this one.
   template <int dim>
   void
   ContactImpulses<dim>::account_former(ContactLoss &loss)
@@ -476,7 +478,8 @@ namespace limber
 
 
 
-  // With @p tell, places learn what was there and what holds it.
+  // Constrain a velocity at a slot. With @p tell, places keep the velocity
+  // before that and the impulse that constrains it (K), for account().
   template <int dim>
   void
   ContactImpulses<dim>::hold_and_tell(const unsigned int slot, const bool tell)

@@ -7,8 +7,9 @@
 #include <algorithm>
 
 /**
- * @file Where bodies touch, in which direction, and whether their points do; as
- * all ranks that hold a node agree.
+ * @file Contact search at nodes: which nodes have mass of two bodies, their
+ * contact normals, and whether the points there touch. All ranks that hold a
+ * node get the same result.
  */
 namespace limber
 {
@@ -59,8 +60,8 @@ namespace limber
 
 
 
-  // In most steps no point enters another cell, or few do: comparing costs less
-  // than what would be done anew.
+  // In most steps no point enters another cell, or few do: the comparison costs
+  // less than repeating what depends on the cells.
   template <int dim>
   void
   Contact<dim>::find_cells()
@@ -86,8 +87,8 @@ namespace limber
 
 
 
-  // Nearly always they are those of the step before, and what belongs to them
-  // stays. Whether they are others.
+  // Find nodes with mass of two fields and return whether they have changed:
+  // nearly always they have not, and what depends on them stays valid.
   template <int dim>
   bool
   Contact<dim>::find_nodes()
@@ -128,8 +129,8 @@ namespace limber
 
 
 
-  // Batches with a node at which their body may part from another one. Most
-  // points are met by nothing but the look at their cell.
+  // Batches of points in cells with a node at which their body may separate
+  // from another one. Of all other points only the cell is looked up.
   template <int dim>
   void
   Contact<dim>::find_batches()
@@ -257,7 +258,8 @@ namespace limber
 
 
 
-  // As if the material went on behind a side that holds it.
+  // At sides with boundary conditions remove the component normal to the side:
+  // as if the material continued behind it, the side is no surface.
   template <int dim>
   void
   Contact<dim>::end_at_sides()
@@ -273,10 +275,11 @@ namespace limber
 
 
 
-  // Of convex bodies the largest separation over all directions is their
-  // distance. At the end of the face of one of them, its own normal points past
-  // the corner; that of the other is right, and the points are further apart
-  // along it. Where both are right, it is the mean: round-off must not decide.
+  // Choose the direction of largest separation: over all directions it is the
+  // distance of convex bodies (separating axis). At the end of the face of one
+  // body its own normal points past the corner; that of the other is right, and
+  // the points are further apart along it. Where both are right, the mean is
+  // taken: round-off must not decide.
   template <int dim>
   void
   Contact<dim>::find_normals()

@@ -11,15 +11,16 @@
 #include <map>
 
 /**
- * @file The places at which bodies may press on each other in a step: which
- * points face each other, how far they are apart, and what nodes they see.
+ * @file Contact points ("places") of bodies in a step: which points face each
+ * other, the gap between them, and the nodes and coefficients of their relative
+ * velocity.
  */
 namespace limber
 {
   namespace
   {
-    // Steps after which one looks how much bodies are stretched: it decides
-    // what points are looked at, with room for half as much again.
+    // Steps after which the stretch of bodies is updated. It only selects the
+    // points to look at, with a margin for half as much again.
     constexpr unsigned int steps_of_a_stretch = 32;
   } // namespace
 
@@ -52,7 +53,8 @@ namespace limber
 
 
 
-  // All ranks that hold a node do the same with it.
+  // Contact at nodes, for linear functions. All ranks that hold a node do the
+  // same with it.
   template <int dim>
   void
   Contact<dim>::add_nodes()
@@ -79,7 +81,7 @@ namespace limber
 
 
 
-  // What is near cells of another rank, it has to know.
+  // Send points near cells of another rank to it.
   template <int dim>
   void
   Contact<dim>::tell_candidates()
@@ -146,7 +148,8 @@ namespace limber
 
 
 
-  // Each rank adds what its points have of the places of others.
+  // Each rank adds the shares that its points have in contact points of other
+  // ranks.
   template <int dim>
   template <int degree>
   std::vector<typename ContactImpulses<dim>::Peer>
@@ -210,7 +213,7 @@ namespace limber
     for (const auto &side : both)
       for (const Candidate &candidate : side)
         widest = std::max({widest, candidate.reach, candidate.width});
-    // the smaller points meet all that the larger ones do
+    // contact points are at the smaller points, which find all facing ones
     const unsigned int acting = edge[pair[1]] < edge[pair[0]] ? 1 : 0;
     if (both[acting].empty() || both[1 - acting].empty())
       return;
@@ -222,7 +225,7 @@ namespace limber
 
 
 
-  // The largest across a surface of the points of a body that meet another one.
+  // Largest stretch normal to the surface of a body's points in contact.
   template <int dim>
   double
   Contact<dim>::stretch_of(const Group &group)
@@ -330,8 +333,8 @@ namespace limber
 
 
 
-  // What side a has at its points, of both: weight * (v + grad v arm). Those of
-  // one cell see the same nodes.
+  // Add weight * (v + grad v arm) at a point to the coefficients of a contact
+  // point. Points of one cell see the same nodes and are summed up first.
   template <int dim>
   template <int degree>
   void
@@ -373,8 +376,8 @@ namespace limber
 
 
 
-  // Whether its material ends where that of a thinner point in front of it
-  // begins: not at the surface.
+  // Whether another point lies in front of q, so that q is not at the surface:
+  // its gap is larger by more than the extent of that point, however thin.
   template <int dim>
   bool
   Contact<dim>::is_covered(const Facing                 &q,
@@ -485,7 +488,7 @@ namespace limber
 
 
 
-  // The rank of the point is told of the place before its first part.
+  // Before the first part for a rank, the contact point itself is recorded.
   template <int dim>
   void
   Contact<dim>::ask_for_part(const std::uint32_t place_number,

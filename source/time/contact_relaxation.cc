@@ -4,15 +4,17 @@
 #include <algorithm>
 
 /**
- * @file Before impulses are found: what sides hold of the nodes that places
- * see, the masses that bear on these, and the relaxation that follows.
+ * @file Preparation of the projected Jacobi method of ContactImpulses:
+ * boundary conditions at the nodes that places see, M_i, and relaxation factors
+ * m_p / s_p.
  */
 namespace limber
 {
   namespace
   {
-    // Of the normal of a place, what sides have to leave of it at a node, or
-    // the node does not count. Flatter wedges would take impulses without end.
+    // A node counts at a place only if the part of the normal that sides leave
+    // unconstrained there, |P n|, is at least this. In flatter wedges impulses
+    // would grow without bound.
     constexpr double least_free = 0.1;
   } // namespace
 
@@ -31,7 +33,7 @@ namespace limber
           const double  mass    = free_share(place, k) * place.mass;
           double *const of_node = &bears[shares.all[k].node * Borne::stride];
           of_node[Borne::all] += mass;
-          for (int d = 0; d < dim; ++d) // what rubs acts along all of them
+          for (int d = 0; d < dim; ++d) // friction acts in all directions
             of_node[Borne::along + d] +=
               mass * (place.friction > 0 ? 1 : std::abs(place.normal[d]));
         }
@@ -59,8 +61,8 @@ namespace limber
         for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
           {
             PlaceShare &share = shares.all[k];
-            // At the edge of what a function reaches it has a slope, but the
-            // node no mass.
+            // At the edge of its support a function has a slope, but the node
+            // has no mass.
             if (inverse_mass[share.node] == 0)
               share.value = 0;
             sum += free_share(places[p], k) *
@@ -76,8 +78,8 @@ namespace limber
 
 
 
-  // Of the mass that places bear at a node, sum m_q |n_q . n_p| at most: those
-  // across do not know of each other.
+  // M_i as it matters for a place: without friction at most sum of m_q
+  // |n_q . n_p|, as places with normals across do not affect each other.
   template <int dim>
   double
   ContactImpulses<dim>::borne_along(const Place        &place,
@@ -130,7 +132,8 @@ namespace limber
 
 
 
-  // What rubs moves nodes along the surface as well.
+  // |a_pi| times |P n|, with P n the part of the normal that sides leave free;
+  // with friction |a_pi|, as nodes are moved along the surface as well.
   template <int dim>
   double
   ContactImpulses<dim>::free_share(const Place      &place,
@@ -152,7 +155,8 @@ namespace limber
 
 
 
-  // Nodes that only places of other ranks see get impulses as well.
+  // Sum M_i over ranks and add nodes that only places of other ranks see: they
+  // get impulses as well.
   template <int dim>
   void
   ContactImpulses<dim>::see_those_of_others()

@@ -5,8 +5,8 @@
 #include <limber/time/point_deformation.h>
 
 /**
- * @file What the points at the surface of a body say of its normal at the nodes
- * where it meets another one.
+ * @file Contact normals at nodes by a least-squares fit of a plane to the
+ * points at the surface of a body, see SurfaceFit.
  */
 namespace limber
 {
@@ -38,8 +38,8 @@ namespace limber
 
 
 
-  // How much a point is stretched changes little among the normals of a cell:
-  // it is asked once, along their mean.
+  // The stretch of a point differs little between the normals of a cell's
+  // nodes: it is evaluated once, along their mean.
   template <int dim>
   template <int degree>
   void
@@ -70,7 +70,7 @@ namespace limber
               stretch_along(body, of_body, p, upwards / length);
             for (std::uint32_t c = some.first; c < some.last; ++c)
               {
-                // A node that others hang on counts in its own cells alone.
+                // A master of hanging nodes counts only in its own cells.
                 const MeetingCorner &corner = corners[c];
                 if (functions.node(corner.k) != touches[corner.slot / 2].node)
                   continue;

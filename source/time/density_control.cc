@@ -7,11 +7,12 @@ namespace limber
 {
   namespace
   {
-    // Way of the fastest point for which C is the share that goes, in cells.
+    // Displacement of the fastest point, in cells, in a step that removes the
+    // whole share C of the excess.
     constexpr double longest_way = 0.4;
 
-    // Of e either way: what has been thrown together parts no faster than by a
-    // twentieth of the largest velocity from cell to cell.
+    // Bound of |e|: points that have been thrown together separate no faster
+    // than by a twentieth of the largest velocity from cell to cell.
     constexpr double largest_excess = 0.1;
   } // namespace
 
@@ -115,7 +116,7 @@ namespace limber
   {
     const NodalFields<dim> &vertices = parts.nodes.vertices();
     const auto              sums     = body.cell_sums->view();
-    // by Stabilization::control_checkerboards()
+    // whether Stabilization::control_checkerboards() has set cell_shift
     const bool is_set = body.description.checkerboard_control > 0;
     for (const auto *const cells :
          {&vertices.owned_occupied_cells(), &vertices.ghost_occupied_cells()})

@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    /** Of each nodal field, Problem::meets_sides(). */
+    /** Problem::meets_sides() for each nodal field. */
     template <int dim>
     std::vector<bool>
     fields_that_meet_sides(const Problem<dim> &problem)
@@ -82,8 +82,9 @@ namespace limber
 
 
 
-  // In the initial frame points are not asked, and nodes of hardly any mass
-  // never are.
+  // Bound of the displacement of points in the step, m, as the largest of three
+  // measures: in the initial frame displacements of points are not measured,
+  // and fastest_node leaves out nodes with hardly any mass.
   template <int dim>
   double
   ExplicitIntegrator<dim>::longest_way() const
@@ -237,7 +238,7 @@ namespace limber
   double
   ExplicitIntegrator<dim>::largest_displacement() const
   {
-    // Points of large cells go the furthest in small ones.
+    // A displacement in a large cell is more cells where these are small.
     return parts.grid.has_levels() ?
              std::max(extremes.displacement,
                       point_speed * step / parts.grid.smallest_edge) :

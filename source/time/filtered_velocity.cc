@@ -4,8 +4,8 @@
 #include <algorithm>
 
 /**
- * @file The velocity of the nodes that FMPM(k) and XPIC(k) give the points, and
- * what these lose to it.
+ * @file The filtered nodal velocity of FMPM(k) and XPIC(k), and the energy that
+ * points lose by it.
  */
 namespace limber
 {
@@ -23,7 +23,8 @@ namespace limber
 
 
 
-  // Points then take it as with PIC; in steps between, as with FLIP.
+  // Points take the filtered velocity as in PIC; in steps between two that
+  // filter (Transfer period) they are updated by FLIP.
   template <int dim>
   void
   ExplicitIntegrator<dim>::filter_velocity()
@@ -43,7 +44,7 @@ namespace limber
                                              hold);
         for (unsigned int side = 0; side < 2 * dim; ++side)
           parts.ledger.side_impulse[side] += action.impulse[side];
-        // What points lose to the filter contains it.
+        // the loss of the points by the filter contains this work
         parts.ledger.boundary_work += action.work;
         parts.ledger.transfer += action.work;
       }
@@ -52,13 +53,13 @@ namespace limber
 
 
 
-  // The points have lost to the transfer what is missing of their energy when
-  // the forces have worked on the velocities that strain them: half of the step
+  // Energy removed by the transfer: what the energy of the points lacks after
+  // the work of the forces on the velocities that strain them, half of the step
   // on that of the step before and half on that of this one, as the stress
-  // grows in between. The filter makes these differ from those that points
-  // bring and that the nodes get: both differences are booked (the first by
-  // note_forces()), and the energy of the nodes in the place of that which
-  // increments would give the points.
+  // grows in between. The filter makes these velocities differ from those
+  // mapped from the points and from the new nodal ones: both differences are
+  // booked (the first by note_forces()), and the energy of the nodes instead of
+  // that which increments would give the points.
   template <int dim>
   void
   ExplicitIntegrator<dim>::filter_and_account()

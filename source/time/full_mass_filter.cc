@@ -19,8 +19,8 @@ namespace limber
     , fields(n_fields)
     , on_points(dim)
   {
-    // A rank may know a neighbour of a held node that lies in cells of others,
-    // and not the node, whose share of mass it would miss.
+    // A rank may hold a neighbour of a held node without holding that node, so
+    // that its share of mass would be missing.
     if (grid.description.kernel == KernelKind::cubic &&
         dealii::Utilities::MPI::n_mpi_processes(grid.communicator) > 1)
       throw InputError(
@@ -116,13 +116,13 @@ namespace limber
           const double *const own  = nodes.record(node);
           const double        mass = own[Layout::mass];
           const double *const v    = record(node) + Layout::velocity;
-          // Not a node that points have hardly reached then: its velocity has
-          // been any, and the forces on it are no longer those of then.
+          // Not a node with little mass in that step: its velocity was
+          // arbitrary, and the forces on it have changed since.
           const bool strained =
             fields[field].filtered.data()[node] == before && mass > 0 &&
             record(node)[Layout::mass] > 0.5 * mass && nodes.owns(node);
-          // What sides hold is not strained by what points bring. Those that
-          // let go have left no velocity to a component that they held.
+          // At components held by sides the mapped velocity strains nothing.
+          // Sides that have let go since left a zero velocity there.
           const auto held = this->held(nodes, node);
           const bool side = table.sides[node] != 0;
           for (int d = 0; d < dim; ++d)
@@ -211,8 +211,8 @@ namespace limber
 
 
 
-  // In the records of the nodes, where contact finds it. Sides act last: what
-  // it takes from the components that they hold they give back.
+  // Constrain v(j) by contact, which acts on the nodes' own records. Sides act
+  // last: they restore the components that they hold.
   template <int dim>
   typename FullMassFilter<dim>::SideAction
   FullMassFilter<dim>::hold_as_new(NodalFields<dim> &nodes, const Hold &hold)
@@ -283,8 +283,9 @@ namespace limber
 
 
 
-  // work(node, neighbour, d, directions) on each component d that sides hold of
-  // a node of this rank; what the neighbour inward shares with it, if it does.
+  // Call work(node, neighbour, d, directions) for each component d of a node of
+  // this rank that sides in these directions hold; the neighbour is the one
+  // inward that gets a part of its mass, else the node itself.
   template <int dim>
   template <class Work>
   void
@@ -308,7 +309,7 @@ namespace limber
 
 
 
-  // In equal parts from the sides that hold the component.
+  // Divide an impulse equally between the sides that hold the component.
   template <int dim>
   void
   FullMassFilter<dim>::add_impulse(SideAction         &action,
@@ -328,7 +329,8 @@ namespace limber
 
 
 
-  // D v(1) - p is what held nodes bring along, less what their neighbours give.
+  // Impulse of sides in v(1): the change m v(1) - p of momentum at the free
+  // neighbours of held nodes, whose D contains mass of these.
   template <int dim>
   typename FullMassFilter<dim>::SideAction
   FullMassFilter<dim>::action_of_start(const NodalFields<dim> &nodes)
@@ -355,11 +357,11 @@ namespace limber
 
 
 
-  // With r = p - M_full v(j) the momentum P = sum m v, which is that of M_full
-  // v as well, goes on by sum m / D r over nodes that are free, while r of all
-  // nodes has the sum P(0) - P(j). So P(j + 1) - P(0) is what sides keep back
-  // of r: that of the nodes that they hold and the share of their mass in D.
-  // This includes all passes before.
+  // Impulse of sides in all passes until v(j + 1). With r = p - M_full v(j) the
+  // momentum P = sum m v, which is that of M_full v as well, changes by
+  // sum m / D r over free nodes, while the sum of r over all nodes is
+  // P(0) - P(j). So P(j + 1) - P(0) is minus the part of r that sides take:
+  // that at the nodes that they hold, and the share of their mass in D.
   template <int dim>
   typename FullMassFilter<dim>::SideAction
   FullMassFilter<dim>::action_until(const NodalFields<dim> &nodes)
@@ -404,7 +406,7 @@ namespace limber
     if (table.inward_share == 0)
       return;
 
-    // D v(1) = p, plus what held nodes bring along
+    // D v(1) = p plus the momentum of the mass from held nodes
     const auto add = [&](const std::uint32_t to,
                          const int           d,
                          const double        mass,
@@ -451,14 +453,14 @@ namespace limber
 
 
 
-  // The sweep that updates the velocities of points takes and gives: here
-  // velocities that are not theirs.
+  // M_full v = S^T M S v by the sweep of G2P with re-mapping, as PIC, on
+  // velocities that are not those of the points.
   template <int dim>
   void
   FullMassFilter<dim>::multiply_by_full_mass(NodalFields<dim> &nodes,
                                              Bodies           &bodies)
   {
-    constexpr std::size_t room    = 1 << dim; // that sweeps want beyond
+    constexpr std::size_t room    = 1 << dim; // padding that sweeps need
     double *const         records = fields[field].records.data();
     table.take_from_masters(records,
                             Layout::stride,

@@ -10,23 +10,23 @@ namespace limber
 {
   namespace
   {
-    // Residual in the volume of a cell over this volume
+    // Tolerance: residual in the volume of a cell over this volume
     constexpr double accuracy = 1e-10;
 
-    // So often cells without pressure may get it again; then they only lose it,
-    // so that it ends.
+    // Active set of the tension cutoff and of surfaces: rounds in which rows
+    // may return; then rows are only removed, so that it terminates.
     constexpr unsigned int most_returns = 20;
 
-    // So often nodes that an obstacle would pull are let go and those that come
-    // near are held again; then they are only let go, so often at most. What
-    // comes near nevertheless is held in the next step.
+    // Rounds in which nodes that an obstacle would pull are released and those
+    // that approach it are held again; then at most so many in which they are
+    // only released. What still approaches is held in the next step.
     constexpr unsigned int most_changes = 4, most_releases = 6;
 
-    // So often sides let go what they would have to pull, and so often more
-    // what they hold and how they rub is found anew.
+    // Rounds in which one-sided sides release nodes that they would have to
+    // pull, and further ones in which held nodes and friction are updated.
     constexpr unsigned int most_releases_by_sides = 10, most_more = 10;
 
-    // In cells along an axis, of what makes room in a step.
+    // Largest displacement of density control in a step, in cells along an axis
     constexpr double longest_way_to_room = 0.25;
   } // namespace
 
@@ -88,8 +88,9 @@ namespace limber
   {
     if (cells.update())
       {
-        // 1e-14 where obstacles that move leave cells of a hundredth of the
-        // size: what 1e-10 leaves there came to 1e-6 of the strain energy
+        // 1e-14 where moving obstacles leave small-cut cells of a hundredth of
+        // the size: with 1e-10 the error there came to 1e-6 of the strain
+        // energy
         if (cells.surfaces.cells() && cells.surfaces.cells()->in_motion())
           system.equations.share_of_accuracy = 1e-4;
         system.find_columns();
@@ -124,8 +125,8 @@ namespace limber
 
 
 
-  // Whether pressures that have been found for the k-th time press other nodes
-  // on sides and obstacles than was assumed.
+  // Whether the pressures of the k-th solution change the set of nodes held by
+  // sides and obstacles, so that the system has to be solved again.
   template <int dim>
   bool
   ImplicitPressure<dim>::is_held_otherwise(const double       end,
@@ -145,7 +146,7 @@ namespace limber
 
 
 
-  // That points bring, by rows of cells; those of surfaces have none.
+  // P0: mean pressures of the points, by rows of cells; not of surfaces.
   template <int dim>
   std::vector<double>
   ImplicitPressure<dim>::former_pressures() const
@@ -230,7 +231,7 @@ namespace limber
 
 
 
-  // With the tension that has been cut, and the surfaces that press.
+  // Displacement w of the density control, with the active set of this step.
   template <int dim>
   void
   ImplicitPressure<dim>::find_way_to_room(const double step,
@@ -264,10 +265,9 @@ namespace limber
 
 
 
-  // What a cell gives back of its elastic energy as it grows by a part of its
-  // volume, J: the integral of J p over ln J, by Gauss' rule. Where J p is
-  // linear in J, the mean J of the points in the cell is enough, however much
-  // they differ.
+  // Elastic energy that a body releases as its part of a cell dilates, J: the
+  // integral of J p over ln J, by Gauss quadrature. If J p is linear in J, this
+  // is exact with the mean J of the points, however much they differ.
   template <int dim>
   double
   ImplicitPressure<dim>::elastic_work(const MaterialBody<dim> &body,
@@ -292,7 +292,8 @@ namespace limber
 
 
 
-  // For the sweep that strains the points, in all cells where they may be.
+  // Store pressures for the sweep that strains the points, in all cells known
+  // to this rank.
   template <int dim>
   void
   ImplicitPressure<dim>::keep_result(const std::size_t number)
@@ -316,9 +317,9 @@ namespace limber
 
 
 
-  // What bodies in a cell dilate by: all of it for solids, for liquids what
-  // comes to the mean divergence of the cell. Where several have one pressure,
-  // each dilates as its stiffness lets it.
+  // Dilations of bodies in a cell: the whole one for solids, for liquids what
+  // is added to the mean divergence of the cell. Liquids that share a pressure
+  // dilate according to their stiffness.
   template <int dim>
   void
   ImplicitPressure<dim>::find_dilations(const std::size_t number)
@@ -335,7 +336,7 @@ namespace limber
             double             &kept = medium.result(cell)[Result::dilation];
             kept                     = 0;
             const double volume      = medium.record(cell)[Record::volume];
-            // there points have what their volumes keep taken from them
+            // tension cutoff: points lose their volumetric strain there
             if (!(mass > 0) || !(volume > 0) ||
                 (!system.is_cut.empty() && system.is_cut[row]))
               continue;
@@ -350,7 +351,7 @@ namespace limber
             kept                = !medium.is_liquid()       ? dilation :
                                   medium.bodies.size() == 1 ? beyond :
                                                               beyond + dilation - of_cell;
-            // its part of what the cell does on nodes
+            // less its part of the work of the cell on nodes
             lost += elastic_work(*body, part, pressure) -
                     pressure * part.volume * (of_cell - beyond);
           }
@@ -374,8 +375,8 @@ namespace limber
 
 
 
-  // Of a body of the medium, by its mean divergence of a nodal field, times a
-  // factor.
+  // Add to the dilations of a body the mean divergence of a nodal field, times
+  // a factor.
   template <int dim>
   template <class Field>
   void
@@ -503,9 +504,10 @@ namespace limber
 
 
 
-  // Forces do work on what is kinetic with the mean of the velocities before
-  // and after the step, see account_loads(); pressures and gravity give it
-  // along the way that points go, dt v1. What this is more is lost.
+  // Forces change the kinetic energy by their work on the mean of the
+  // velocities before and after the step, see account_loads(); the energies of
+  // pressures and gravity change by the work along the displacement of points,
+  // dt v1. The difference is lost.
   template <int dim>
   void
   ImplicitPressure<dim>::account(const double       step,

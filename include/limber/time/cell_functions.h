@@ -13,9 +13,10 @@
 namespace limber
 {
   /**
-   * The functions of the nodes that a cell sees, of degree 1 to 3, at one place
-   * after the other: for the few points near what they touch. The sweeps over
-   * all points have their own (interpolation/linear.h, spline.h).
+   * Shape functions of the nodes of a cell, linear or B-splines of degree 2 and
+   * 3, evaluated at one point after the other: for the few points in contact.
+   * The sweeps over all points have their own (interpolation/linear.h,
+   * spline.h).
    */
   template <int dim, int degree>
   class CellFunctions
@@ -33,8 +34,8 @@ namespace limber
     }
 
     /**
-     * The offsets of the records of the nodes of a cell; of one beyond a side,
-     * where its function is zero, that of the node in the side.
+     * Offsets of the records of the nodes of a cell. A node beyond a side,
+     * whose function is zero there, has the offset of the node in the side.
      */
     static const std::array<std::uint32_t, n> &
     nodes_of(const GridView<dim> &grid, const std::uint32_t cell)
@@ -45,7 +46,7 @@ namespace limber
         return spline_cell(grid, cell).node;
     }
 
-    /** Which of the functions along d that of node k has as a factor. */
+    /** Index along d of node k: which one-dimensional factor it has. */
     static constexpr int
     digit(const int k, const int d)
     {
@@ -59,7 +60,7 @@ namespace limber
       return nodes[k] / NodeLayout<dim>::stride;
     }
 
-    /** Go to the place of a point in the cell. */
+    /** Evaluate the functions at a point in the cell. */
     void
     go_to(const PointView<dim> &points, const std::size_t p)
     {
@@ -81,7 +82,7 @@ namespace limber
           }
     }
 
-    /** Of node k, there. */
+    /** N_k at that point. */
     double
     value(const int k) const
     {
@@ -92,9 +93,9 @@ namespace limber
     }
 
     /**
-     * Add to each node k weight (N_k + arm . grad N_k): what its value has of
-     * that at the end of the arm, to first order; and to the sizes how much
-     * this is.
+     * Add to each node k its coefficient weight (N_k + arm . grad N_k) of the
+     * value extrapolated to the end of the arm, to first order; and to the
+     * sizes the absolute value of this.
      */
     void
     add_at_end_of(const dealii::Tensor<1, dim> &arm,

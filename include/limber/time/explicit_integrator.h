@@ -98,7 +98,7 @@ namespace limber
   protected:
     using Layout = NodeLayout<dim>;
 
-    // The schemes: in which order of its verbs a step is done
+    // The schemes (USF, USL, MUSL, ...): the order of the verbs in a step
     virtual void
     do_scheme();
     void
@@ -126,7 +126,7 @@ namespace limber
     double
     share_of_smoothing() const;
 
-    // Sweeps: sums over points are complete on all ranks when they are done
+    // Sweeps over points. Nodal sums are complete on all ranks at their end
     void
     p2g();
     void
@@ -150,7 +150,7 @@ namespace limber
     void
     strain_and_give_force(double length);
 
-    // What happens to nodes between the sweeps
+    // Operations on nodes between the sweeps
     void
     clear();
     void
@@ -245,8 +245,8 @@ namespace limber
     const RunParts<dim> parts;
     const bool          parallel;
     const bool          in_initial_frame; // all bodies
-    // Points by the velocity that strains them, with MUSL and USAVG; APIC
-    // would lose angular momentum.
+    // With MUSL and USAVG points move with the velocity that strains them; with
+    // APIC this would lose angular momentum.
     const bool              moves_as_strained;
     CoveredSides<dim>       covered; // by obstacles that move
     BoundaryConditions<dim> boundaries;
@@ -272,9 +272,9 @@ namespace limber
 
     double time = 0, step = 0; // of the step that is being done, s
 
-    // In the initial frame: how far strain and stress are behind, s. While this
-    // is positive, nodes know what is going to strain the points, and with a
-    // leapfrog the momentum that they bring to the next step.
+    // In the initial frame: time by which strain and stress lag behind, s.
+    // While it is positive, nodes hold the velocity that is going to strain the
+    // points, and with leapfrog() the momentum mapped for the next step.
     double unstrained       = 0;
     bool   stress_is_behind = false;
 
@@ -285,7 +285,7 @@ namespace limber
 
     // Of the step that is being done, on this rank until it ends
     StepExtremes extremes;
-    double       history_time = 0; // that histories have yet to relax, s
+    double       history_time = 0; // for which histories have yet to relax, s
     double       fastest_node = 0; // cells in this step, over all ranks
   };
 } // namespace limber

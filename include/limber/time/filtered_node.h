@@ -8,7 +8,8 @@
 
 namespace limber
 {
-  /** A node whose filtered velocity has strained points in the last step. */
+  /** A node whose filtered velocity (FMPM, XPIC) has strained points in the
+   * last step, for checkpoints. */
   template <int dim>
   struct FilteredNode
   {

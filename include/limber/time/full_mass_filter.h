@@ -12,28 +12,29 @@
 namespace limber
 {
   /**
-   * The velocity of the nodes that points take with FMPM(k) and XPIC(k). With
-   * the lumped mass v = p / m is too smooth: taken by the points (S) and given
-   * back (S^T M) it returns as M_full v = S^T M S v, which is not p. The
-   * velocity v(k) comes from k - 1 steps of Richardson's iteration towards
-   * M_full v = p,
+   * The filtered nodal velocity of FMPM(k) and XPIC(k), by an approximate
+   * inverse of the consistent (full) mass matrix. With the lumped mass
+   * v = p / m is too smooth: interpolated to the points (S) and mapped back
+   * (S^T M) it becomes M_full v = S^T M S v, which is not p. The velocity v(k)
+   * comes from k - 1 steps of Richardson's iteration for M_full v = p,
    *
    *   v(1) = D^-1 p,  v(j + 1) = v(j) + D^-1 (p - M_full v(j)),
    *
-   * the first k terms of the series of the inverse. So waves of some cells keep
-   * their amplitude in v <- S v(k), while what no node sees of the motion of
-   * points is gone after one step. What sides hold stays as it is.
+   * the first k terms of the Neumann series of the inverse. So waves of some
+   * cells keep their amplitude in v <- S v(k), while null-space motion of the
+   * points is gone after one step. Components held by sides are not changed.
    *
    * D is the lumped mass. Next to a side that holds a component, splines have
    * that of mirrored material: the mass of the held node, or a part of it
    * (NodeTable::inward_share), joins that of its neighbour inward. Without it
-   * the iteration would begin far off there, where p / m of a linear field is
-   * 3/4 instead of 1/2 a cell from the side with quadratic splines.
+   * the first guess would be poor there: with quadratic splines p / m of a
+   * linear field is 3/4 instead of 1/2 a cell from the side.
    *
-   * Bodies with nodal fields of their own are filtered apart from each other.
-   * Where they press, each v(j) is held as the new velocity has been: with the
-   * projection P on what contact allows v(j + 1) - v(j) is P (1 - D^-1 M_full)
-   * times the change before, the series of the constrained inverse.
+   * Bodies with nodal fields of their own are filtered separately. In active
+   * contacts each v(j) is constrained as the new velocity has been: with the
+   * projection P on what contact allows, v(j + 1) - v(j) is
+   * P (1 - D^-1 M_full) times the change before, the series of the constrained
+   * inverse.
    *
    * (Nairn and Hammerquist, CMAME 380, 2021; Hammerquist and Nairn, CMAME 318,
    * 2017 for XPIC)
@@ -50,16 +51,16 @@ namespace limber
     void
     reinit();
 
-    /** What note_forces() of the next step needs to know of this one; of all
-     * ranks, on the first. Collective. */
+    /** State that note_forces() of the next step needs, for checkpoints;
+     * gathered from all ranks on the first. Collective. */
     std::vector<FilteredNode<dim>>
     filtered_nodes() const;
 
-    /** Know it again; the ranks and their nodes may be others. */
+    /** Restore this state, also on other ranks with other nodes. */
     void
     restore(const std::vector<FilteredNode<dim>> &former);
 
-    /** What sides do to owned nodes by holding them against the filter. */
+    /** Reaction of sides at owned nodes that they hold against the filter. */
     struct SideAction
     {
       std::array<dealii::Tensor<1, dim>, 2 * dim> impulse;  // kg m/s
@@ -74,32 +75,32 @@ namespace limber
       }
     };
 
-    /** Hold a velocity, at a slot of the records of all fields, as contact
-     * holds the new one. */
+    /** Constrain a velocity, at a slot of the records of all fields, by the
+     * active contacts; see Contact::hold(). */
     using Hold = std::function<void(unsigned int slot)>;
 
     /**
-     * Remember the forces of stress and gravity, before others join them, and
-     * return their power, W, on the velocity by which the step before has
-     * strained points, beyond that on what they bring of it.
+     * Store the forces of stress and gravity, before others are added, and
+     * return their power, W, on the difference between the velocity that
+     * strained the points in the step before and the one mapped from them now.
      */
     double
     note_forces(NodalFields<dim> &nodes, const dealii::Tensor<1, dim> &gravity);
 
-    /** What the nodes of this rank have gained of kinetic energy, J. */
+    /** Kinetic energy gained by the nodes of this rank in the step, J. */
     double
     energy_of_step(NodalFields<dim> &nodes);
 
-    /** The power of these forces, W, on the velocity of the nodes of this rank.
-     */
+    /** Power, W, of the stored forces on the velocity of the nodes of this
+     * rank. */
     double
     power(NodalFields<dim> &nodes);
 
     /**
-     * Put v(@p order) in the place of the new velocity of active nodes or,
-     * with @p former_only, that of the velocity before the step plus the
-     * increment of the step. Between bodies that touch, @p hold acts on every
-     * v(j); it may be empty. Overwrites Layout::remapped then. Collective.
+     * Replace the new velocity of active nodes by v(@p order), or, with
+     * @p former_only (XPIC), by the filtered velocity before the step plus the
+     * increment of the step. @p hold, if not empty, constrains every v(j) by
+     * contact, and Layout::remapped is overwritten. Collective.
      */
     SideAction
     apply(NodalFields<dim>                                &nodes,
@@ -136,7 +137,7 @@ namespace limber
     void
     multiply_by_full_mass(NodalFields<dim> &nodes, Bodies &bodies);
 
-    // Of the selected field
+    // Records and vectors of the selected field
     double *
     record(const std::uint32_t node)
     {
@@ -166,7 +167,8 @@ namespace limber
       });
     }
 
-    /** What joins the lumped mass of the neighbour in these directions, kg. */
+    /** Mass of a held node that is added to D of its neighbour inward in these
+     * directions, kg. */
     double
     mass_inward(const NodalFields<dim> &nodes,
                 const std::uint32_t     node,
@@ -179,7 +181,7 @@ namespace limber
       return result;
     }
 
-    /** See BoundaryConditions::held(); nothing holds nodes in the middle. */
+    /** See BoundaryConditions::held(); zero for nodes inside the box. */
     std::array<unsigned int, dim>
     held(const NodalFields<dim> &nodes, const std::uint32_t node) const
     {
@@ -187,27 +189,30 @@ namespace limber
                                  std::array<unsigned int, dim>{};
     }
 
-    /** p of a component, or of that before the step. */
+    /** Component of the momentum p that is filtered: new, or before the step.
+     */
     double
     momentum(const double *own, int d) const
     {
       return own[Layout::mass] * (own[Layout::velocity + d] - apart(own, d));
     }
 
-    /** What is not filtered of the new velocity, m/s. */
+    /** Part of the new velocity that is not filtered (XPIC: the increment),
+     * m/s. */
     double
     apart(const double *own, int d) const
     {
       return former ? own[Layout::increment + d] : 0;
     }
 
-    // As the nodes' own: v(j) is their velocity, M_full v(j) is re-mapped.
+    // Records in the nodes' layout: v(j) is at Layout::velocity, M_full v(j) at
+    // Layout::remapped
     struct Field
     {
       LazyArray<double> records;
       LazyArray<double> lumped;   // D, by node and component, kg
-      LazyArray<double> force;    // that has been noted, the same way, N
-      LazyArray<double> filtered; // in which step a node was, last
+      LazyArray<double> force;    // stored by note_forces(), likewise, N
+      LazyArray<double> filtered; // last step in which a node was filtered
     };
 
     const BackgroundGrid<dim>       &grid;
@@ -216,9 +221,9 @@ namespace limber
     bool                             former = false;
     std::vector<Field>               fields;
     unsigned int                     field = 0; // the selected one
-    double                           step  = 1; // whose forces are noted
+    double                           step  = 1; // number, of the stored forces
     RecordExchange                   exchange{Layout::stride};
-    std::vector<std::vector<double>> on_points; // velocities; refilled
+    std::vector<std::vector<double>> on_points; // S v(j); buffer
   };
 } // namespace limber
 

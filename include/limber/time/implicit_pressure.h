@@ -7,11 +7,12 @@
 namespace limber
 {
   /**
-   * The pressure of bodies that are averaged over cells, at the end of a step
-   * and together with the velocity that it leaves: sound then does not limit
-   * the step. With B the mean divergence of a medium in a cell times the volume
-   * V of its points there, P its mean of J p and v* the velocity of the nodes
-   * without these pressures,
+   * Implicit pressure (projection method) of semi-implicit steps, for bodies
+   * with the treatment `cell`: the pressure at the end of a step is solved
+   * together with the velocity, so that sound does not limit the step (CFL).
+   * With B the mean divergence of a medium in a cell times the volume V of its
+   * points there, P its mean of J p and v* the velocity of the nodes without
+   * these pressures,
    *
    *   v1 = v* + dt M^-1 B^T P1,
    *   C (P1 - P0) = - dt B v1 - gamma T P1,   C = V / kappa,
@@ -24,37 +25,40 @@ namespace limber
    *
    *   (C + dt^2 B M^-1 B^T + gamma T) P1 = C P0 - dt B v*.
    *
-   * T sees the patterns that B^T does not let act on any node around which all
-   * cells are occupied, those that alternate in two directions or more: with
-   * gamma = 1 the wide Laplacian B M^-1 B^T becomes the compact one. Its rows
-   * sum up to zero: volume goes from cell to cell. It does not depend on the
-   * bulk modulus, which may be as large as numbers are.
+   * T is the checkerboard control (pressure jump stabilisation). It acts on
+   * pressures in the kernel of B^T at nodes around which all cells are
+   * occupied, those that alternate in two or more directions: with gamma = 1
+   * the wide Laplacian B M^-1 B^T becomes the compact one. Its rows sum up to
+   * zero: volume is exchanged between cells. It does not depend on the bulk
+   * modulus, which may be as large as numbers are.
    *
-   * Where nodes have more material than there is room for, a cell is to grow by
-   * a part e of its volume. The same matrix finds the way w of nodes that does
-   * it with the least motion,
+   * Density control: where nodes have more material than there is room for, a
+   * cell is to grow by a part e of its volume. The same matrix gives the nodal
+   * displacement w that does it with the least motion,
    *
    *   (C + dt^2 B M^-1 B^T + gamma T) P_e = V e,   w = dt^2 M^-1 B^T P_e.
    *
-   * Points go this way and keep velocity, pressure and J (T. Kugelstadt et al.,
-   * IEEE Trans. Vis. Comput. Graph. 27, 2021): as a part of the velocity it
-   * would have to be stopped by the pressure of the next step.
+   * Points are moved by w and keep velocity, pressure and J (T. Kugelstadt et
+   * al., IEEE Trans. Vis. Comput. Graph. 27, 2021): as a part of the velocity
+   * it would have to be stopped by the pressure of the next step.
    *
-   * Sides that hold a component of a node take the pressure on it: its entry
-   * of M^-1 is zero.
+   * Components of nodes that a side holds have the entry zero in M^-1: the side
+   * takes the pressure on them.
    *
-   * A liquid presses on the surface of an obstacle in a cell (CutCells) with a
-   * pressure q of its own, as the mean flow A v over it must not enter:
+   * The surface of an obstacle in a cut cell (CutCells) has a pressure q of its
+   * own, as the mean flow A v through it must not enter the obstacle:
    *
    *   v1 = v* + dt M^-1 (B^T P1 + A^T q),  q >= 0,  A v1 >= A v_o,
    *
-   * one of both being an equality. Nodes that obstacles hold one by one
+   * with complementarity. Nodes that obstacles hold one by one
    * (ObstacleContact) keep their velocity along the normal, until the obstacle
-   * would have to pull. The impulses dt q of surfaces are what
-   * ObstacleContact::exchange() starts from, which gives them to the nodes.
+   * would have to pull. The impulses dt q of surfaces are given to the nodes by
+   * ObstacleContact::exchange(), which starts from them.
    *
-   * Where a body bears no tension, the equation of a cell is that P1 >= 0, that
-   * it grows at least as much, and that one of both is an equality.
+   * With a tension cutoff cells satisfy a complementarity condition as well:
+   * P1 >= 0, and the cell grows at least as much as its equation says. Both are
+   * solved by a primal-dual active set. Theory:
+   * doc/theory/implicit_pressure.md.
    */
   template <int dim>
   class ImplicitPressure
@@ -70,32 +74,32 @@ namespace limber
     reinit();
 
     /**
-     * To advanced nodes, on which no side has acted yet, of a step of so many
-     * seconds until @p end: the pressures of the bodies, and what they change
-     * in velocity and increment. The density control of a body acts with this
-     * @p share of what it would do in a step as long as motion allows. What
-     * compression loses in energy goes into the ledger. Collective.
+     * Solve for the pressures of the step of length @p step (s) until the time
+     * @p end, and add their effect to velocity and increment of advanced nodes,
+     * on which no side has acted yet. Density control acts with the @p share of
+     * what it does in a step of the largest length that motion allows. Energy
+     * lost by compression goes into the ledger. Collective.
      */
     void
     solve(double end, double step, double share);
 
     /**
-     * Let liquids be strained by another velocity than the new one: complete
-     * their dilations by the mean divergence of the new one in this step.
-     * When sides have acted, hanging nodes too; collective.
+     * To be called if another velocity than the new one strains the liquids:
+     * adds the mean divergence of the new one in this step to their dilations.
+     * After sides and hanging nodes have been applied; collective.
      */
     void
     complete_dilations(double step);
 
     /**
-     * Add to the new velocity what makes room (see above), when it is to move
-     * points and does nothing else any more: where it strains them as well,
-     * this part is taken out of their dilations. Collective.
+     * Add w / dt of the density control to the new velocity, just before this
+     * moves the points; where it strains them as well, that part is subtracted
+     * from their dilations. Collective.
      */
     void
     make_room(double step);
 
-    /** The way that make_room() adds to a component of a node, m. */
+    /** Component of the displacement w of the density control at a node, m. */
     double
     way_to_room(const std::uint32_t node, const int d) const
     {
@@ -103,36 +107,37 @@ namespace limber
     }
 
     /**
-     * When sides have acted: the kinetic energy that is lost, likewise. The
-     * velocity after the step is the new one, or the re-mapped one.
+     * After sides have been applied: add the kinetic energy that is lost to the
+     * ledger. @p velocity_after is the slot of the velocity after the step, the
+     * new or the re-mapped one.
      */
     void
     account(double step, unsigned int velocity_after);
 
-    /** The shortest in which sound crosses a cell in any of the bodies, s. */
+    /** Shortest time in which sound crosses a cell in any of the bodies, s. */
     double
     time_of_sound() const;
 
-    /** Of the pressures of this step on a component of a node, N. */
+    /** Component of the force of this step's pressures on a node, N. */
     double
     force_on(const std::uint32_t node, const int d) const
     {
       return force[std::size_t(node) * dim + d];
     }
 
-    /** Whether a side has held it. */
+    /** Whether a side holds a component of a node. */
     bool
     is_held(const std::uint32_t node, const int d) const
     {
       return !(system.mobility_of(node, d) > 0);
     }
 
-    /** What the solver has been asked to do so far. */
+    /** Effort of the solver so far. */
     struct Effort
     {
       unsigned long steps = 0, solutions = 0, iterations = 0;
       unsigned int  most_iterations = 0; // in a step
-      unsigned long for_room        = 0; // iterations, not among these
+      unsigned long for_room        = 0; // further ones, for density control
     };
 
     const Effort &
@@ -189,9 +194,9 @@ namespace limber
     const bool                  with_one_sided; // sides
     PressureCells<dim>          cells;
     PressureSystem<dim>         system;
-    // Of the pressures, by node and component, N
+    // Forces of the pressures, by node and component, N
     LazyArray<double> force;
-    // w, likewise, m
+    // Displacement w of the density control, likewise, m
     bool              has_way_to_room = false;
     LazyArray<double> way;
     PressureSolver    solver;
