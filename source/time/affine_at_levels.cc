@@ -18,8 +18,8 @@ namespace limber
     if (table.hanging.empty())
       return;
 
-    // This rank knows the coarse cells beside its own, so the masters of nodes
-    // that hang there are corners of cells that it knows.
+    // Masters of hanging nodes are corners of coarse cells, which this rank
+    // holds (as ghosts) where they are beside its own.
     std::map<std::uint32_t, std::array<double, dim>> places;
     for (const HangingNode &hanging : table.hanging)
       {

@@ -13,19 +13,20 @@ namespace limber
 {
   namespace
   {
-    // Of pressures that put no force on a node: the share that this node feels
-    // none of. The rest is for the other nodes, found by counting iterations.
+    // Share by which a node does not feel pressures around it that exert no
+    // force on it. The rest accounts for the other nodes; the value was found
+    // by counting iterations.
     constexpr double unfelt_share = 0.999;
 
-    // A cell that is hardly filled hangs on nodes that others hold: it gives in
-    // to its pressure as these do, by the diagonal of their stiffness, and not
-    // as if its own shear modulus alone held it. The factor makes both the same
-    // in a full cell amidst others.
+    // In a small-cut cell the stiffness of the nodes comes from its neighbours:
+    // its compliance to its pressure follows from the diagonal of A at the
+    // nodes, not from its own shear modulus. With this factor both are the same
+    // in a full cell inside the body.
     constexpr double of_diagonal = 3;
 
 
 
-    /** A node's volumes, of one body. */
+    /** The volumes of one body around a node. */
     template <int dim>
     struct VolumesAround
     {
@@ -46,9 +47,9 @@ namespace limber
 
 
   /**
-   * Of pressures around a node, divided by scales: which part it feels. Whole
-   * are a constant pressure, and what puts a force on the node; of the rest
-   * little.
+   * Local operator on the pressures around a node, divided by scales: keeps a
+   * constant pressure and those that exert a force on the node (orthonormalised
+   * by Gram-Schmidt), and reduces the rest, checkerboards, by unfelt_share.
    */
   template <int dim>
   class AveragedVolumes<dim>::Felt
@@ -188,13 +189,13 @@ namespace limber
 
 
 
-  // What volumes give in to pressures, where the matrix keeps nothing of their
-  // stiffness, 1/K + B A^-1 B^T, nearly: 1/(G V), but nothing where pressures
-  // of the cells around a node put no force on it and differ. In full cells
-  // these alternate from cell to cell in two directions or more: of
-  // s = sin^2(k/2) along x and y, B A^-1 B^T is nearly proportional to
-  // 1 - 2 s_x s_y / (s_x + s_y), and this matrix to 1 - s_x s_y, both zero in
-  // the pattern alone.
+  // Sparse approximation Q of the Schur complement of the pressures, 1/K +
+  // B A^-1 B^T (with nothing of the volumetric stiffness in A): B A^-1 B^T is
+  // nearly 1/(G V), but zero for pressures that differ between the cells around
+  // a node and exert no force on it. In full cells these are checkerboards,
+  // which alternate in two directions or more: with s = sin^2(k/2) along x and
+  // y, B A^-1 B^T is nearly proportional to 1 - 2 s_x s_y / (s_x + s_y), and
+  // this matrix to 1 - s_x s_y, both zero for the checkerboard alone.
   template <int dim>
   void
   AveragedVolumes<dim>::fill_pressure_matrix(
@@ -274,7 +275,7 @@ namespace limber
   {
     if (!solver)
       make_solver(stiffness, motions);
-    // what held components do to the volumes
+    // right side from prescribed displacements
     std::vector<double> of_volumes;
     for (const Volume &volume : volumes)
       {

@@ -93,7 +93,7 @@ namespace limber
     const bool  with_force = what.force;
     for (auto &body : parts.bodies)
       {
-        // An implicit pressure comes later.
+        // An implicit pressure is added by ImplicitPressure.
         what.pressure = !body->implicit;
         what.force =
           with_force && (what.pressure || body->stress->has_deviator());
@@ -140,8 +140,8 @@ namespace limber
 
 
 
-  // Means around nodes for the bodies that are averaged so; sum(body, records)
-  // adds what the points give.
+  // Lumped projection on nodes for bodies with the treatments `node` and
+  // `hybrid`; sum(body, records) adds the contributions of points.
   template <int dim>
   template <class Sum>
   void
@@ -228,7 +228,7 @@ namespace limber
 
 
 
-  // The share of the way to the mean that a history goes in that time.
+  // Fraction by which a history approaches the mean in a time @p length.
   template <int dim>
   double
   BodySweeps<dim>::relaxation(const Body<dim>       &body,

@@ -13,7 +13,7 @@ namespace limber
 
 
 
-    /** By local number, where shared records are in the list of a neighbour. */
+    /** Index in the list shared with a neighbour, by local number. */
     std::map<std::uint32_t, std::uint32_t>
     places_of(const std::vector<std::uint32_t> &records)
     {
@@ -90,7 +90,8 @@ namespace limber
 
 
 
-  // Who owns a cell tells all who hold a node that it follows.
+  // The owner of a cell tells all ranks that hold a node that its corners
+  // follow.
   template <int dim>
   void
   CornersOfNodes<dim>::add_those_of_others(const RunParts<dim> &parts,

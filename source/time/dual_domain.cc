@@ -61,7 +61,7 @@ namespace limber
 
 
 
-  // Around a node without volume no cell has a gradient.
+  // A node without volume gets zero: no cell around it has a gradient.
   template <int dim>
   void
   DualDomain<dim>::divide_by_volumes(const NodalFields<dim> &nodes)
@@ -93,9 +93,9 @@ namespace limber
 
 
 
-  // Which cells have points is found anew in each step, in the order of the
-  // points: cells that have been left remain occupied for a while, and how long
-  // is not the same in a run that is resumed.
+  // Cells with points are listed anew in each step, in the order of the points:
+  // the list of occupied cells keeps empty ones for a while, which differs in a
+  // run that is resumed.
   template <int dim>
   void
   DualDomain<dim>::find_volumes(

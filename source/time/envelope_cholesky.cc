@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** In four sums, which the processor forms side by side. */
+    /** With four partial sums, for vectorisation. */
     double
     scalar_product(const double *const a, const double *const b, std::size_t n)
     {
@@ -27,8 +27,8 @@ namespace limber
 
 
 
-  // Breadth first from a row at the rim of each connected part: one that a
-  // first search from any of its rows has found last.
+  // Reverse Cuthill-McKee: breadth first search in each connected part, from a
+  // pseudo-peripheral row, the last one found by a first search from any row.
   void
   EnvelopeCholesky::order(const PressureEquations &equations)
   {
@@ -151,7 +151,7 @@ namespace limber
           }
         const std::uint32_t width = i - first[i];
         const double pivot = row[width] - scalar_product(row, row, width);
-        // of a diagonal of ones
+        // relative to the diagonal, which is scaled to one
         if (!(pivot > std::numeric_limits<double>::epsilon()))
           return false;
         row[width] = std::sqrt(pivot);

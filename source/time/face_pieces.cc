@@ -12,14 +12,14 @@ namespace limber
 
   namespace
   {
-    // Pieces of a load that varies along the face, along an edge of what a
-    // point stands for: with n of them along it the moment of one that grows
-    // evenly is too small by 1 / n^2.
+    // Pieces per spacing of the points if the load varies along the face: with
+    // n of them the moment of a linear load over a spacing is too small by
+    // 1 / n^2 (midpoint rule).
     constexpr unsigned int pieces_where_it_varies = 3;
 
 
 
-    /** One face of a box or block. */
+    /** Pieces of one face of a box or block, on the lattice of the body. */
     template <int dim>
     std::vector<FacePiece<dim>>
     pieces_of_face(const BlockShape<dim>               &block,
@@ -78,7 +78,7 @@ namespace limber
       for (const Point<dim> &corner : facet)
         piece.reference += corner / dim;
       piece.arm = piece.reference;
-      // A triangle is half of what its edges span.
+      // A triangle is half of the parallelogram that its edges span.
       for (unsigned int e = 0; e < dim - 1; ++e)
         piece.edges[e] =
           (facet[e + 1] - facet[0]) * (dim == 2 ? 1 : std::sqrt(0.5));
@@ -88,7 +88,7 @@ namespace limber
 
 
 
-    /** A piece of a box or block: itself, or two triangles. */
+    /** Add a piece of a box or block as a segment, or as two triangles. */
     template <int dim>
     void
     add_facets(const FacePiece<dim> &piece, std::vector<Facet<dim>> &facets)
@@ -164,8 +164,8 @@ namespace limber
     for (const Facet<dim> &facet : facets)
       pieces.push_back(piece_of<dim>(facet));
 
-    // Where the surface goes through nodes of its lattice, parts of it shrink
-    // to nothing.
+    // Facets degenerate where the surface passes through nodes of the lattice
+    // on which it was triangulated.
     const double least_area =
       1e-12 *
       std::pow(*std::min_element(spacing.begin(), spacing.end()), dim - 1);

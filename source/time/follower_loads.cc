@@ -39,7 +39,7 @@ namespace limber
 
 
 
-  // Of the at.n nodes that a point in a cell sees, in their order.
+  // Numbers of the at.n nodes of the support of a point, in their order.
   template <int dim>
   typename FollowerLoads<dim>::Numbers
   FollowerLoads<dim>::numbers_of(const Support<dim> &at,
@@ -101,7 +101,7 @@ namespace limber
 
 
 
-  // Place, as the arm, and edges
+  // Edges and position (in the member arm) of a piece after the displacement
   template <int dim>
   FacePiece<dim>
   FollowerLoads<dim>::moved(const Piece               &piece,
@@ -194,8 +194,8 @@ namespace limber
 
 
 
-  // Call work(place, mass, support, numbers of nodes) for those of this rank
-  // that a body force pushes, with their places after the displacement.
+  // Call work(place, mass, support, numbers of nodes) for the points of this
+  // rank, at their places after the displacement, if there is a body force.
   template <int dim>
   template <class Work>
   void

@@ -30,7 +30,7 @@ namespace limber
 
   namespace
   {
-    /** What rigid motions of a part do at places, rotations over its size. */
+    /** Rigid motions of a part, rotations divided by its size. */
     template <int dim>
     class MotionsOfPart
     {
@@ -70,7 +70,8 @@ namespace limber
 
 
 
-    /** The sum of the squares of rows, by motions of parts. */
+    /** Normal matrix (sum of the squares) of the constraint rows in terms of
+     * the rigid motions of parts. */
     template <int dim>
     class SumOfSquares
     {
@@ -80,7 +81,7 @@ namespace limber
         , matrix(parts.size() * n_rigid_motions<dim>)
       {}
 
-      /** The row of a component at a place: of some parts, with a sign. */
+      /** Part in the row of a component at a place, with its sign. */
       struct InRow
       {
         std::uint32_t part;
@@ -101,7 +102,7 @@ namespace limber
                   parts[b.part].at(place, j, component);
       }
 
-      /** The first that vanishes as they are eliminated (Cholesky). */
+      /** Index of the first vanishing pivot of a Cholesky factorisation. */
       std::optional<unsigned int>
       vanishing_pivot()
       {
@@ -145,10 +146,10 @@ namespace limber
 
 
 
-  // A held component, and one that a place has from two parts, are a row each,
-  // which is zero for motions that are possible. Of the sum of the squares of
-  // all rows a pivot vanishes where the motion, with some of those before it,
-  // is free.
+  // Each held component, and each component of a place shared by two parts, is
+  // a constraint row, which is zero for admissible motions. In the normal
+  // matrix of all rows a pivot vanishes if its motion, combined with some of
+  // those before it, is free.
   template <int dim>
   std::optional<FreeMotion<dim>>
   free_rigid_motion(const std::vector<dealii::Point<dim>>         &places,

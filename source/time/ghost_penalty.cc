@@ -8,7 +8,8 @@ namespace limber
 {
   namespace
   {
-    /** Factors of the outermost splines of a cell; see SplineCell. */
+    /** Factors of the outermost splines of a cell in one direction, which
+     * differ at sides; see SplineCell. */
     struct Ends
     {
       double lower, upper;
@@ -28,7 +29,7 @@ namespace limber
 
 
 
-    /** Values of the functions of a cell along a direction. */
+    /** Values of the one-dimensional functions of a cell. */
     std::array<double, 3>
     values_at(const unsigned int n, const Ends &ends, const double xi)
     {
@@ -39,7 +40,8 @@ namespace limber
 
 
 
-    /** Integrals of products of two of them, by Gauss' rule of three points. */
+    /** One-dimensional mass matrix on the unit interval, by three-point Gauss
+     * quadrature. */
     std::array<std::array<double, 3>, 3>
     mass_along(const unsigned int n, const Ends &ends)
     {
@@ -57,8 +59,8 @@ namespace limber
 
 
     /**
-     * The jump of the derivative of order p from a cell to the next times h^p,
-     * by the values at their p + 2 nodes in a line.
+     * Coefficients of the values at the p + 2 nodes in a line across a face in
+     * the jump of the derivative of order p times h^p.
      */
     std::array<double, 4>
     difference_of(const unsigned int n, const Ends &own, const Ends &next)
@@ -137,7 +139,7 @@ namespace limber
 
 
 
-  // Of the functions of two lines, over the unit face
+  // Entry of the mass matrix of the unit face, for the lines i and j
   template <int dim>
   double
   GhostPenalty<dim>::mass(const Face        &face,

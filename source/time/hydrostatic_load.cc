@@ -10,12 +10,13 @@ namespace limber
 {
   namespace
   {
-    // Sum of the pressures around a node over the weight of a cell, from which
-    // on all of it counts as borne; at rest it is two and more below a surface.
+    // The load acts in full where the sum of the pressures around a node over
+    // the weight of a cell is at least this; at rest it is two and more below a
+    // surface.
     constexpr double fully_borne = 0.5;
 
-    // The largest acceleration of a node by its load in semi-implicit steps,
-    // over that of gravity.
+    // Limit of the acceleration of a node by its load in semi-implicit steps,
+    // over gravity.
     constexpr double most_of_gravity = 100;
   } // namespace
 
@@ -102,7 +103,8 @@ namespace limber
 
 
 
-  // rho. What is filled to the share f from one side has f^3 of the force.
+  // rho, times f^3 where a cell is filled to the fraction f from one side, as
+  // the force is then smaller by that factor.
   template <int dim>
   double
   HydrostaticLoad<dim>::density_within(const unsigned int  field,
@@ -127,7 +129,7 @@ namespace limber
 
 
 
-  // Mean of the liquids in a cell over their density, m^2/s^2.
+  // Mean pressure of the liquids in a cell over their density, m^2/s^2.
   template <int dim>
   double
   HydrostaticLoad<dim>::pressure_over_density(const unsigned int  field,
@@ -149,8 +151,8 @@ namespace limber
 
 
 
-  // Mean pressure of the liquids in a cell over rho |g_d| h_d, summed over
-  // directions; none where they pull.
+  // Mean pressure of the liquids in a cell over the sum of rho |g_d| h_d over
+  // directions; 0 in tension.
   template <int dim>
   double
   HydrostaticLoad<dim>::pressure_over_weight(const unsigned int  field,
@@ -165,7 +167,7 @@ namespace limber
 
 
 
-  // Of the cells around each node, sums of what they bear of their weight.
+  // Sums of pressure_over_weight() over the cells around each node.
   template <int dim>
   void
   HydrostaticLoad<dim>::find_pressures(const NodalFields<dim> &nodes,
@@ -185,9 +187,10 @@ namespace limber
 
 
 
-  // How much of its weight pressure bears around a cell: by that node which
-  // has most. At rest it has several times what is asked for, so that waves of
-  // sound change nothing: a force that followed the pressure would feed them.
+  // Fraction of the load that acts in a cell, by the largest sum of pressures
+  // at its nodes. At rest that is several times fully_borne, so that sound
+  // waves change nothing: a force that followed the pressure would amplify
+  // them.
   template <int dim>
   double
   HydrostaticLoad<dim>::borne_share(const std::uint32_t cell) const
@@ -222,7 +225,8 @@ namespace limber
 
 
 
-  // Whether a free surface at rest would lie in this face.
+  // Whether a face is horizontal and on top, as a free surface at rest would
+  // be; in semi-implicit steps only.
   template <int dim>
   bool
   HydrostaticLoad<dim>::is_level(const unsigned int direction,
@@ -248,8 +252,8 @@ namespace limber
 
 
 
-  // Corners of cells at a surface, which may be filled in part, and what the
-  // mesh and obstacles make uneven. Elsewhere all cancels.
+  // Count for each node the cells at a surface around it, which may be partly
+  // filled. Elsewhere, but at uneven nodes, the forces cancel.
   template <int dim>
   void
   HydrostaticLoad<dim>::mark_nodes(const NodalFields<dim> &nodes)
@@ -340,9 +344,10 @@ namespace limber
 
 
 
-  // Points that have just entered a cell give the nodes behind it next to
-  // nothing. What the cell counts as its weight would throw these out, and by
-  // their gradient, in steps as long as semi-implicit ones, the points.
+  // In semi-implicit steps the load of a node is limited by its mass. If points
+  // have just entered a cell, the nodes on its far side have next to no mass;
+  // the load of the cell would throw these out, and in so long steps, by the
+  // velocity gradient, the points as well.
   template <int dim>
   void
   HydrostaticLoad<dim>::add(const NodalFields<dim> &nodes,

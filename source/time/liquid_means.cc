@@ -9,12 +9,12 @@ namespace limber
 {
   namespace
   {
-    // Limits of what counts as all of a cell over what is in it, in explicit
-    // steps: more would make sound faster than the step allows for.
+    // Limits of the volume of a cell over that of the liquid in it, in explicit
+    // steps: a larger ratio would make sound faster than the step admits (CFL).
     constexpr double least_share = 0.8, largest_share = 1.25;
 
-    // A cell at a surface that an obstacle cuts is full from this share on, by
-    // degrees.
+    // A cut cell at a surface begins to count as full from this fraction on,
+    // gradually.
     constexpr double nearly_full = 0.9;
   } // namespace
 
@@ -237,8 +237,8 @@ namespace limber
 
 
 
-  // Give the coordinate along a direction this mean, and with it all monomials
-  // that have it.
+  // Set the mean of the coordinate along a direction, and accordingly those of
+  // all monomials with it as a factor.
   template <int dim>
   void
   LiquidMeans<dim>::set_mean(const unsigned int direction, const double mean)
@@ -252,8 +252,8 @@ namespace limber
 
 
 
-  // Bring the means of all monomials a share of the way to those over the open
-  // part of a cell.
+  // Blend the means of all monomials with those over the open part of a cell,
+  // by this share.
   template <int dim>
   void
   LiquidMeans<dim>::fill_open_part(const typename CutCells<dim>::Cell &cut,
@@ -266,8 +266,8 @@ namespace limber
 
 
 
-  // Whether what is in a cell is as near to its surfaces as what would fill
-  // the open part, to a tenth of the edge.
+  // Whether the liquid in a cut cell touches a surface: its centroid is no
+  // further from it than that of the open part, to a tenth of the edge.
   template <int dim>
   bool
   LiquidMeans<dim>::reaches_surfaces(
@@ -298,7 +298,7 @@ namespace limber
 
 
 
-  // What liquids take of the cell.
+  // Present volume of the liquids over that of the cell.
   template <int dim>
   double
   LiquidMeans<dim>::filling(const std::uint32_t cell) const

@@ -13,7 +13,7 @@ namespace limber
 {
   namespace
   {
-    /** Pieces by the id of their carriers. */
+    /** Indices of pieces by the id of their carriers. */
     template <int dim>
     std::unordered_multimap<std::uint64_t, std::size_t>
     by_carrier(const std::vector<FacePiece<dim>> &pieces)
@@ -47,12 +47,12 @@ namespace limber
 
 
 
-    // A splinter of a cut body cannot bear the load of a whole piece: carriers
-    // have at least this share of the mass of the heaviest point near by, both
-    // as if they had been made for cells of the same size.
+    // A light splinter of a cut body cannot carry the load of a whole piece:
+    // carriers have at least this share of the mass of the heaviest point near
+    // by, both scaled to cells of the same size.
     constexpr double least_share_of_piece = 0.25;
 
-    // What a closed surface may miss by round-off, over its area
+    // Tolerance for the sum of area vectors of a closed surface over its area
     constexpr double closed = 1e-6;
 
 
@@ -70,8 +70,8 @@ namespace limber
 
     /**
      * Whether a detached piece lies in the cell of a point, or in its boundary.
-     * Beside larger cells the nearest point may be in a smaller one, whose
-     * nodes would get what those of the larger one hold.
+     * Where cells differ in size the nearest point may be in a smaller cell, to
+     * whose nodes the load of the larger one would go.
      */
     template <int dim>
     bool
@@ -184,8 +184,8 @@ namespace limber
 
 
 
-  // Of detached pieces: the nearest point of all ranks, by preference one of
-  // the cell that holds the piece. Returns the numbers of those that find none.
+  // Choose the carriers of detached pieces: the nearest point of all ranks,
+  // preferably in the cell of the piece. Returns the indices of pieces without.
   template <int dim>
   std::vector<unsigned int>
   LoadedFace<dim>::find_carriers(std::vector<FacePiece<dim>> &all) const
@@ -350,7 +350,7 @@ namespace limber
 
 
 
-  // What is near no point stays with its carrier.
+  // Pieces without a point near by keep their carriers.
   template <int dim>
   void
   LoadedFace<dim>::attach(std::vector<FacePiece<dim>> detached)

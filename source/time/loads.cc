@@ -146,7 +146,7 @@ namespace limber
 
 
 
-  // What points would give the nodes, sum_p m_p N_i b, which have their masses.
+  // A uniform b needs no sweep over points: sum_p m_p N_i b = m_i b.
   template <int dim>
   void
   ExternalLoads<dim>::add_uniform_force(const NodalFields<dim> &nodes,
@@ -278,7 +278,7 @@ namespace limber
 
 
 
-  // As for the nodes themselves: hanging nodes give to their masters.
+  // Add hanging nodes to their masters and sum over ranks, as nodal records.
   template <int dim>
   void
   ExternalLoads<dim>::complete(const NodalFields<dim> &nodes,

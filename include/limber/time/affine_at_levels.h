@@ -10,15 +10,15 @@
 namespace limber
 {
   /**
-   * What the affine velocities of points (APIC) give to the masters of hanging
-   * nodes. A hanging node h hands its momentum, sum_p m N_h (v + C (x_h - x)),
-   * to masters m, and each of these stands elsewhere: it has to get the share
-   * w_m of sum_p m N_h (v + C (x_m - x)). The difference,
+   * APIC at hanging nodes: correction for the affine velocities of points. A
+   * hanging node h adds its momentum, sum_p m N_h (v + C (x_h - x)), to its
+   * masters m. As these have other positions, they have to get the share w_m of
+   * sum_p m N_h (v + C (x_m - x)). The difference,
    *
    *   w_m (sum_p m_p N_h(x_p) C_p) (x_m - x_h),
    *
-   * has no sum over masters. Without it a field that is linear in space, like a
-   * rotation, would lose energy where cells of two sizes meet.
+   * sums to zero over the masters. Without it a velocity that is linear in
+   * space, like a rotation, would lose energy where cells of two sizes meet.
    */
   template <int dim>
   class AffineAtLevels
@@ -29,8 +29,8 @@ namespace limber
     reinit(const BackgroundGrid<dim> &grid);
 
     /**
-     * Add it to the momentum of nodes, from slot @p slot on, before hanging
-     * nodes hand theirs on.
+     * Add the correction to the momentum of nodes, at slot @p slot, before
+     * hanging nodes are added to their masters.
      */
     void
     add(const PointView<dim> &points,
@@ -45,7 +45,7 @@ namespace limber
       std::array<double, dim> arm; // from the hanging node to it, m
     };
 
-    // By node: its arms are [first[node], first[node + 1]); none of most
+    // By node: its arms are [first[node], first[node + 1]); most have none
     std::vector<std::uint32_t> first;
     std::vector<Arm>           arms;
     std::vector<char>          has_hanging_node; // by cell

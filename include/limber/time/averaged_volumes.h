@@ -12,27 +12,28 @@
 namespace limber
 {
   /**
-   * What the averaged volumes of cells resist with, kept apart from the matrix
-   * of NewtonEquations: each gets a pressure that is an unknown besides the
-   * displacements (doc/theory/implicit_steps.md, "What hardly changes its
-   * volume"). For linear functions.
+   * Mixed displacement-pressure form (saddle point system) of the volumetric
+   * stiffness of nearly incompressible bodies with the treatment `cell`: the
+   * averaged volume of each cell has a pressure as an unknown, instead of its
+   * stiffness in the matrix of NewtonEquations (doc/theory/implicit_steps.md,
+   * "What hardly changes its volume"). For linear functions.
    */
   template <int dim>
   class AveragedVolumes
   {
   public:
-    /** Of a body's points in a cell. */
+    /** The averaged volume of a body's points in a cell. */
     struct Volume
     {
       std::size_t                         body = 0;
       std::array<std::uint32_t, 1 << dim> numbers;
-      std::array<double, dim << dim>      row;       // 1/m
-      double                              stiffness; // not in the matrix, J
-      double                              kept;      // in the matrix, J
+      std::array<double, dim << dim>      row;       // of B, 1/m
+      double                              stiffness; // 1/C: not in A, J
+      double                              kept;      // D: in A, J
       double                              shear;     // G times the volume, J
     };
 
-    /** @p held: by equation. Both are those of the caller. */
+    /** @p held: by equation. Both arguments must outlive the object. */
     AveragedVolumes(const NumberedNodes<dim>         &nodes,
                     const std::vector<unsigned char> &held)
       : nodes(nodes)
@@ -54,13 +55,14 @@ namespace limber
       return volumes;
     }
 
-    /** Each rank has added its own; collective. */
+    /** Gather the volumes that all ranks have added; collective. */
     void
     unite_ranks(MPI_Comm communicator);
 
     /**
-     * The displacements; see MixedSolver. @p stiffness has to live until the
-     * next clear(), @p motions are rigid ones (make_multigrid()).
+     * Solve for the displacements; see MixedSolver, also for the number that is
+     * returned. @p stiffness (A) has to live until the next clear(),
+     * @p motions are rigid body modes (make_multigrid()).
      */
     unsigned int
     solve(const dealii::TrilinosWrappers::SparseMatrix &stiffness,

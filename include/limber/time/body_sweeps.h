@@ -13,9 +13,9 @@
 namespace limber
 {
   /**
-   * The sweeps over the points of all bodies, each with what its law, its
-   * treatment and its histories ask for. What the caller does not say is added
-   * here; energies that a sweep removes go into the ledger.
+   * The sweeps over the points of all bodies (P2G, G2P, stress update). The
+   * options that depend on the law, locking treatment and histories of a body
+   * are set here; energies that a sweep removes go into the ledger.
    */
   template <int dim>
   class BodySweeps
@@ -27,13 +27,13 @@ namespace limber
     void
     reinit();
 
-    /** Add to the nodes; returns the number of batches. Collective. */
+    /** P2G: add to the nodes; returns the number of batches. Collective. */
     std::size_t
     points_to_grid(GiveToGrid what);
 
     /**
-     * With the dual domain method, once ranks have completed the sums of the
-     * nodes: what part of the stress does there. Collective.
+     * Dual domain method, once nodal sums are complete over ranks: add forces
+     * of the stress that is mapped through nodes. Collective.
      */
     void
     finish_points_to_grid(const GiveToGrid &what);
@@ -55,28 +55,28 @@ namespace limber
     void
     grid_to_points(const TakeFromGrid &what, StepExtremes &extremes);
 
-    /** The same for bodies that do not take velocities in update_stress(). */
+    /** G2P for bodies that do not take velocities in update_stress(). */
     void
     grid_to_points_ahead(const TakeFromGrid &what, StepExtremes &extremes);
 
-    /** How fast histories tend to the mean of the cell in one sweep. */
+    /** Relaxation of histories towards the mean of the cell in one sweep. */
     struct Pace
     {
-      // Time over which volumetric histories do so now, s; 0: they do not
+      // Time over which volumetric histories relax now, s; 0: they do not
       double volumetric = 0;
       double deviatoric = 0; // likewise
       double speed      = 0; // of the fastest point, m/s
     };
 
     /**
-     * Strain all points, after histories have gone their way to the means
-     * of the beginning of the step. Collective.
+     * Strain all points and update their stress, after histories have relaxed
+     * towards the means at the start of the step. Collective.
      */
     void
     update_stress(StressSweep what, const Pace &pace, StepExtremes &extremes);
 
   private:
-    /** The nodes that the points of a body give to and take from. */
+    /** Nodal field that the points of a body map to and from. */
     GridView<dim>
     nodes_of(const MaterialBody<dim> &body)
     {

@@ -9,10 +9,11 @@
 namespace limber
 {
   /**
-   * Which corners of cells follow a node where cells have several sizes: its
-   * own, and hanging ones with the share that it has in them; empty where no
-   * node hangs. They may be those of far cells, which are owned by another rank
-   * and are no ghosts here: these have numbers beyond all cells of the grid.
+   * Transpose of the hanging node constraints on meshes with levels: which
+   * corners of cells follow a node, its own and hanging ones with its weight in
+   * them; empty if no node hangs. Corners may belong to far cells, which are
+   * owned by another rank and are no ghosts here; their numbers are beyond
+   * those of all cells of the grid.
    */
   template <int dim>
   class CornersOfNodes
@@ -22,11 +23,11 @@ namespace limber
     {
       std::uint32_t cell;
       std::uint32_t corner;
-      double        share; // of the motion of the node
-      double        room;  // this share in the room around the corner, m^3
+      double        share; // weight of the node in it
+      double        room;  // share times the volume around the corner, m^dim
     };
 
-    /** What a corner follows. */
+    /** A node that a corner follows, with its weight. */
     struct Master
     {
       std::uint32_t node;
@@ -37,14 +38,14 @@ namespace limber
     void
     reinit(const RunParts<dim> &parts);
 
-    /** Of this rank, that follow a node. */
+    /** Number of far cells with a corner that follows a node here. */
     std::uint32_t
     n_far_cells() const
     {
       return far_cells;
     }
 
-    /** What neighbours are to be told for their far cells. */
+    /** Exchange plan of cell data for the far cells of all ranks. */
     const std::vector<ExchangePlan::Neighbour> &
     far_exchange() const
     {
@@ -66,7 +67,7 @@ namespace limber
         work(corners[k]);
     }
 
-    /** Call work(master) for what a node follows, be it itself. */
+    /** Call work(master) for the masters of a node, or for itself. */
     template <class Work>
     void
     for_each_master(const std::uint32_t node, const Work &work) const
@@ -78,7 +79,7 @@ namespace limber
     }
 
   private:
-    // One that follows a node; what ranks tell each other of it besides
+    // Record by which ranks tell each other of a corner that follows a node
     struct Follower
     {
       std::uint32_t node; // its place among the nodes that both share

@@ -7,11 +7,11 @@
 namespace limber
 {
   /**
-   * What the dual domain method keeps at nodes and does there between the
-   * sweeps over points (interpolation/dual_domain.h): the volumes around nodes,
-   * the stress that points give them and the forces that follow, the mean
-   * velocity gradients. Points must be on the ranks that own their cells, all
-   * of one size. All but data() and clear_stress() are collective.
+   * Nodal part of the dual domain method (DDMP) between the sweeps over points
+   * (interpolation/dual_domain.h): volumes around nodes, the stress mapped from
+   * points and its forces, mean velocity gradients. Points must be on the ranks
+   * that own their cells, all cells of one size. All functions but data() and
+   * clear_stress() are collective.
    */
   template <int dim>
   class DualDomain
@@ -36,7 +36,7 @@ namespace limber
       return records.data();
     }
 
-    /** Before points give their stress. */
+    /** To be called before points map their stress to the nodes. */
     void
     clear_stress(const NodalFields<dim> &nodes);
 
@@ -48,7 +48,7 @@ namespace limber
     find_volumes(NodalFields<dim>                                      &nodes,
                  const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
 
-    /** Add to the forces of the nodes those of the stress that they got. */
+    /** Add the forces of the stress mapped to the nodes. */
     void
     add_forces(NodalFields<dim> &nodes);
 
@@ -84,7 +84,7 @@ namespace limber
     const NodeTable<dim>    &table;
     LazyArray<double>        records;
     std::vector<WeighedCell> cells; // that points are in
-    LazyArray<std::uint32_t> met;   // per cell: the last turn in which it was
+    LazyArray<std::uint32_t> met;   // per cell: last turn with points in it
     std::uint32_t            turn = 0;
     RecordExchange           exchange{Layout::stride};
   };

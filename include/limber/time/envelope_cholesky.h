@@ -11,15 +11,16 @@ namespace limber
   struct PressureEquations;
 
   /**
-   * The Cholesky factor L L^T of the equations of one rank within the envelope
-   * of their rows, from the first entry of each to the diagonal, with the rows
-   * ordered after E. Cuthill and J. McKee (1969), reversed by A. George (1971):
-   * narrow for layers of cells of which few lie on top of each other.
+   * Envelope (skyline) Cholesky factorisation L L^T of the equations of one
+   * rank: each row is stored from its first entry to the diagonal, in reverse
+   * Cuthill-McKee order (E. Cuthill and J. McKee 1969, A. George 1971). The
+   * envelope is narrow for layers that are few cells thick.
    */
   class EnvelopeCholesky
   {
   public:
-    /** Adopt columns; returns the multiplications that a factor takes. */
+    /** Order the rows and set up the envelope; returns the number of
+     * multiplications of a factorisation. */
     double
     set_pattern(const PressureEquations &equations);
 

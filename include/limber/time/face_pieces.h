@@ -13,9 +13,9 @@
 namespace limber
 {
   /**
-   * A piece of a loaded face or surface. It hangs on the material point next
-   * to it and deforms with the velocity gradient there; plain, for
-   * checkpoints.
+   * A surface segment of a loaded face or surface. It is attached to the
+   * material point next to it (its carrier) and deforms with the velocity
+   * gradient there; plain, for checkpoints.
    */
   template <int dim>
   struct FacePiece
@@ -24,7 +24,7 @@ namespace limber
     dealii::Point<dim> reference;   // X of its centre at the start, m
     double             area = 0;    // at the start, m^(dim-1)
 
-    // As they are now, m: from the carrier to the centre, and the edges that
+    // Present vectors, m: from the carrier to the centre, and the edges that
     // span the piece, or a parallelogram of its area, ordered so that their
     // cross product points outward.
     dealii::Tensor<1, dim>                      arm;
@@ -45,14 +45,14 @@ namespace limber
 
 
   /**
-   * The pieces that bear a load at the start, without carriers; the arm is
-   * from the origin. They are about as large as the spacing of the points,
-   * whatever the placement of these is. Faces of boxes and blocks are cut along
-   * the lattice of the body (Body::lattice) and filled exactly, surfaces of
-   * other shapes are those of surface(). All pieces are on all ranks.
+   * The pieces under a load at the start, without carriers; the arm is from the
+   * origin. They are about as large as the spacing of the points, for any
+   * placement of these. Faces of boxes and blocks are divided along the lattice
+   * of the body (Body::lattice) and covered exactly; other shapes are
+   * triangulated by surface(). All pieces are on all ranks.
    *
-   * What of a whole surface lies in a side of the grid is held there and bears
-   * nothing.
+   * Parts of a whole surface that lie in a side of the grid are held there and
+   * not loaded.
    */
   template <int dim>
   std::vector<FacePiece<dim>>

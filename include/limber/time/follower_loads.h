@@ -13,28 +13,28 @@
 namespace limber
 {
   /**
-   * Loads that depend on where material goes in steps that Newton's method
-   * solves: they follow the displacements u of the nodes in the step.
+   * Follower loads in steps that Newton's method solves: loads that depend on
+   * the displacements u of the nodes in the step.
    *
-   * Of a pressure on a face or surface of a body, a piece at x_p + r with the
-   * edges a, whose carrier p has the functions N_i, goes to
+   * Pressure on a face or surface of a body: a piece at x_p + r with the edges
+   * a, whose carrier p has the shape functions N_i, moves to
    *
    *   x = x_p + r + sum_i w_i u_i,  w_i = N_i + r . grad N_i,
    *   a = a + sum_i u_i (a . grad N_i),
    *
-   * and gives the nodes the forces - p(x, t) w_i n da, where n da is the cross
-   * product of the edges (ExternalLoads, whose pieces these are). r and a of
-   * the start of the step are pulled back where gradients are those of initial
-   * places.
+   * and adds - p(x, t) w_i n da to the nodal forces, where n da is the cross
+   * product of the edges (ExternalLoads, which has these pieces). r and a of
+   * the start of the step are pulled back if gradients are those at initial
+   * positions (total Lagrangian).
    *
-   * Of a body force that varies in space, a point gives m_p N_i b(x_p + sum_j
-   * N_j u_j, t).
+   * Body force that varies in space: a point adds m_p N_i b(x_p + sum_j N_j
+   * u_j, t).
    */
   template <int dim>
   class FollowerLoads
   {
   public:
-    /** All are those of the caller. */
+    /** The arguments must outlive the object. */
     FollowerLoads(const RunParts<dim>      &parts,
                   const NumberedNodes<dim> &nodes,
                   ExternalLoads<dim>       &loads)
@@ -43,16 +43,16 @@ namespace limber
       , loads(loads)
     {}
 
-    /** Whether the scene has such loads, on whatever rank. */
+    /** Whether the scene has such loads; the same on all ranks. */
     bool
     any() const;
 
-    /** The pieces as they are at the start of a step; points must be sorted and
-     * the nodes numbered. */
+    /** Set up the pieces at the start of a step; points must be sorted and the
+     * nodes numbered. */
     void
     find();
 
-    /** Loads are those of @p time times @p factor. */
+    /** Loads are those at @p new_time times @p new_factor. */
     void
     set(const double new_time, const double new_factor)
     {
@@ -71,9 +71,9 @@ namespace limber
                                    const double        *block)>;
 
     /**
-     * Minus the derivative of these forces, N/m, row by row of the nodes with
-     * these numbers; or its symmetric part. That a pressure may change with
-     * the place is left out, and that of SurfaceClosure.
+     * Load stiffness: minus the derivative of these forces, N/m, as one
+     * row-wise block per piece or point; or its symmetric part. Left out are
+     * the change of a pressure with the position, and that of SurfaceClosure.
      */
     void
     add_tangent(const std::vector<double> &displacement,

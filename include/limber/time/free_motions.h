@@ -16,7 +16,8 @@ namespace limber
   template <int dim>
   inline constexpr unsigned int n_rigid_motions = dim == 2 ? 3 : 6;
 
-  /** Component @p component of one of them about @p centre at @p place. */
+  /** A component of a rigid motion about @p centre at @p place; rotations with
+   * unit angular velocity. */
   template <int dim>
   double
   rigid_motion(unsigned int              motion,
@@ -24,19 +25,20 @@ namespace limber
                const dealii::Point<dim> &place,
                const dealii::Point<dim> &centre);
 
-  /** A rigid motion that nothing holds. */
+  /** A rigid body mode that no support restrains. */
   template <int dim>
   struct FreeMotion
   {
     std::string        motion;       // "the translation along x"
-    dealii::Point<dim> lower, upper; // of the places that have it, m
+    dealii::Point<dim> lower, upper; // bounding box of the moving part, m
   };
 
   /**
-   * A rigid motion that held components leave to rigid parts, which may share
-   * places: parts that share one alone in the plane, or a row of them in space,
-   * are hinged. @p held: of each place its held components. @p parts: of each
-   * the numbers of its places. More than 200 parts are not looked at.
+   * Search for a mechanism: a rigid motion of rigid parts that held components
+   * leave free. Parts may share places: those that share a single one in the
+   * plane, or a row of them in space, are hinged. @p held: held components by
+   * place. @p parts: numbers of the places of each part. With more than 200
+   * parts nothing is searched and nothing returned.
    */
   template <int dim>
   std::optional<FreeMotion<dim>>

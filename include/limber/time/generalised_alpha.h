@@ -13,8 +13,8 @@ namespace limber
    *   u  = dt v0 + dt^2 ((1/2 - beta) a0 + beta a1)
    *   v1 = v0 + dt ((1 - gamma) a0 + gamma a1)
    *
-   * All four parameters follow from the factor r by which a step multiplies
-   * vibrations that are much faster than it:
+   * All four parameters follow from the spectral radius r at infinite
+   * frequency, the factor by which a step multiplies much faster vibrations:
    *
    *   am = (2 r - 1)/(r + 1), af = r/(r + 1),
    *   beta = 1/(r + 1)^2, gamma = 1/2 + (1 - r)/(1 + r).
@@ -38,14 +38,14 @@ namespace limber
       return r < 1;
     }
 
-    /** Beside F1: af/(1 - af) = r of F0. */
+    /** Factor of F0 relative to that of F1: af/(1 - af) = r. */
     double
     share_of_beginning() const
     {
       return r;
     }
 
-    /** Times m/dt^2: what multiplies u in F1 + r F0 = ... (u - ahead). */
+    /** Coefficient c in F1 + r F0 = c m/dt^2 (u - ahead()). */
     double
     inertia() const
     {

@@ -17,21 +17,20 @@ namespace limber
    *
    *   energy  g E / 2  h^(2p-1) / ((2p+1) p!^2)  int [d^p u/dn^p]^2 dA,
    *
-   * without which nodes of cells that are hardly filled would resist some
-   * motions with nothing. Lower derivatives do not jump. p = 1 for linear
-   * functions, 2 for quadratic splines.
+   * without which nodes of hardly filled (small-cut) cells would have no
+   * stiffness against some motions. Lower derivatives are continuous. p = 1 for
+   * linear functions, 2 for quadratic splines; g is the factor of the penalty.
    */
   template <int dim>
   class GhostPenalty
   {
   public:
-    // A face between two cells with points, near the surface
+    // A face between two cells with points, of which one is at the surface
     struct Face
     {
-      // Numbers of nodes, along the normal for each place across it: p + 2 in a
-      // line
+      // Numbers of nodes in lines along the normal, p + 2 in each
       std::vector<std::uint32_t> nodes;
-      // of the values along a line, what jumps, times h^p
+      // Coefficients of the values in a line: jump of the derivative times h^p
       std::array<double, 4> difference;
       // Integrals of products of the functions over the unit interval, for each
       // direction in the face
@@ -39,7 +38,7 @@ namespace limber
       double stiffness; // N/m
     };
 
-    /** There is none. */
+    /** Remove all faces. */
     void
     clear()
     {
@@ -47,10 +46,10 @@ namespace limber
     }
 
     /**
-     * Find the faces: those of a cell that has a neighbour without points, and
-     * of its neighbours with points. What lies beyond a side of the box does
-     * not count. @p moduli: g E by cell, Pa; a face has the smaller one, as
-     * where two materials meet the derivative does jump.
+     * Find the faces between cells with points of which at least one has a
+     * neighbour without points; the outside of the box is no such neighbour.
+     * @p moduli: g E by cell, Pa; a face has the smaller one, as at material
+     * interfaces the derivative does jump.
      */
     void
     find(const NumberedNodes<dim> &nodes, const std::vector<double> &moduli);
@@ -61,8 +60,8 @@ namespace limber
       return of_surface;
     }
 
-    /** Add the forces against displacements (dim a node, m) to @p forces, N;
-     * returns the energy, J. */
+    /** Add the gradient of the energy at displacements (dim per node, m) to
+     * @p forces, N; returns the energy, J. */
     double
     add_forces(const std::vector<double> &displacement,
                std::vector<double>       &forces) const;

@@ -16,29 +16,30 @@ namespace limber
 
 
   /**
-   * The part of the hydrostatic pressure that a constant one leaves out: at
-   * surfaces, where cells of several sizes meet, and where obstacles cut them.
+   * Correction of gravity (well-balancing): nodal forces of the linear part of
+   * the hydrostatic pressure in a cell, which a constant cell pressure leaves
+   * out; at surfaces, where cells of several sizes meet, and in cut cells.
    *
-   * In a liquid with the mean divergence of a cell the pressure is constant in
-   * it. At rest it is p_c + rho g . (x - x_c), and the second part gives the
-   * corner a, with signs s_ad = -1, 1, the force
+   * With one mean divergence per cell (treatment `cell`) the pressure of a
+   * liquid is constant in the cell. At rest it is p_c + rho g . (x - x_c), and
+   * the second part exerts on the corner a, with signs s_ad = -1, 1, the force
    *
    *   f_ad = int rho g . (x - x_c) dN_a/dx_d dV
    *        = rho V / (12 2^(dim - 2)) sum_(e /= d) s_ad s_ae g_e h_e / h_d,
    *
-   * the shape of hourglass motion. Between equal cells it cancels, so that it
-   * may as well be left out. At each step of a surface that is not level, at
-   * the corners of a fine region, and where its rim meets a side or a surface,
-   * leaving it out sets water at rest in motion, by some g/3 and g/16. So it is
-   * added there: at corners of cells at a surface and at the masters of hanging
-   * nodes, from cells with a neighbour across d, of which one cancels the other
-   * if they are equal. What a cell at a surface holds counts as filling it from
-   * within. What falls freely has no pressure: along its surface the part fades
-   * with the pressures around the nodes. Theory: doc/theory/adaptive_grid.md.
+   * with the pattern of an hourglass mode. Between equal cells it cancels, so
+   * that it may be left out. At each step of a surface that is not level, at
+   * the corners of a fine region, and where the rim of this meets a side or a
+   * surface, leaving it out accelerates water at rest by some g/3 and g/16. So
+   * it is added there: at corners of cells at a surface and at the masters of
+   * hanging nodes, from cells with a neighbour across d, which cancel each
+   * other if they are equal. A partly filled cell at a surface counts as filled
+   * from the inside. In free fall there is no pressure: along a surface the
+   * force fades with the pressures around the nodes. Theory:
+   * doc/theory/adaptive_grid.md.
    *
-   * The same at the corners of cells that obstacles cut (CutCells), where the
-   * integral is that over the open part, and the pressure on the surfaces has
-   * such a part as well. Theory: doc/theory/obstacles.md.
+   * The same at the corners of cut cells (CutCells), with the integral over the
+   * open part and that over the surfaces. Theory: doc/theory/obstacles.md.
    */
   template <int dim>
   class HydrostaticLoad
@@ -46,13 +47,13 @@ namespace limber
   public:
     using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
 
-    /** Cells that obstacles cut, or null. */
+    /** @p cut_cells may be null. */
     HydrostaticLoad(const Problem<dim>        &problem,
                     const BackgroundGrid<dim> &grid,
                     const Bodies              &bodies,
                     CutCells<dim>             *cut_cells);
 
-    /** Whether there may be any: gravity and liquids. */
+    /** Whether the scene may need this load: gravity and liquids. */
     bool
     any() const
     {
@@ -63,12 +64,12 @@ namespace limber
     void
     reinit();
 
-    /** What acts in the step that begins, while the sums of the cells are
-     * those of the present places; collective. */
+    /** Find the forces for the step that begins, while the sums of the cells
+     * are those of the present places; collective. */
     void
     find(const NodalFields<dim> &nodes);
 
-    /** Add that on a field of nodes, whose masses are known by now, N, to
+    /** Add the forces on a nodal field, N, whose masses are known by now, to
      * @p forces, dim per node. */
     void
     add(const NodalFields<dim> &nodes,
@@ -127,11 +128,11 @@ namespace limber
     CutCells<dim> *const             cut_cells;   // or null
     unsigned int                     version = 0; // of these
     Surroundings<dim>                surroundings;
-    // By node: whether it is a master, hangs on one, or is a corner of a cell
-    // that is cut; of how many cells at a surface it is one
+    // By node: whether it is a master, a hanging node or a corner of a cut
+    // cell; of how many cells at a surface it is a corner
     std::vector<unsigned char> is_uneven;
     LazyArray<double>          at_surface;
-    std::vector<std::uint32_t> marked_cells; // that hold liquid alone
+    std::vector<std::uint32_t> marked_cells; // with liquid and nothing else
     LazyArray<double>          sums;         // by node, N
     LazyArray<double>          pressures; // by node, over the weight of a cell
     RecordExchange             exchange{dim}, exchange_of_one{1};

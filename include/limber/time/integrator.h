@@ -13,7 +13,7 @@
 
 namespace limber
 {
-  /** The parts of a run that steps work on; they outlive the integrator. */
+  /** The data of a run that steps work on; they outlive the integrator. */
   template <int dim>
   struct RunParts
   {
@@ -26,7 +26,7 @@ namespace limber
 
 
 
-  /** What an integrator takes from step to step; plain, for checkpoints. */
+  /** State of an integrator between steps; plain, for checkpoints. */
   template <int dim>
   struct IntegratorState
   {
@@ -52,15 +52,14 @@ namespace limber
 
 
   /**
-   * Takes a run from step to step. The points are the state: after
+   * Interface of time integration. The points are the state: after
    * synchronise() it is complete, and pictures, rows and checkpoints are made
-   * of it. All functions but those that only tell something are collective.
+   * of it. All functions but plain queries are collective.
    *
-   * How often a step has to be tried is the integrator's own affair. An
-   * explicit step is done once and stands. One that solves equations may find
-   * no solution, or one that goes too far; it then leaves points and ledger as
-   * they were, tries a shorter step, and tells by the result of advance() how
-   * far it has come.
+   * An integrator decides itself whether to repeat a step. An explicit step is
+   * done once. An implicit one may find no solution, or one that moves too far;
+   * it then leaves points and ledger as they were, tries a shorter step, and
+   * returns from advance() the length that was done.
    */
   template <int dim>
   class Integrator
@@ -77,10 +76,10 @@ namespace limber
     reorganise(double now) = 0;
 
     /**
-     * Where points see nodes beyond those of their cells, give those in ghost
-     * cells to the ranks that own these, who alone know all; records of nodes
-     * are given up. To be called before anything but a step evaluates
-     * functions at points; returns whether there were any.
+     * With functions that reach beyond the nodes of a cell (splines), send
+     * points in ghost cells to the ranks that own these, which alone hold all
+     * their nodes; nodal records become invalid. To be called before functions
+     * are evaluated at points outside a step; returns whether there were any.
      */
     virtual bool
     bring_points_home() = 0;
@@ -97,9 +96,9 @@ namespace limber
     advance(double time, double step) = 0;
 
     /**
-     * Bring strain and stress to the time that advance() has come to; a scheme
-     * may leave them behind until somebody looks. What follows does not depend
-     * on whether this was called, but for round-off.
+     * Complete strain and stress up to the present time: a scheme may leave
+     * them behind until they are needed. Later steps do not depend on whether
+     * this was called, but for round-off.
      */
     virtual void
     synchronise() = 0;
@@ -115,8 +114,8 @@ namespace limber
     virtual void
     restore(const IntegratorState<dim> &former) = 0;
 
-    /** The pieces of faces under load, and these again when the points that
-     * carry them may have become others; see LoadedFace. Collective. */
+    /** Detach the pieces of loaded faces from their points, and attach them
+     * again after points have been replaced; see LoadedFace. Collective. */
     virtual typename ExternalLoads<dim>::Pieces
     detached_pieces() const = 0;
     virtual void
@@ -126,7 +125,7 @@ namespace limber
     virtual double
     imbalance() const = 0;
 
-    /** Bound of the largest way of a point in the last step, in edges of the
+    /** Bound of the displacement of points in the last step, in edges of the
      * smallest cells. */
     virtual double
     largest_displacement() const = 0;

@@ -9,38 +9,39 @@
 namespace limber
 {
   /**
-   * The mean divergence of liquids in a cell: of which places it is the mean,
-   * and what part of it a liquid takes. Both are written where the sweeps look
-   * them up, in the sums of the cell and in MaterialBody::volume_shares, so
-   * that strain and force have the same, one as the transpose of the other.
+   * The mean divergence of liquids in a cell (treatment `cell`, B-bar): over
+   * which region the mean is taken, and which share of it each liquid takes.
+   * Both are written to the sums of the cell and to
+   * MaterialBody::volume_shares, from which all sweeps read them, so that
+   * strain and force stay transposes of each other.
    *
-   * Where several liquids share a cell, all have the mean over the points of
-   * all of them, weighted by volume; one for each would be more conditions than
-   * the nodes of a cell can meet. As pressures are to stay equal, the liquid k
-   * of the volume share phi_k and the stiffness kappa_k = -J d(J p)/dJ takes
+   * If several liquids share a cell, all have the mean over the points of all
+   * of them, weighted by volume; a mean for each would be more constraints than
+   * the nodes of a cell can satisfy (locking). For pressures to stay equal, the
+   * liquid k with the volume fraction phi_k and the stiffness
+   * kappa_k = -J d(J p)/dJ takes
    *
    *   s_k = (1/kappa_k) / sum_j phi_j/kappa_j,   sum_k phi_k s_k = 1,
    *
-   * of the divergence. Those whose pressure is implicit have one in common and
-   * need no s_k. Liquids with fields of nodes of their own (contact) share
-   * nothing.
+   * of the divergence. Liquids with an implicit pressure have one in common and
+   * need no s_k. Liquids with nodal fields of their own (contact) do not
+   * interact.
    *
-   * Where nodes are corners of cells, the mean inside is that over the cell and
-   * not over the points in it, and what they fill of it counts as all of it.
-   * Means over points do not see that points part from each other where the
-   * divergence is above the mean: they would make way without work against the
-   * pressure p, as if by a stiffness of - p against deviations of the
-   * divergence, and water at rest would be unstable. In a layer at a surface
-   * the cell counts as filled from within. What gathers all
-   * the same is kept apart by ParticleShifting, and with an implicit pressure
-   * by the density control. Where an obstacle cuts a cell (CutCells), its open
+   * With linear functions, inside a liquid the mean is taken over the cell
+   * instead of the points in it, which count as filling it. Means over points
+   * do not notice that points move apart where the divergence is above the
+   * mean: they would do so without work against the pressure p, like a negative
+   * stiffness - p against deviations of the divergence, and water at rest would
+   * be unstable. In a layer at a surface the cell counts as filled from the
+   * inside. Clumping that remains is treated by ParticleShifting, and with an
+   * implicit pressure by the density control. In cut cells (CutCells) the open
    * part takes the place of the cell. Theory: doc/theory/treatments.md.
    */
   template <int dim>
   class LiquidMeans
   {
   public:
-    /** Cells that obstacles cut, or null. */
+    /** @p cut_cells may be null. */
     LiquidMeans(const RunParts<dim> &parts, CutCells<dim> *cut_cells);
 
     /** Adopt a mesh that has changed. */
@@ -52,8 +53,9 @@ namespace limber
     void
     find();
 
-    /** What surrounds the cells of a liquid that is alone in this field of
-     * nodes and has means over cells; as find() has found it. */
+    /** Which cells around those of a liquid are filled, as of the last find();
+     * for a liquid that is alone in this nodal field and has means over cells.
+     */
     const Surroundings<dim> &
     surroundings(unsigned int field) const;
 
@@ -61,7 +63,7 @@ namespace limber
     using MaterialBody                    = limber::MaterialBody<dim>;
     static constexpr unsigned int n_nodes = 1 << dim;
 
-    /** Liquids that give to the same nodes, and the solids that do. */
+    /** Liquids and solids that share a nodal field. */
     struct Group
     {
       explicit Group(const BackgroundGrid<dim> &grid)
@@ -69,7 +71,7 @@ namespace limber
       {}
 
       std::vector<MaterialBody *> liquids, solids;
-      bool fills_cells        = false; // whether means over the cell are wanted
+      bool fills_cells        = false; // whether the mean is that over the cell
       bool is_implicit        = false; // the pressure of the liquids
       unsigned int      field = 0;
       Surroundings<dim> surroundings; // where cells are filled
@@ -81,7 +83,7 @@ namespace limber
       MaterialBody *body;
       double       *sums;   // CellSums
       double        mass;   // kg
-      double        volume; // without pressure, m^3
+      double        volume; // reference volume, m^dim
       double        share;  // s_k
     };
 

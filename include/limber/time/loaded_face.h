@@ -10,9 +10,9 @@
 namespace limber
 {
   /**
-   * A face or the surface of a body under a load: its pieces, each on the rank
-   * that has its carrier. A piece whose carrier leaves the grid is lost with
-   * it.
+   * A loaded face or surface of a body (traction or pressure boundary): its
+   * pieces, each on the rank of its carrier, the point that it is attached to.
+   * A piece whose carrier leaves the grid is lost with it.
    */
   template <int dim>
   class LoadedFace
@@ -26,22 +26,22 @@ namespace limber
                const MaterialBody<dim>   &body,
                const BackgroundGrid<dim> &grid);
 
-    /** A piece of this rank and where its carrier stands in the arrays. */
+    /** A piece of this rank and the index of its carrier in the arrays. */
     struct Here
     {
       std::size_t     point;
       FacePiece<dim> *piece;
     };
 
-    /** The pieces whose carriers are here. */
+    /** The pieces of this rank, with the present indices of their carriers. */
     const std::vector<Here> &
     here();
 
-    /** After points have changed ranks: follow them; collective. */
+    /** Send pieces after carriers that have changed ranks; collective. */
     void
     exchange();
 
-    /** Of all ranks; collective. */
+    /** The pieces of all ranks; collective. */
     std::vector<FacePiece<dim>>
     all_pieces() const;
 
@@ -54,12 +54,12 @@ namespace limber
     void
     attach(std::vector<FacePiece<dim>> detached);
 
-    /** Take over those of a checkpoint, known to all ranks. */
+    /** Restore the pieces from a checkpoint, @p all of them on all ranks. */
     void
     restore(const std::vector<FacePiece<dim>> &all);
 
-    /** Whether it is a pressure on a whole surface, of which no piece is
-     * lost: see SurfaceClosure. Collective. */
+    /** Whether this is a pressure on a closed surface of which no piece has
+     * been lost: see SurfaceClosure. Collective. */
     bool
     is_closed() const;
 
@@ -85,7 +85,7 @@ namespace limber
     std::vector<FacePiece<dim>> pieces;
     std::vector<Here>           present;
     dealii::Point<dim>          centre;
-    // Of a surface that is closed at the start, else 0
+    // Number of pieces of a surface that is closed at the start, else 0
     std::size_t   n_of_closed = 0;
     unsigned long order       = 0; // of points, when `present` was made
   };

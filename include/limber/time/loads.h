@@ -9,16 +9,16 @@
 namespace limber
 {
   /**
-   * Body force formulas, loads on faces and surfaces of bodies, and what
-   * gravity does where unequal cells meet (HydrostaticLoad). Their
-   * forces are kept apart from the internal ones so that their work is known;
-   * a scene without such loads has none of this.
+   * External forces: body force formulas, loads on faces and surfaces of bodies
+   * (tractions, pressures), and the correction of gravity in unequal cells
+   * (HydrostaticLoad). They are stored apart from the internal forces so that
+   * their work is known; a scene without such loads has no cost.
    *
-   * A piece of a face at the place x_p + r, where p is its carrier and r its
-   * arm, moves with the velocity sum_i (N_i + r . grad N_i) v_i, the functions
-   * taken at x_p; a force t on it gives (N_i + r . grad N_i) t to the nodes.
-   * So the forces of the nodes have the sum and the moment of those on the
-   * pieces, do the same work, and reach only nodes that have mass.
+   * A piece of a face at x_p + r, where p is its carrier and r its arm, moves
+   * with the velocity sum_i (N_i + r . grad N_i) v_i, with the functions at
+   * x_p; a force t on it adds (N_i + r . grad N_i) t to the nodes. So the nodal
+   * forces have the sum and the moment of those on the pieces, do the same
+   * work, and act only on nodes that have mass.
    */
   template <int dim>
   class ExternalLoads
@@ -36,20 +36,20 @@ namespace limber
     void
     reinit();
 
-    /** At the beginning of a step, when the sums of the cells are complete;
-     * collective. */
+    /** Update the hydrostatic load at the beginning of a step, when the sums of
+     * the cells are complete; collective. */
     void
     look_at_cells(const NodalFields<dim> &nodes);
 
     /** Add the forces at @p time to those of active nodes, whose masses are
-     * known; on request without FollowerLoads. Collective. */
+     * known; without those of FollowerLoads unless @p followers. Collective. */
     void
     add(NodalFields<dim> &nodes, double time, bool followers = true);
 
     /**
-     * Deform the pieces of faces as the points around them are strained, while
-     * these still are where they were. @p mean_gradients are those around
-     * nodes of the dual domain method (DualDomainLayout); null elsewhere.
+     * Deform the pieces of faces with the velocity gradient at their carriers,
+     * before points are moved. @p mean_gradients: those around nodes in the
+     * dual domain method (DualDomainLayout), else null.
      */
     void
     deform(NodalFields<dim>  &nodes,
@@ -67,17 +67,17 @@ namespace limber
     void
     restore(const Pieces &pieces);
 
-    /** See LoadedFace: for when points become others. Collective. */
+    /** See LoadedFace: for when points are replaced. Collective. */
     Pieces
     detached_pieces() const;
     void
     attach(const Pieces &detached);
 
-    /** The sum of the forces on a node of a field, of the last add(), N. */
+    /** Force on a node of a field in the last add(), N. */
     dealii::Tensor<1, dim>
     on_node(unsigned int field, std::uint32_t node) const;
 
-    /** In the order of the scene. */
+    /** Loaded faces in the order of the scene. */
     std::vector<LoadedFace<dim>> &
     loaded_faces()
     {
