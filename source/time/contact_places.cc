@@ -249,6 +249,8 @@ namespace limber
 
 
 
+  // List the points of a body near others as candidates, with contact normals
+  // interpolated from the nodes.
   template <int dim>
   template <int degree>
   void
@@ -397,6 +399,8 @@ namespace limber
 
 
 
+  // Contact points at the acting points: their gap to the facing points of the
+  // other body, and the coefficients of the relative velocity (see Contact).
   template <int dim>
   template <int degree>
   void

@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    // Components of the tensor, with what lies between them
+    // Slots that the components of the tensor span in a record
     template <int dim>
     constexpr unsigned int
       n_tensor = DualDomainLayout<dim>::tensor(dim - 1, dim - 1) + 1;

@@ -314,6 +314,7 @@ namespace limber
 
 
 
+  // Integrals of N_i over the open volume, with N_i expanded in monomials.
   template <int dim>
   void
   CutCells<dim>::find_rooms()

@@ -168,6 +168,8 @@ namespace limber
 
 
 
+  // Several liquids in a cell: the shares s_k, and common means of monomials
+  // over the points of all of them.
   template <int dim>
   void
   LiquidMeans<dim>::mix()
@@ -196,6 +198,8 @@ namespace limber
 
 
 
+  // Replace means over points by those over the cell or its open part, in
+  // directions along which the liquid is bounded or fills a layer.
   template <int dim>
   void
   LiquidMeans<dim>::fill(const Group &group, const std::uint32_t cell)
