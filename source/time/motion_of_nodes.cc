@@ -179,7 +179,7 @@ namespace limber
           checked_speed = std::max(checked_speed, squared);
       }
     fastest_node = std::isfinite(all) ? std::sqrt(checked_speed) * step /
-                                          parts.grid.smallest_edge :
+                                          relocation.smallest_edge() :
                                         1e300;
     lap(Verb::advance_nodes);
   }

@@ -44,11 +44,11 @@ namespace limber
    * pass faces; and within a cell by the linear interpolation between opposite
    * faces (lowest order Raviart-Thomas). It takes C s / dim of stripes.
    *
-   * Next to cells at a free surface R_i is not known to be filled: only an excess of
-   * nodes counts there, and nothing passes faces. Nothing is done beside solids
-   * and other fields, and neither phi nor faces count on cells of several
-   * sizes. Velocities stay; the potential energy that
-   * this takes is on record as removed with histories.
+   * Next to cells at a free surface R_i is not known to be filled: only an
+   * excess of nodes counts there, and nothing passes faces. Nothing is done
+   * beside solids and other fields, and neither phi nor faces count on cells of
+   * several sizes. Velocities stay; the potential energy that this takes is on
+   * record as removed with histories.
    *
    * For linear functions, with means over cells. Theory:
    * doc/theory/treatments.md.
