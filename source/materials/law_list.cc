@@ -21,7 +21,7 @@ namespace limber
                             Law::is_plastic,
                             {Law::parameters.begin(), Law::parameters.end()},
                             {}});
-        // those of the last variant, which has the most
+        // variables of the last variant, which has the most
         result.back().variables.assign(Law::variables.begin(),
                                        Law::variables.end());
       });
@@ -34,7 +34,7 @@ namespace limber
 
   namespace
   {
-    /** Call work(law) with the law of that name for these values. */
+    /** Call work(law) for the law of that name with these values. */
     template <class Work>
     void
     with_law(const std::string         &name,

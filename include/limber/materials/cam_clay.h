@@ -8,27 +8,28 @@
 namespace limber
 {
   /**
-   * Clay that is compacted by pressure and shear: modified Cam-clay (Roscoe and
-   * Burland 1968) at finite strain (Borja and Tamagnini, CMAME 155 (1998) 73).
-   * Stress is that of Kirchhoff, pressure counted from an attraction a, the
-   * isotropic tension that no state exceeds: x = J p + a.
+   * Modified Cam-clay, for clay and other soils that compact under pressure
+   * and shear (Roscoe and Burland 1968), at finite strain (Borja and
+   * Tamagnini, CMAME 155 (1998) 73). With Kirchhoff stress, and the pressure
+   * shifted by an attraction a, the isotropic tension that no state exceeds,
+   * x = J p + a:
    *
    *   x = a Je^(-1/kappa)                          elastic, G constant
    *   q^2 / M^2 + x (x - c) <= 0,  c = pc + a      associated flow
    *   c ~ Jp^(-1 / (lambda - kappa))               hardening and softening
    *
    * so that under growing pressure ln J falls by kappa per ln(x) elastically,
-   * by lambda where it flows. The attraction gives a stiffness a / kappa and a
-   * place to the state without stress; with a small one the law is that of the
-   * books. As no volume Je needs more tension than it, what is torn apart bears
-   * pressure again only when it is closed. Softening ends at pc = 0, where the
-   * state without stress is just within the yield surface, so that plastic work
-   * is never negative. The surface is a circle about the pressure axis (von
-   * Mises in the deviatoric plane): M is that of triaxial compression in all
-   * directions.
+   * by lambda in plastic flow. The attraction gives the stress-free state a
+   * bulk modulus a / kappa and a defined volume; for a small one the law tends
+   * to that of the textbooks. As the tension is bounded at any Je, torn
+   * material bears pressure again only when the gap is closed. Softening ends
+   * at pc = 0, where the stress-free state is just within the yield surface,
+   * so that plastic work is never negative. The yield surface is a circle in
+   * the deviatoric plane (as von Mises): M is that of triaxial compression
+   * for all Lode angles.
    *
-   * J in the history is the elastic volume ratio; the whole one is J
-   * exp(plastic volume).
+   * J in the history is the elastic volume ratio Je; the total one is
+   * Je exp(plastic volume strain).
    */
   class CamClay : public FiniteElasticity<3>
   {
@@ -168,15 +169,17 @@ namespace limber
       return result;
     }
 
-    /** Whether stress depends on how fast it flows. */
+    /** Whether the law is viscoplastic. */
     bool
     depends_on_rate() const
     {
       return false;
     }
 
-    /** At rest under a pressure that has been borne before; tension is less
-     * than the attraction. */
+    /**
+     * The state at rest under a pressure up to which it is preconsolidated; a
+     * tension has to be below the attraction.
+     */
     template <int dim>
     State<dim, double>
     initialise(const double pressure) const
@@ -191,9 +194,9 @@ namespace limber
     }
 
     /**
-     * As FiniteElasticity::start_under(). The preconsolidation pressure is that
-     * of Cauchy in the volume of the start; one of zero becomes the one that
-     * has the stress on the yield surface.
+     * As FiniteElasticity::start_under(). The preconsolidation pressure is
+     * given as a Cauchy stress at the initial volume; if it is zero, it is set
+     * such that the initial stress lies on the yield surface.
      */
     template <int dim>
     void
@@ -219,7 +222,7 @@ namespace limber
              (1 + 1e-9) * (variable<dim>(state, 1) + attraction);
     }
 
-    /** J of the body. */
+    /** The total volume ratio J. */
     template <int dim, class Number>
     Number
     volume_ratio(const State<dim, Number> &state) const
@@ -260,7 +263,9 @@ namespace limber
              this->template deviatoric_energy<dim>(state);
     }
 
-    /** Of the elastic law: flow that is associated makes it softer. */
+    /**
+     * The elastic wave speed, a bound: associated plastic flow only softens.
+     */
     template <int dim, class Number>
     Number
     wave_speed_squared(const State<dim, Number> &state) const
@@ -298,7 +303,7 @@ namespace limber
       return state.history[index_of_variable<dim, CamClay>(k)];
     }
 
-    /** The size c of the yield surface that a state is on, Pa. */
+    /** The size c of the yield surface through this stress, Pa. */
     template <int dim>
     double
     needed_size(const State<dim, double> &state) const
@@ -309,8 +314,9 @@ namespace limber
     }
 
     /**
-     * J under a Cauchy pressure p: a (Je^(-1/kappa) - 1) = p Je in terms of ln
-     * Je, from below; not a number for tension that no volume has.
+     * J under a Cauchy pressure p: solves a (Je^(-1/kappa) - 1) = p Je for ln
+     * Je by Newton's method from below; NaN for a tension that no volume can
+     * bear.
      */
     double
     volume_at(const double pressure) const
@@ -339,24 +345,25 @@ namespace limber
     }
 
     /**
-     * The place on the yield surface that a trial state beyond it returns to,
-     * with the implicit Euler step of the flow rule: t in
+     * Return mapping: the point of the yield surface to which a trial state
+     * outside returns, by implicit Euler for the flow rule, in terms of t in
      *
      *   x = c / (1 + t^2),  q = M c t / (1 + t^2),
      *
-     * zero under isotropic pressure, one in the critical state. With r = x / c,
+     * zero for isotropic pressure, one in the critical state. With r = x / c,
      * L = ln(r_trial / r), and h = kappa / lambda,
      *
      *   compaction = kappa (1 - h) L,  c = c_before exp(h L),
      *
      * and as the plastic shear is (q_trial - q) / (3 G I), I the mean of be,
-     * its ratio to the compaction 2 t / (M (1 - t^2)) leaves for t
+     * its ratio to the compaction 2 t / (M (1 - t^2)) yields for t
      *
-     *   (q_trial - q) (1 - t^2) - 6 G I kappa (1 - h) / M t L = 0,
+     *   (q_trial - q) (1 - t^2) - 6 G I kappa (1 - h) / M t L = 0.
      *
-     * which is positive where t is smaller and negative where it is larger of
-     * one and the place of r_trial: Newton's method between bounds. Each lane
-     * stops on its own. What has softened to pc = 0 keeps c, with h = 0.
+     * The solution lies between one and the t of r_trial; the left hand side
+     * is positive below it and negative above: Newton's method safeguarded by
+     * bisection. Each lane stops on its own. A state that has softened to
+     * pc = 0 keeps c, with h = 0.
      */
     template <class Number>
     class Return
@@ -372,7 +379,7 @@ namespace limber
         , former_c(former_c)
       {
         r_trial = x_trial / former_c;
-        // lanes that do not flow take any place
+        // lanes that remain elastic may get any value
         const Number zero{}, one = broadcast<Number>(1.);
         hardening = r_trial < 0.5 ?
                       (former_c > law.attraction ?
@@ -407,7 +414,7 @@ namespace limber
       Number x{}, c{}, q{}, compaction{};
 
     private:
-      /** What is left of the equation at t, and its derivative. */
+      /** The residual of the equation at t; sets its derivative. */
       Number
       residual(const Number &t)
       {

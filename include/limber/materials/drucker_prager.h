@@ -8,27 +8,28 @@
 namespace limber
 {
   /**
-   * Sand and soil: a shear strength that grows with the pressure (Drucker and
-   * Prager, Quart. Appl. Math. 10 (1952) 157),
+   * Drucker-Prager plasticity for sand and soil: a shear strength that grows
+   * with the pressure (Quart. Appl. Math. 10 (1952) 157),
    *
    *   sqrt(J2) <= k + eta p,
    *
-   * fitted to the strength of Mohr and Coulomb, t = P sin(phi) + c cos(phi), in
-   * plane strain or in triaxial tests. Plastic flow dilates by eta_bar per
-   * sqrt(2) of its length, from the angle of dilatancy; without one it keeps
-   * the volume, and the return is a scaling of the deviator. Stress is that of
-   * Kirchhoff. Pressure cannot fall below that of the tensile strength: the
-   * material parts there, without shear stress, and bears pressure again when
+   * fitted to the Mohr-Coulomb strength, t = P sin(phi) + c cos(phi), in plane
+   * strain or in triaxial tests. The flow is non-associated: the plastic
+   * volume strain is eta_bar (from the dilatancy angle) times sqrt(2) the
+   * length of the deviatoric plastic strain. Without dilatancy it is isochoric,
+   * and the return map scales the deviator. Stress is Kirchhoff's. The
+   * pressure cannot fall below that of the tensile strength: there the
+   * material separates, without shear stress, and bears pressure again when
    * the volume that has opened is closed (Tampubolon et al., ACM Trans. Graph.
-   * 36 (2017) 105), so that no volume is gained by parting.
+   * 36 (2017) 105), so that separation does not create volume.
    *
    * With a limit friction angle the slope eta grows with the rate g of plastic
-   * shear, as in dense flows of grains of the diameter d and the density rho_s
-   * (mu(I) rheology; Jop, Forterre and Pouliquen, Nature 441 (2006) 727),
+   * shear, as in dense granular flow of grain diameter d and grain density
+   * rho_s (mu(I) rheology; Jop, Forterre and Pouliquen, Nature 441 (2006) 727),
    *
    *   eta(I) = eta + (eta_2 - eta) / (I_0 / I + 1),  I = g d / sqrt(p / rho_s).
    *
-   * J in the history is the elastic volume ratio; the whole one is J (1 +
+   * J in the history is the elastic volume ratio; the total one is J (1 +
    * opening) (1 + dilation).
    */
   template <bool dilatant>
@@ -186,10 +187,11 @@ namespace limber
               const Number square = J * J;
               const Number rate =
                 opening > 0. ? Number{} : broadcast<Number>(cone.dilatancy);
-              // in the state that is reached J^2 is its former value over 1 + 2
-              // eta_bar g, so that J p grows by K J^2 eta_bar g / (1 + 2
-              // eta_bar g), and g solves f = G I g + eta times that: there is
-              // a solution however large f is, with s = sqrt(2) sqrt(J2)
+              // Return mapping with dilatancy: J^2 at the end is its trial
+              // value over 1 + 2 eta_bar g, so that J p grows by K J^2 eta_bar
+              // g / (1 + 2 eta_bar g). With f = excess of sqrt(J2), g solves f
+              // = G I g + eta times that growth, which has a solution for any
+              // f; the norm |s| is sqrt(2) sqrt(J2)
               const Number f         = std::sqrt(0.5) * flow;
               const Number stiffness = 0.5 * trial.stiffness();
               const Number linear =
@@ -226,8 +228,8 @@ namespace limber
     }
 
     /**
-     * Whether the stress is within the cone and beyond the tension at which the
-     * material parts; what has opened bears none.
+     * Whether the stress is within the cone and its pressure above that of the
+     * tensile strength; a point that has opened bears no stress.
      */
     template <int dim>
     bool
@@ -241,14 +243,14 @@ namespace limber
              (opening == 0 || p <= tolerance);
     }
 
-    /** Whether stress depends on how fast it flows. */
+    /** Whether the law is viscoplastic. */
     bool
     depends_on_rate() const
     {
       return growth > 0;
     }
 
-    /** J of the body, with what has opened and dilated. */
+    /** The total volume ratio J, with opening and dilation. */
     template <int dim, class Number>
     Number
     volume_ratio(const State<dim, Number> &state) const
@@ -260,9 +262,9 @@ namespace limber
     }
 
     /**
-     * The elastic bound and, as strength follows the pressure, what flow may
-     * add to it: an acoustic tensor of flow that is not associated is larger
-     * than the elastic one in some directions.
+     * The elastic bound plus what plastic flow may add, as strength grows with
+     * the pressure: the acoustic tensor of non-associated flow exceeds the
+     * elastic one in some directions.
      */
     template <int dim, class Number>
     Number
@@ -272,7 +274,7 @@ namespace limber
              friction_modulus / this->density;
     }
 
-    /** The strength sqrt(J2) <= cohesion + slope p of the flow rule, Pa. */
+    /** The yield condition sqrt(J2) <= cohesion + slope p and the dilatancy. */
     struct Cone
     {
       explicit Cone(const std::array<double, 12> &values)
@@ -283,7 +285,7 @@ namespace limber
                      psi    = std::sin(values[5] * degree);
         if (values[7] == 0)
           {
-            // the flow does not strain the third axis
+            // plane strain: no plastic strain along the third axis
             dilatancy = psi / std::sqrt(1 + psi * psi / 3);
             const double scale =
               std::sqrt(1 - dilatancy * dilatancy / 3) + dilatancy * sine / 3;
@@ -317,7 +319,7 @@ namespace limber
       return state.history[index_of_variable<dim, DruckerPrager>(k)];
     }
 
-    /** |s| of the cone; where the material has parted there is none. */
+    /** The largest |s| within the cone; zero where the material has opened. */
     template <class Number>
     Number
     radius_at(const Number &pressure, const Number &opening) const
@@ -328,9 +330,9 @@ namespace limber
     }
 
     /**
-     * By how much the strength |s| is larger for the rate of the flow, with an
-     * implicit Euler step for that: with T = @p excess / sqrt(2), D =
-     * (eta_2 - eta) p and a = G I dt I_0 sqrt(p / rho_s) / d it is sqrt(2) x,
+     * By how much |s| exceeds the rate-independent strength in mu(I), by
+     * implicit Euler: with T = @p excess / sqrt(2), D = (eta_2 - eta) p and
+     * a = G I dt I_0 sqrt(p / rho_s) / d it is sqrt(2) x,
      *
      *   x (a + T - x) = D (T - x)
      *
@@ -361,8 +363,9 @@ namespace limber
     }
 
     /**
-     * Volume beyond that of the tensile strength opens; what has opened is
-     * closed before the pressure grows. Returns the work on it.
+     * Tension cutoff: volume beyond that at the tensile strength becomes
+     * opening, and opening is closed before the pressure grows. Returns the
+     * work dissipated by it.
      */
     template <class Number>
     Number
@@ -380,8 +383,8 @@ namespace limber
     }
 
     /**
-     * The largest -2 G x^2 + sqrt(2) eta K x over the shear x = m.(s / |s|) n
-     * of a plane wave, which is no more than sqrt(2/3).
+     * Maximum of -2 G x^2 + sqrt(2) eta K x over the shear x = m.(s / |s|) n of
+     * a plane wave (normal n, polarisation m), |x| <= sqrt(2/3).
      */
     double
     modulus_of_friction(const double eta) const
@@ -393,7 +396,7 @@ namespace limber
 
     const double least_pressure;   // of the tensile strength, Pa
     const double largest_volume;   // J there
-    const double growth;           // eta_2 - eta; 0: any rate
+    const double growth;           // eta_2 - eta; 0: rate-independent
     const double flow_time;        // I_0 / (d sqrt(rho_s)), (Pa s^2)^(-1/2)
     const double friction_modulus; // Pa
   };

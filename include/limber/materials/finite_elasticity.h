@@ -9,17 +9,17 @@
 namespace limber
 {
   /**
-   * What solids at finite strain share whose elastic energy is that of Simo
-   * and Hughes (Computational Inelasticity, 9.2), with volumetric and
-   * isochoric parts apart:
+   * Base of the solids at finite strain, with the hyperelastic energy of Simo
+   * and Hughes (Computational Inelasticity, 9.2), split into volumetric and
+   * isochoric parts:
    *
    *   W = K/2 ((J^2 - 1)/2 - ln J) + G/2 (tr(be) - 3)
    *   J p = -K/2 (J^2 - 1),   dev(tau) = G dev(be)
    *
-   * A point keeps J, the free entries of be (isochoric_strain.h), and behind
-   * them @p n_variables of the law's own. What a sweep does per point is always
-   * inlined: as functions that several laws share, GCC would call them, which
-   * took a tenth of the sweep of the neo-Hookean solid.
+   * A point keeps J, the free entries of be (isochoric_strain.h), then
+   * @p n_variables history variables of the law. Functions that a sweep calls
+   * per point are always inlined: as several laws share them, GCC would emit
+   * calls, which took a tenth of the sweep of the neo-Hookean solid.
    */
   template <int n_variables>
   class FiniteElasticity
@@ -65,9 +65,9 @@ namespace limber
     }
 
     /**
-     * Put a state, whose variables are given, under the Cauchy stress with this
-     * pressure and deviator, both times the volume that the variables stand
-     * for (Pa).
+     * Set the elastic strain of a state, whose named variables are given, such
+     * that it is under the Cauchy stress with this pressure and deviator, both
+     * times the inelastic volume ratio that the variables mean (Pa).
      */
     template <int dim>
     void
@@ -80,7 +80,7 @@ namespace limber
       state.pressure = pressure_at(state.history[0]);
     }
 
-    /** Whether a state is one that the law may be in. */
+    /** Whether the law admits a state. */
     template <int dim>
     bool
     admits(const State<dim, double> &state) const
@@ -89,7 +89,7 @@ namespace limber
              std::isfinite(squared_norm<dim, double>(state.deviator));
     }
 
-    /** At rest; the law's own variables are zero. */
+    /** The state at rest under a pressure; named variables are zero. */
     template <int dim>
     State<dim, double>
     initialise(const double pressure) const
@@ -109,8 +109,8 @@ namespace limber
     }
 
     /**
-     * Surfaces of the material across the unit vector n are sqrt(n . b . n)
-     * times as far apart as without stress, b = J^(2/3) be.
+     * sqrt(n . b . n), b = J^(2/3) be: the elastic stretch along the unit
+     * vector n.
      */
     template <int dim>
     double
@@ -173,7 +173,7 @@ namespace limber
              deviatoric_energy<dim>(state);
     }
 
-    /** An upper bound; exact at rest (largest eigenvalue by Gershgorin). */
+    /** An upper bound by the largest eigenvalue (Gershgorin); exact at rest. */
     template <int dim, class Number>
     __attribute__((always_inline)) Number
     wave_speed_squared(const State<dim, Number> &state) const
@@ -185,7 +185,7 @@ namespace limber
              (1. / density);
     }
 
-    /** Of the deviatoric part alone, likewise. */
+    /** The same bound for the deviatoric part alone. */
     template <int dim, class Number>
     Number
     deviatoric_wave_speed_squared(const State<dim, Number> &state) const
@@ -214,7 +214,7 @@ namespace limber
     const double shear_modulus; // G, Pa
 
   protected:
-    /** Under a Cauchy pressure p: K/2 J^2 + p J - K/2 = 0. */
+    /** J under a Cauchy pressure p: K/2 J^2 + p J - K/2 = 0. */
     double
     volume_at(const double pressure) const
     {
@@ -222,7 +222,7 @@ namespace limber
       return std::sqrt(ratio * ratio + 1) - ratio;
     }
 
-    /** be and the deviator of the stress, for that of Cauchy at J. */
+    /** Set be and the Kirchhoff deviator, from a Cauchy deviator and J. */
     template <int dim>
     void
     set_deviator_of_start(State<dim, double>   &state,
@@ -236,7 +236,10 @@ namespace limber
       isochoric::set_deviator<dim>(state.history, deviator);
     }
 
-    /** Strained by a motion without flow; the stress is that of before. */
+    /**
+     * Trial strain: update J and be by a purely elastic increment. The stress
+     * is not updated.
+     */
     template <int dim, class Number>
     __attribute__((always_inline)) static void
     strain(const MotionIncrement<dim, Number> &motion,

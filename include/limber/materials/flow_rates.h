@@ -7,17 +7,17 @@
 namespace limber
 {
   /**
-   * By how much the stress at the end of a step grows with the deformation in
-   * it, for a law that flows, consistent with its return map. Central
-   * differences: the return map knows many branches, and at the edge of one
-   * their mean is taken. Stress is Kirchhoff's, and the slope is minus the
-   * Kirchhoff pressure over the growth of the volume in the step, the
-   * derivative of the energy by that growth.
+   * The algorithmic tangent of a plastic law, consistent with its return
+   * mapping: derivatives of the stress at the end of a step with respect to the
+   * deformation in it. By central differences, as the return map has many
+   * branches; at the border of two their mean results. Stress is Kirchhoff's;
+   * the slope is minus the Kirchhoff pressure over the growth of the volume in
+   * the step, the derivative of the energy by that growth.
    */
   template <int dim>
   struct FlowRates
   {
-    // Lie derivative of the deviator by the strain along (k, l) at a given
+    // Lie derivative of the deviator by the strain along (k, l) at constant
     // volume, Pa: entry [d, e][k, l]
     std::array<std::array<double, dim * dim>, std::size_t(dim *dim)> deviator{};
     SquareMatrix<dim> slope{};       // of the slope by that strain, Pa
@@ -27,7 +27,9 @@ namespace limber
 
 
 
-  /** After the motion f from @p start, in which the volume grew by @p growth.
+  /**
+   * At the end of the motion f from @p start, in which the volume grew by the
+   * factor @p growth.
    */
   template <int dim, class Law>
   FlowRates<dim>
@@ -39,7 +41,8 @@ namespace limber
     constexpr double difference = 1e-7;
     using State                 = typename Law::template State<dim, double>;
 
-    // after f has been followed by the strain e, and the growth by a share
+    // the state if f is followed by the strain size e, and the growth by 1 +
+    // share
     const auto perturbed =
       [&](const SquareMatrix<dim> &e, const double size, const double share) {
         SquareMatrix<dim> g = f;

@@ -4,12 +4,15 @@
 
 namespace limber
 {
-  /** Where the functions of the grid are taken at the points of a body. */
+  /**
+   * The configuration in which shape functions are evaluated at the points of a
+   * body (updated or total Lagrangian).
+   */
   enum class Frame
   {
-    automatic, // current or initial, by body and sides
-    current,   // where the points are: they may flow, meet, and cross cells
-    initial    // where they were at the start (total Lagrangian): none crosses
+    automatic, // current or initial, chosen from body and sides
+    current,   // updated Lagrangian: points move through cells
+    initial    // total Lagrangian: at reference places, no crossing
   };
 
 } // namespace limber

@@ -7,9 +7,9 @@
 namespace limber
 {
   /**
-   * The state of a law that flows after f in a step (s), in which the volume
-   * ratio grows by the factor @p growth: it returns from the trial strain at
-   * the end of f. Returns the work on plastic strain, per volume at the start,
+   * The state of a plastic law after the deformation f in a step (s), in which
+   * the volume ratio grows by the factor @p growth: return mapping from the
+   * trial strain at the end of f. Returns the plastic work per initial volume,
    * Pa.
    */
   template <int dim, class Law, class Number>
@@ -20,8 +20,8 @@ namespace limber
                const double                               step,
                typename Law::template State<dim, Number> &state)
   {
-    // the stress is still that of before, as update() has it after the motion,
-    // of which nothing is left
+    // the trial strain is set here and the stress is still the old one, as in
+    // update() after its trial step, which therefore gets a zero increment
     isochoric::deform<dim>(state.history, f, determinant<dim>(f));
     state.history[0] *= growth;
     MotionIncrement<dim, Number> none{};
@@ -32,10 +32,10 @@ namespace limber
 
 
   /**
-   * A law of a solid that can deform a state further by f of any size, in one
-   * go: Law::update() takes motions as short as explicit steps make them, and
-   * bounds what a cell that is hardly touched does to its points. What flows
-   * returns from the trial strain at the end of f.
+   * A law of a solid that can deform a state by a finite f in one step, as
+   * implicit solvers need: Law::update() is for the short motions of explicit
+   * steps, and bounds the deformation in small-cut cells. Plastic laws return
+   * from the trial strain at the end of f.
    */
   template <class Law>
   class FurtherDeformation : public Law
@@ -48,9 +48,9 @@ namespace limber
     {}
 
     /**
-     * The state after f, in which the volume ratio grows by the factor
-     * @p growth; where the strain is small, by @p growth less one. Returns the
-     * work on plastic strain, per volume at the start, Pa.
+     * Apply f, in which the volume ratio grows by the factor @p growth; at
+     * small strain J increases by @p growth - 1. Returns the plastic work per
+     * initial volume, Pa.
      */
     template <int dim>
     double

@@ -11,9 +11,9 @@
 /**
  * @file The isochoric elastic left Cauchy-Green tensor be, det(be) = 1, in the
  * history of a point, for solids at finite strain. From entry 1 on the history
- * holds what the determinant leaves free: xx, yy, xy in plane strain; in three
- * dimensions yz and zx besides. zz follows from the determinant, so that be
- * cannot drift away from it.
+ * holds the independent entries: xx, yy, xy in plane strain; in three
+ * dimensions yz and zx besides. zz follows from det(be) = 1, so that the
+ * constraint cannot drift.
  */
 namespace limber
 {
@@ -22,7 +22,7 @@ namespace limber
     template <class Number>
     using FullMatrix = std::array<std::array<Number, 3>, 3>;
 
-    /** So many entries of the history are be, the first of them in place 1. */
+    /** Number of entries of be in the history, from index 1. */
     template <int dim>
     inline constexpr int n_entries = dim == 2 ? 3 : 5;
 
@@ -50,7 +50,7 @@ namespace limber
 
 
 
-    /** Store the free entries of be(i, j), given by a function. */
+    /** Store the independent entries of be(i, j), given by a function. */
     template <int dim, class History, class Entry>
     inline void
     set_entries(History &h, const Entry &be)
@@ -134,6 +134,7 @@ namespace limber
 
 
 
+    /** Determinant of a deviator. */
     template <int dim, class Number>
     inline Number
     determinant_of(const Deviator<dim, Number> &e)
@@ -148,8 +149,8 @@ namespace limber
 
 
     /**
-     * be from its deviator: its mean is the largest root I of det(deviator + I
-     * 1) = 1, to which Newton's method comes down from what is not below it.
+     * be from its deviator e: its mean I is the largest root of det(e + I 1) =
+     * 1, by Newton's method, which converges monotonically from above.
      */
     template <int dim, class History>
     inline void
@@ -170,7 +171,9 @@ namespace limber
 
 
 
-    /** A bound (Gershgorin) of the largest eigenvalue of be; one at rest. */
+    /**
+     * An upper bound (Gershgorin) of the largest eigenvalue of be; one at rest.
+     */
     template <class Number>
     inline Number
     largest_eigenvalue(const FullMatrix<Number> &be)
@@ -201,6 +204,7 @@ namespace limber
 
 
 
+    /** The inverse: be = exp(2 e). */
     template <int dim, class History>
     inline void
     set_logarithmic(History &h, const Deviator<dim, double> &e)

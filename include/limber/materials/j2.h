@@ -8,24 +8,24 @@
 namespace limber
 {
   /**
-   * Metal: elastic until the deviator meets the yield surface of von Mises,
-   * which grows with the equivalent plastic strain alpha (isotropic hardening;
-   * Simo, CMAME 99 (1992) 61; Simo and Hughes, box 9.1):
+   * J2 plasticity: elastic up to the von Mises yield surface, which grows with
+   * the equivalent plastic strain alpha (isotropic hardening; Simo, CMAME 99
+   * (1992) 61; Simo and Hughes, box 9.1):
    *
    *   |s| <= sqrt(2/3) k(alpha),
    *   k = sy + H alpha + Q (1 - exp(-delta alpha))
    *
-   * With a viscosity it bears more, the faster it flows: in shear at the rate
-   * g of plastic strain
+   * With a viscosity the law is viscoplastic (Perzyna's overstress): in shear
+   * at the rate g of plastic strain
    *
    *   tau = sy / sqrt(3) + eta g^n
    *
-   * (Bingham with n = 1, Herschel and Bulkley; Perzyna's overstress), an exact
-   * yield stress without regularisation.
+   * (Bingham with n = 1, Herschel-Bulkley otherwise), with an exact yield
+   * stress, without regularisation.
    *
-   * The trial strain takes whatever averages act on the motion; the point
-   * returns from it on its own, radially and without a change of volume. What
-   * is taken for hardening and by the viscosity counts as plastic work as well.
+   * The trial strain contains the averages of the locking treatment; the
+   * radial return, isochoric, is done point by point. Energy stored by
+   * hardening and work of the viscosity count as plastic work as well.
    */
   class J2 : public FiniteElasticity<1>
   {
@@ -141,7 +141,7 @@ namespace limber
                (1 + 1e-9) * root * yield_strength(alpha);
     }
 
-    /** Whether stress depends on how fast it flows. */
+    /** Whether the law is viscoplastic. */
     bool
     depends_on_rate() const
     {
@@ -182,11 +182,11 @@ namespace limber
     }
 
     /**
-     * The length of the plastic strain increment; zero in lanes that stay
-     * elastic. Exact for linear hardening. The radius is a concave function of
-     * it, so that Newton's method comes from below and cannot overshoot; three
-     * sweeps leave less than 1e-8 of the yield stress in steps of 0.2 % with a
-     * rate of 200 (tests/unit/materials/plasticity.cc).
+     * Radial return with hardening: the length of the plastic strain increment;
+     * zero in elastic lanes. Exact for linear hardening. As the radius is a
+     * concave function of it, Newton's method converges from below without
+     * overshoot; three iterations leave less than 1e-8 of the yield stress in
+     * steps of 0.2 % with a rate of 200 (tests/unit/materials/plasticity.cc).
      */
     template <int dim, class Number>
     Number
@@ -211,14 +211,15 @@ namespace limber
     }
 
     /**
-     * The same where what is beyond the radius, y = sqrt(2) eta g^n, drives the
-     * flow dt g / sqrt(2), with an implicit Euler step for it:
+     * The same with Perzyna's overstress: y = sqrt(2) eta g^n, the excess of
+     * |s| over the radius, drives the flow dt g / sqrt(2); by implicit Euler
      *
      *   y + (2 G I + 2/3 k') flow(y) = excess.
      *
-     * The left hand side is convex, and y begins where one of its terms alone
-     * would be the excess, at most twice the solution: Newton's method comes
-     * down from there. Exact after one sweep for Bingham's fluid.
+     * The left hand side is convex. y starts from the value at which one of
+     * the two terms alone equals the excess, at most twice the solution, and
+     * Newton's method converges from above. One iteration is exact for
+     * Bingham's fluid.
      */
     template <int dim, class Number>
     Number
@@ -236,7 +237,7 @@ namespace limber
         return exponent == 1 ? x : exponential(exponent * logarithm(x));
       };
 
-      // in lanes that stay elastic any positive number does
+      // elastic lanes need some positive number
       const Number target = excess > 0. ? excess : radius;
       const Number hard   = stiffness + 2. / 3. * slope(alpha);
       const Number alone =

@@ -4,18 +4,21 @@
 
 namespace limber
 {
-  /** The functions of the nodes: a word for each type of basis (basis.h). */
+  /**
+   * The shape functions of the grid (the MPM kernel): one value for each type
+   * of basis (interpolation/basis.h).
+   */
   enum class KernelKind
   {
-    automatic, // linear or quadratic, by bodies and frames
+    automatic, // chosen from the bodies and their frames: linear or quadratic
     linear,    // Q1 shape functions
     quadratic, // quadratic B-splines
     cubic,     // cubic B-splines
-    gimp,      // linear, averaged over boxes of fixed size around points
-    cpgimp,    // the same, with boxes that follow the stretch
-    cpdi,      // linear, averaged over convected domains of points
-    cpdi2,     // the same, with domains whose corners are carried along
-    ddmp       // linear, with gradients that partly come from the nodes
+    gimp,      // linear functions averaged over fixed boxes (uGIMP)
+    cpgimp,    // the same, boxes stretch with the diagonal of F
+    cpdi,      // the same over parallelepipeds convected by F
+    cpdi2,     // the same, each corner moves with the grid velocity
+    ddmp       // dual domain MPM: gradients partly from nodal means
   };
 
   inline constexpr bool
@@ -24,7 +27,10 @@ namespace limber
     return kernel == KernelKind::quadratic || kernel == KernelKind::cubic;
   }
 
-  /** Whether points have domains over which linear functions are averaged. */
+  /**
+   * Whether points have domains over which linear functions are averaged (GIMP,
+   * CPDI).
+   */
   inline constexpr bool
   has_domains(const KernelKind kernel)
   {
@@ -32,7 +38,9 @@ namespace limber
            kernel == KernelKind::cpdi || kernel == KernelKind::cpdi2;
   }
 
-  /** Whether liquids have linear functions with it, which it leaves to solids.
+  /**
+   * Whether this kernel is for solids only: liquids in the same scene then use
+   * linear functions.
    */
   inline constexpr bool
   is_for_solids(const KernelKind kernel)

@@ -11,26 +11,26 @@
 #include <type_traits>
 
 /**
- * @file What a constitutive law is. Laws see numbers only: neither mesh nor
- * points. Everything is written for a type @p Number that is a double in the
- * tests and a pack of doubles in the sweeps.
+ * @file The interface of a constitutive law. Laws know numbers only, neither
+ * mesh nor points. Everything is written for a type @p Number that is a double
+ * in the tests and a pack of doubles (SIMD) in the sweeps.
  *
  * Conventions: stress positive in tension, pressure positive in compression.
- * Points store Kirchhoff quantities, tau = J sigma, so that the force of a
- * point is (m / rho_0) tau whatever its law. Two dimensions mean plane strain;
- * the deviator is always that of three dimensions.
+ * Points store Kirchhoff stress, tau = J sigma, so that the internal force of a
+ * point is (m / rho_0) tau grad N whatever its law. Two dimensions mean plane
+ * strain; the deviator is always that of three dimensions.
  */
 namespace limber
 {
-  /** The motion of a point within one step. */
+  /** The deformation increment of a point in one step. */
   template <int dim, class Number>
   struct MotionIncrement
   {
-    std::array<std::array<Number, dim>, dim> gradient; // dt grad v, as it is
-    Number volumetric; // dt div v, averaged where the body is projected
+    std::array<std::array<Number, dim>, dim> gradient; // dt grad v, no mean
+    Number volumetric; // dt div v, averaged by the locking treatment
     double step;       // dt, s
     double square = 0; // c in f = 1 + a + c a^2, see StressSweep
-    // Whether J grows by 1 + volumetric, as an implicit pressure has it
+    // Whether J grows by the factor 1 + volumetric, as with implicit pressure
     bool mean_volume = false;
 
     Number
@@ -43,9 +43,9 @@ namespace limber
     }
 
     /**
-     * f, by which the motion deforms: no average acts on it. A cell that is
-     * hardly touched may strain by more than one in a step; points are then
-     * flattened, but not turned inside out.
+     * The increment f of the deformation gradient, not averaged by the
+     * treatment. In a small-cut cell the strain of a step may exceed one; f
+     * then flattens points but its determinant remains positive.
      */
     SmallMatrix<dim, Number>
     deformation() const
@@ -56,7 +56,8 @@ namespace limber
           size += gradient[i][j] * gradient[i][j];
       Number curvature = broadcast<Number>(square);
       if (rarely(!all(size < 0.04)))
-        // 1 + x + (c + k) x^2 > 0 for all x and any c from -1/2 on
+        // keeps the eigenvalues 1 + x + (c + k) x^2 positive for all real x and
+        // any c >= -1/2
         curvature += 0.7 * larger(size - 0.04, broadcast<Number>(0.));
       SmallMatrix<dim, Number> f;
       for (int i = 0; i < dim; ++i)
@@ -73,8 +74,8 @@ namespace limber
     }
 
     /**
-     * det(f) to second order in a, with the averaged trace in the first. The
-     * second takes no more than a quarter of the volume away.
+     * det(f) to second order in a, with the averaged volumetric increment as
+     * its first order part. The second order part is limited to -1/4.
      */
     Number
     volume_ratio() const
@@ -97,18 +98,25 @@ namespace limber
 
 
 
-  /** By rows: a deformation gradient, a symmetric velocity gradient. */
+  /**
+   * Stored by rows; for a deformation gradient or a symmetric velocity
+   * gradient.
+   */
   template <int dim>
   using SquareMatrix = SmallMatrix<dim, double>;
 
 
 
-  /** Deviatoric, symmetric: xx, yy, xy (2d) or xx, yy, xy, yz, zx (3d). */
+  /**
+   * Components of a symmetric deviator: xx, yy, xy (2d) or xx, yy, xy, yz, zx
+   * (3d); zz follows from the trace.
+   */
   template <int dim, class Number>
   using Deviator = std::array<Number, dim == 2 ? 3 : 5>;
 
 
 
+  /** Stress and history variables of a point. */
   template <int dim, class Number, int n_history>
   struct PointState
   {
@@ -119,12 +127,12 @@ namespace limber
 
 
 
-  /** Energy per reference volume that a step turned into heat, J/m^3. */
+  /** Energy per reference volume that a step has dissipated, J/m^3. */
   template <class Number>
   struct Dissipation
   {
     Number viscous{};
-    Number cutoff{};  // removed together with tension
+    Number cutoff{};  // volumetric energy removed by a tension cutoff
     Number plastic{}; // work of the stress on plastic strain, never negative
   };
 
@@ -153,7 +161,7 @@ namespace limber
 
 
 
-  /** A deviator as a matrix, with the zz component that is not stored. */
+  /** A deviator as a full 3 x 3 matrix, including the zz component. */
   template <int dim>
   inline std::array<std::array<double, 3>, 3>
   full_matrix(const Deviator<dim, double> &s)
@@ -169,8 +177,7 @@ namespace limber
 
 
 
-  /** The rows and columns of a deviator that there are in so many dimensions.
-   */
+  /** The dim x dim part of a deviator as a matrix. */
   template <int dim, class Number>
   inline SmallMatrix<dim, Number>
   rows_of(const Deviator<dim, Number> &s)
@@ -185,7 +192,7 @@ namespace limber
 
 
 
-  /** s : s, with the zz component that is not stored. */
+  /** s : s, including the zz component, which is not stored. */
   template <int dim, class Number>
   inline Number
   squared_norm(const Deviator<dim, Number> &s)

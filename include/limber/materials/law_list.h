@@ -55,34 +55,37 @@ namespace limber
 
 
 
-  /** Resistance of a law at rest against changes of volume and of shape, Pa. */
+  /** Bulk and shear modulus of a law at rest, Pa. */
   struct Moduli
   {
     double bulk = 0, shear = 0;
   };
 
-  /** Of the law of that name; @p values in the order of its entries. */
+  /** For the law of that name; @p values in the order of its entries. */
   Moduli
   moduli_of(const std::string &law, const std::vector<double> &values);
 
   /**
-   * What a point of that law keeps under a name: the last entries of its
-   * history, in this order.
+   * The named history variables of that law: the last entries of its history,
+   * in this order.
    */
   std::vector<StateVariable>
   variables_of(const std::string &law, const std::vector<double> &values);
 
-  /** What is wrong with these values together; empty where nothing is. */
+  /** Why these values are not admissible together; empty if they are. */
   std::string
   objection_to(const std::string &law, const std::vector<double> &values);
 
-  /** Whether it flows by a stress that depends on the rate of the flow. */
+  /**
+   * Whether the law is viscoplastic: its stress depends on the rate of plastic
+   * flow.
+   */
   bool
   flows_by_rate(const std::string &law, const std::vector<double> &values);
 
   /**
-   * Whether it flows like a metal: plastically, with a strength that depends
-   * neither on the pressure nor on the rate.
+   * Whether it is plastic with a strength that depends neither on the pressure
+   * nor on the rate, as that of a metal.
    */
   bool
   flows_like_metal(const std::string &law, const std::vector<double> &values);

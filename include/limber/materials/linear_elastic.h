@@ -10,11 +10,11 @@
 namespace limber
 {
   /**
-   * Linear elasticity for small strain and rotation, in rates:
+   * Linear elasticity for small strain and rotation, in rate form:
    *
    *   dp = -K tr(d eps),   ds = 2 G dev(d eps)
    *
-   * The stress is the whole history: a point keeps no deformation gradient.
+   * The stress is the only state: a point keeps no deformation gradient.
    * Energy per volume p^2 / 2K + s:s / 4G.
    */
   class LinearElastic
@@ -134,7 +134,7 @@ namespace limber
       return state;
     }
 
-    /** The strain is small: stress is stress, whatever the volume. */
+    /** Small strain: Kirchhoff and Cauchy stress are the same. */
     template <int dim>
     void
     start_under(State<dim, double>          &state,
@@ -160,7 +160,7 @@ namespace limber
       return 1. - state.pressure / bulk_modulus;
     }
 
-    /** exp(n . eps . n): positive, whatever the strain. */
+    /** Stretch along n, exp(n . eps . n): positive for any strain. */
     template <int dim>
     double
     stretch_along(const State<dim, double>      &state,
@@ -246,7 +246,7 @@ namespace limber
       return pressure;
     }
 
-    /** By how much it grows with what the volume loses, Pa. */
+    /** -J d(J p)/dJ at small strain: the bulk modulus, Pa. */
     double
     kirchhoff_stiffness(const double) const
     {

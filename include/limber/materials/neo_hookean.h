@@ -8,10 +8,11 @@
 namespace limber
 {
   /**
-   * Neo-Hookean solid at finite strain: FiniteElasticity and nothing else, be =
-   * J^(-2/3) F F^T. The motion enters through the f by which points move
-   * (MotionIncrement); be takes its isochoric part, so averaging the volumetric
-   * part leaves be alone and be cannot drift away from det(be) = 1.
+   * Neo-Hookean solid at finite strain: FiniteElasticity without plasticity, be
+   * = J^(-2/3) F F^T. The history is updated by the increment f with which
+   * points move (MotionIncrement), of which be takes the isochoric part:
+   * averaging the volumetric part does not affect be, and det(be) = 1 holds
+   * without drift.
    */
   class NeoHookean : public FiniteElasticity<0>
   {
@@ -50,7 +51,9 @@ namespace limber
       return {};
     }
 
-    /** be = det(F)^(-2/3) F F^T, whatever J is. */
+    /**
+     * be = det(F)^(-2/3) F F^T with the determinant of F, not the averaged J.
+     */
     template <int dim, class Number>
     State<dim, Number>
     at_deformation(const SmallMatrix<dim, Number> &F, const Number &J) const

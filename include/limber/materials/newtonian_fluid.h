@@ -16,7 +16,7 @@ namespace limber
    *
    * A point keeps the volume ratio J and no deformation gradient; without
    * viscosity it keeps no deviator either. The tension cutoff sets p = 0 and
-   * J = 1 where p < 0: the fluid then parts freely, and volume grows.
+   * J = 1 where p < 0: the fluid then separates freely, and gains volume.
    */
   template <bool viscous>
   class NewtonianFluid
@@ -57,7 +57,7 @@ namespace limber
     template <int>
     static constexpr int  n_history    = 1;
     static constexpr bool has_deviator = viscous;
-    // Of the parameters
+    // Indices in the parameters
     static constexpr unsigned int viscosity_entry = 2, tension_entry = 3;
 
     static constexpr bool keeps_deviator = false;
@@ -75,7 +75,8 @@ namespace limber
       , bulk_modulus(values[1])
       , viscosity(values[viscosity_entry])
       , tension_cutoff(values[tension_entry] != 0)
-      // with the exponent one the two are the same, and only one has an energy
+      // for gamma = 1 both equations of state agree, but the energy of Tait's
+      // has a pole
       , tait(values[4] != 0 && values[5] != 1)
       , exponent(values[5])
     {}
@@ -153,7 +154,9 @@ namespace limber
       return state.history[0];
     }
 
-    /** A liquid keeps no shape. */
+    /**
+     * The isotropic part J^(1/dim): a liquid has no elastic deviatoric strain.
+     */
     template <int dim>
     double
     stretch_along(const State<dim, double> &state,

@@ -9,7 +9,7 @@
 namespace limber
 {
   /**
-   * The place of 'equivalent plastic strain' among the named variables of the
+   * The index of 'equivalent plastic strain' among the named variables of the
    * law of that name (variables_of()), if it has it; @p values in the order of
    * its entries.
    */

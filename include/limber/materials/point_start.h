@@ -9,13 +9,14 @@
 
 namespace limber
 {
-  /** The stress under which a point starts, and what it has been through. */
+  /** Initial stress and history variables of a point. */
   template <int dim>
   struct PointStart
   {
     double                pressure = 0; // Cauchy, Pa
-    Deviator<dim, double> deviator{};   // of it, Pa; nothing to a liquid
-    // By number of the law's variables; those not given are as after no flow.
+    Deviator<dim, double> deviator{};   // Cauchy, Pa; not for liquids
+    // By index of the law's variables; those not given are as in virgin
+    // material.
     std::array<std::optional<double>, max_variables> variables;
 
     bool

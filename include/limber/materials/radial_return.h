@@ -7,12 +7,11 @@
 namespace limber
 {
   /**
-   * From a trial strain back to a given length of the deviator, in its own
-   * direction: no eigenvalues are needed. The trial be is in the history of the
-   * state, the stress of before in its deviator. With s = G dev(be) and I =
-   * tr(be) / 3, plastic flow of the length d shortens s by 2 G I d (Simo,
-   * CMAME 99 (1992) 61); I follows from det(be) = 1 afterwards, where Simo
-   * keeps it.
+   * Radial return from a trial strain to a given length of the deviator,
+   * without eigenvalues. The history of the state holds the trial be, its
+   * deviator still the old stress. With s = G dev(be) and I = tr(be) / 3,
+   * plastic flow of the length d shortens s by 2 G I d (Simo, CMAME 99 (1992)
+   * 61); I then follows from det(be) = 1, where Simo keeps it constant.
    */
   template <int dim, class Number>
   class RadialReturn
@@ -35,7 +34,7 @@ namespace limber
       return shear_modulus * length;
     }
 
-    /** 2 G I, by which |s| falls with the length of the plastic strain. */
+    /** 2 G I, by which |s| falls per length of plastic strain. */
     Number
     stiffness() const
     {
@@ -43,17 +42,17 @@ namespace limber
     }
 
     /**
-     * Let the lanes flow by @p flow, the length of a plastic strain, zero or
-     * positive. Returns the work on it: what the elastic energy falls by along
-     * the return at the present strain, taken with the mean of the stress in
-     * its direction before and after, which is what the motion of the nodes
-     * gives to second order in the step.
+     * Apply plastic flow of the length @p flow >= 0 in each lane. Returns the
+     * plastic work: the decrease of the elastic energy along the return, at the
+     * present strain and with the mean of the stress before and after in its
+     * direction, which agrees with the work of the nodal forces to second order
+     * in the step.
      */
     template <class State>
     Number
     flow(const Number &flow, State &state)
     {
-      // what has no length keeps it, and its cubes and squares stay numbers
+      // a zero deviator stays zero; avoids 0/0, also of its squares and cubes
       const Number inverse = 1. / larger(length, broadcast<Number>(1e-100));
       const Number before  = product(state.deviator, strain) * inverse;
       const Number share   = larger(1. - 2. * mean * flow * inverse, Number{});
@@ -64,18 +63,18 @@ namespace limber
         component *= share;
 
       // det(strain + I 1) = I^3 - I |strain|^2 / 2 + det(strain) = 1. Its
-      // largest root, where alone be is positive definite, is a convex function
-      // of the share, so that the chord from no flow to no strain is not below
-      // it; from there Newton's method comes down to it. The reciprocal of the
-      // slope follows by a step of Newton's method of its own, as divisions
-      // wait for each other; it is never too large.
+      // largest root, the only one with a positive definite be, is a convex
+      // function of the share, so that the chord between share 1 (no flow) and
+      // 0 is not below it; from there Newton's method converges from above. The
+      // reciprocal of the slope gets a Newton iteration of its own, as
+      // divisions have a long latency; it is never too large.
       const Number half       = 0.5 * length * length;
       const Number rest       = isochoric::determinant_of<dim>(strain) - 1.;
       Number       I          = 1. + share * (mean - 1.);
       Number       slope      = 3. * (I * I) - half;
       Number       reciprocal = 1. / slope;
       Number       step       = broadcast<Number>(1e300);
-      // three are enough where elastic strain is small
+      // three iterations are enough at small elastic strain
       for (int sweep = 0;
            sweep < 3 || rarely(sweep < 100 && !all(step <= 1e-11 * I));
            ++sweep)
@@ -85,7 +84,8 @@ namespace limber
           slope = 3. * (I * I) - half;
           reciprocal *= 2. - slope * reciprocal;
         }
-      // d(3 G I / 2) = G |strain| d|strain| / 2 I but for the skew of be
+      // d(3 G I / 2) = G |strain| d|strain| / 2 I up to the third invariant of
+      // be
       const Number excess =
         (3. * (I * I) - 9. * (I * (skew * share))) * reciprocal;
       mean = flow > 0. ? I : mean;
@@ -95,7 +95,7 @@ namespace limber
       return 0.5 * flow * excess * larger(before + norm(), Number{});
     }
 
-    /** dev(tau) of what has been reached. */
+    /** Set dev(tau) after the return. */
     template <class State>
     void
     set_stress(State &state) const
@@ -107,7 +107,7 @@ namespace limber
   private:
     using Deviator = limber::Deviator<dim, Number>;
 
-    /** be, where it is stored. */
+    /** The entry (i, j) of be. */
     Number
     entry(const int i, const int j) const
     {

@@ -8,10 +8,10 @@
 namespace limber
 {
   /**
-   * A function of a symmetric matrix, f(A) = sum f(lambda_i) n_i n_i^T, with
-   * eigenvalues and vectors by Jacobi's rotations, which are exact to
+   * Isotropic function of a symmetric matrix, f(A) = sum f(lambda_i) n_i n_i^T,
+   * with eigenvalues and eigenvectors by Jacobi rotations, which are exact to
    * round-off for equal eigenvalues as well (Golub and Van Loan, Matrix
-   * Computations, 8.5). A matrix that is a plane one and zz takes one rotation.
+   * Computations, 8.5). A matrix of plane strain takes one rotation.
    */
   template <class Function>
   inline std::array<std::array<double, 3>, 3>
@@ -19,7 +19,7 @@ namespace limber
   {
     std::array<std::array<double, 3>, 3> n{
       {{{1, 0, 0}}, {{0, 1, 0}}, {{0, 0, 1}}}};
-    constexpr int n_sweeps = 8; // quadratic convergence: five do
+    constexpr int n_sweeps = 8; // quadratic convergence: five are enough
     for (int sweep = 0; sweep < n_sweeps; ++sweep)
       {
         bool diagonal = true;
@@ -30,7 +30,7 @@ namespace limber
                   1e-17 * (std::abs(a[p][p]) + std::abs(a[q][q])))
                 continue;
               diagonal = false;
-              // the smaller angle that makes the entry vanish
+              // the smaller rotation angle that annihilates the entry
               const double cotangent = (a[q][q] - a[p][p]) / (2 * a[p][q]);
               const double t =
                 (cotangent < 0 ? -1 : 1) /

@@ -5,25 +5,25 @@
 namespace limber
 {
   /**
-   * Which parts of strain and stress are averaged over the points of a body
-   * (Hu-Washizu, Mast et al. 2012): in a cell (DGQ0 functions), or around each
-   * node (Q1 functions, lumped).
+   * Locking treatments (B-bar, Hu-Washizu; Mast et al. 2012): which parts of
+   * strain and stress are averaged over the points of a body, either in a cell
+   * (piecewise constant, DGQ0) or around each node (continuous Q1, lumped).
    */
   enum class Treatment
   {
-    automatic,      // to be chosen from the law when the scene is read
-    none,           // nothing
-    cell,           // in a cell: the volumetric part
+    automatic,      // chosen from the law when the scene is read
+    none,           // full strain of each point
+    cell,           // volumetric part, mean of the cell (B-bar)
     cell_shear,     // the volumetric part and the shear components
-    cell_full,      // everything
-    assumed_strain, // everything but what resists hourglass modes as bending
-    node,           // around nodes: the volumetric part
-    hybrid          // the same, and the shear components in a cell
+    cell_full,      // all components, mean of the cell
+    assumed_strain, // all but the bending part of hourglass modes
+    node,           // volumetric part, mean around nodes
+    hybrid          // as node, and the shear components as in cell_shear
   };
 
 
 
-  /** Over what a part of strain and stress is averaged. */
+  /** What a part of strain and stress is averaged over. */
   enum class Mean
   {
     none,
@@ -33,27 +33,32 @@ namespace limber
 
 
 
-  /** A treatment against locking: how the scene calls it and what it does. */
+  /**
+   * A locking treatment: its word and help text in the scene, and what it does.
+   */
   struct TreatmentRow
   {
     Treatment   kind;
     const char *word, *text;
-    // Of the volumetric part, the shear components, the deviatoric rest
+    // Means of the volumetric part, the shear components, and the rest of the
+    // deviator (normal components)
     Mean volume = Mean::none, shear = Mean::none, rest = Mean::none;
-    // Other sums over a cell that strain and stress are formed with
+    // Whether further moments of the points of a cell are needed (centroid,
+    // products of coordinates)
     bool needs_moments = false;
-    // Whether means leave motions of a cell without resistance in a solid
+    // Whether hourglass modes remain without stiffness in a solid
     bool weak_in_2d = false, weak_in_3d = false;
-    // Whether bodies in the initial frame have it, and points with domains
+    // Whether it may be used with the initial frame, and with points with
+    // domains (GIMP, CPDI)
     bool in_initial_frame = false, with_domains = false;
   };
 
 
 
   /**
-   * The list of treatments. What the scene accepts
-   * and what the averages_...() below say follow from it; the strain operator
-   * of each is in interpolation/strain_operator.h.
+   * The list of treatments, from which the words of the scene and the
+   * averages_...() below follow; the strain operator of each is in
+   * interpolation/strain_operator.h.
    */
   inline constexpr TreatmentRow treatments[] = {
     {Treatment::automatic,
@@ -192,22 +197,24 @@ namespace limber
 
 
 
-  /** The strain that an hourglass mode gets under the assumed strain. */
+  /**
+   * The strain that the assumed strain treatment gives to an hourglass mode.
+   */
   enum class HourglassResponse
   {
-    automatic,     // to be chosen from the law when the scene is read
-    bending,       // that of a beam in bending, from the moduli of the law
-    deviatoric,    // the deviator of its own, in the plane of the mode
-    incompressible // no change of volume
+    automatic,     // chosen from the law when the scene is read
+    bending,       // as a beam in bending, by the moduli of the law
+    deviatoric,    // the deviator of the mode, in its plane
+    incompressible // no volume strain
   };
 
 
 
   /**
-   * A treatment and, for the assumed strain, the share of an hourglass mode
-   * that goes to the normal strain of its own direction and of its mate's:
-   * (e1, e2) of theory/treatments.md for modes bilinear in two coordinates,
-   * and the same for the trilinear one.
+   * A treatment and, for the assumed strain, the factors with which an
+   * hourglass mode enters the normal strain of its own direction and of the
+   * other direction (mate) in its plane: (e1, e2) of theory/treatments.md for
+   * bilinear modes, and the same for the trilinear one.
    */
   struct StrainTreatment
   {

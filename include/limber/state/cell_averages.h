@@ -10,10 +10,10 @@
 namespace limber
 {
   /**
-   * Means over the points of each cell of a quantity of one body, weighted with
-   * mass: records (NodalMeanLayout) by number of the cell, to which sweeps add
-   * and of which they read the means (interpolation/domain_means.h). For bodies
-   * whose points are all on the rank that owns their cell.
+   * Mass-weighted means over the points of each cell of a quantity of one body:
+   * records (NodalMeanLayout) by cell number, to which sweeps add and from
+   * which they read the means (interpolation/domain_means.h). For bodies whose
+   * points are all on the rank that owns their cell.
    */
   class CellAverages
   {
@@ -29,7 +29,7 @@ namespace limber
       return records.data();
     }
 
-    /** Forget the sums of these cells. */
+    /** Set the sums of these cells to zero. */
     void
     clear(const std::vector<std::uint32_t> &cells)
     {
@@ -38,7 +38,7 @@ namespace limber
           records[index(cell) + Layout::value] = 0;
     }
 
-    /** From sums to means. */
+    /** Divide the sums by the masses. */
     void
     finish(const std::vector<std::uint32_t> &cells)
     {

@@ -10,45 +10,48 @@
 
 namespace limber
 {
-  /** What an obstacle has done to the material, or the material to it. */
+  /**
+   * Impulse and moment (or force and moment) between an obstacle and the
+   * material.
+   */
   template <int dim>
   struct ObstacleAction
   {
     dealii::Tensor<1, dim> impulse; // kg m/s, or a force, N
-    // About the centre of the obstacle, in the plane the last of three
+    // About the centre of the obstacle; in 2d only the last component
     dealii::Tensor<1, 3> moment; // kg m^2/s, or N m
   };
 
 
 
-  /** What points lose where they touch something, J. */
+  /** Energy that points lose in contact, J. */
   struct ContactLoss
   {
-    double across = 0; // the surface: that of the impact; all, where they stick
-    double along  = 0; // it: heat of friction
+    double across = 0; // normal: loss of the impact; total loss if they stick
+    double along  = 0; // tangential: heat of friction
   };
 
 
 
   /**
-   * What has happened to energy and momentum since the start, summed step by
-   * step on this rank; sum_over_ranks() completes it. Energies in J,
-   * impulses in kg m/s.
+   * The balance of energy and momentum since the start, summed step by step on
+   * this rank; sum_over_ranks() completes it. Energies in J, impulses in kg
+   * m/s.
    */
   template <int dim>
   struct Ledger
   {
-    // Kinetic energy that FLIP would have kept and the transfer did not
+    // Kinetic energy lost by the transfer, compared with FLIP
     double transfer      = 0;
     double boundary_work = 0; // done on the material by sides and obstacles
     double load_work     = 0; // by body force formulas and face loads
     double viscous       = 0; // turned into heat by viscosity and damping
-    double by_steps      = 0; // of these, what semi-implicit steps lose
+    double by_steps      = 0; // part of viscous: loss of implicit steps
     double history       = 0; // removed with volumetric history or tension
     double plastic       = 0; // work on plastic strain
-    double friction      = 0; // turned into heat where bodies slide
-    double contact       = 0; // lost where they touch, or land on a side
-    double adaptation    = 0; // removed where points were joined or divided
+    double friction      = 0; // dissipated by frictional sliding between bodies
+    double contact       = 0; // lost in contact, also in impact on a side
+    double adaptation    = 0; // removed by joining and splitting points
 
     // Body force formulas, face loads and damping
     dealii::Tensor<1, dim> load_impulse;
@@ -56,10 +59,10 @@ namespace limber
     // From each side of the box on the material, in deal.II's order.
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
 
-    // Points that had gone beyond a closed side further than round-off and
-    // were put back, each time; and by how many cells altogether
+    // How often points beyond a closed side by more than round-off were put
+    // back, and the sum of their distances, in cells
     double put_back = 0, put_back_way = 0;
-    // Points of liquids that were put out of obstacles, each time
+    // How often points of liquids were put out of obstacles
     double put_out = 0;
 
     double                 lost_mass   = 0; // kg
@@ -67,7 +70,7 @@ namespace limber
     dealii::Tensor<1, dim> lost_momentum;
     unsigned long          lost_points = 0;
 
-    // Of each obstacle of the scene on the material
+    // By obstacle of the scene: its action on the material
     std::vector<ObstacleAction<dim>> obstacles;
 
     void
@@ -77,7 +80,10 @@ namespace limber
       friction += loss.along;
     }
 
-    /** Of what is set in motion or stopped at once, and of short waves, J. */
+    /**
+     * Numerical dissipation of semi-implicit steps, J: sudden starts and stops,
+     * and short waves.
+     */
     void
     lose_by_steps(const double energy)
     {

@@ -15,7 +15,9 @@
 
 namespace limber
 {
-  /** What an implicit pressure finds for a cell; see CellPressures. */
+  /**
+   * Results of the implicit pressure solver in each cell; see CellPressures.
+   */
   struct ImplicitFields
   {
     explicit ImplicitFields(const std::size_t n_cells)
@@ -33,50 +35,53 @@ namespace limber
     }
 
     LazyArray<double> pressure; // J p, Pa
-    // Of the step, without dimension: all of it, as for solids, or less than
-    // the mean divergence
+    // Volume strain of the step: the whole of it, as for solids, or only the
+    // difference to the mean divergence
     LazyArray<double> dilation;
     bool              is_whole = false;
   };
 
 
 
-  /** A body at run time: its points, its law, its means if projected. */
+  /**
+   * A body at run time: its points, its law, and its means if its treatment
+   * needs them.
+   */
   template <int dim>
   struct MaterialBody
   {
     const Body<dim>                         &description;
     std::unique_ptr<const StressUpdate<dim>> stress;
     MaterialPoints<dim>                      points;
-    // Hu-Washizu sums in DGQ0, only where treatment or control need them
+    // Hu-Washizu sums in DGQ0, only if the treatment or a control needs them
     std::optional<CellFields<dim>> cell_sums;
-    // Likewise of the deviatoric strain; only within a step, else zero
+    // The same for the deviatoric strain; used within a step, else zero
     std::optional<CellFields<dim>> deviator_sums;
-    // Means around nodes (Q1), likewise: of the divergence, of the pressure
+    // Means around nodes (Q1), likewise, of divergence and pressure
     std::optional<NodalProjection<dim>> nodal_means;
-    // The same over cells, of points with domains
+    // The same over cells, for points with domains
     std::optional<CellAverages> cell_averages = {};
-    // Per cell, what the volumetric variable gets in this step against
-    // checkerboards; empty where they are not controlled
+    // Per cell, the change of the volumetric variable in this step by
+    // checkerboard control; empty without it
     LazyArray<double> cell_shift = {};
     // Per cell, the dilation of this liquid over the mean divergence of the
-    // cell (LiquidMeans), where the pressure is implicit without what the
-    // system has found; empty for all other bodies
+    // cell (LiquidMeans), if the pressure is implicit, without the result of
+    // the pressure system; empty for all other bodies
     LazyArray<double> volume_shares = {};
-    // The same, less where a cell has too little room beside an obstacle for
-    // the step (CutCells::softness); empty where that may not be
+    // The same, less where an obstacle leaves a cell too little volume for the
+    // step (CutCells::softness); empty where that cannot occur
     LazyArray<double> strain_shares = {};
-    // Of an implicit pressure, by cell; only where the body has one
+    // Of the implicit pressure, by cell; only if the body has one
     std::optional<ImplicitFields> implicit = {};
 
-    /** Of the named variable @p k of the law, by points. */
+    /** The named variable @p k of the law, by point. */
     const double *
     variable(const unsigned int k) const
     {
       return points.view().history[stress->first_variable() + k];
     }
 
-    /** Forget all sums and means, of a mesh that has changed. */
+    /** Discard all sums and means after a change of the mesh. */
     void
     reinit_sums(const BackgroundGrid<dim> &grid)
     {
@@ -97,8 +102,8 @@ namespace limber
 
 
   /**
-   * Complete what a sweep has gathered in these sums of all bodies that have
-   * them, with what other ranks have; collective.
+   * Complete these sums of all bodies that have them over the ranks;
+   * collective.
    */
   template <int dim>
   void
@@ -116,7 +121,7 @@ namespace limber
 
 
 
-  /** What the outside may look at between two steps. */
+  /** What output and observers may read between two steps. */
   template <int dim>
   struct State
   {
