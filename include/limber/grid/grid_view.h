@@ -9,52 +9,54 @@
 #include <vector>
 
 /**
- * @file What the sweeps see of the background grid: plain arrays, no deal.II.
- * BackgroundGrid and NodalFields fill them; every sweep reads and writes the
- * grid through them and through nothing else, so that hanging nodes and ranks
- * remain a matter of NodalFields alone.
+ * @file The background grid as the sweeps see it: plain arrays, no deal.II.
+ * BackgroundGrid and NodalFields fill them; every sweep accesses the grid
+ * through them alone, so that hanging nodes and ranks are dealt with in
+ * NodalFields only.
  */
 namespace limber
 {
   inline constexpr std::uint32_t invalid_cell = 0xffffffffu;
 
   /**
-   * The record of a node. Fields that are never needed at a time share their
-   * place, but each has its own name. Two dimensions are padded to one cache
-   * line.
+   * The slots of a nodal record. Quantities that are never needed at the same
+   * time share a slot under different names. In two dimensions a record is
+   * padded to one cache line.
    */
   template <int dim>
   struct NodeLayout
   {
-    // Sums over points, until nodes are advanced
+    // Sums of P2G, until nodes are advanced
     static constexpr unsigned int mass     = 0;       // kg
     static constexpr unsigned int force    = 1;       // N
     static constexpr unsigned int momentum = 1 + dim; // kg m/s
-    // Momentum that points give back with their new velocities, kg m/s
+    // Momentum that points map back after G2P (MUSL), kg m/s
     static constexpr unsigned int remapped = 1 + 2 * dim;
     static constexpr unsigned int stride   = dim == 2 ? 8 : 10;
 
-    // Of advanced nodes: change of the velocity in the step, new one, m/s
+    // After advance_nodes: velocity increment of the step, new velocity, m/s
     static constexpr unsigned int increment = force;
     static constexpr unsigned int velocity  = momentum;
-    // Of the beginning of the step, once the increment has been taken, m/s
+    // Velocity at the start of the step, once the increment has been used, m/s
     static constexpr unsigned int former_velocity = force;
-    // Of the middle of the step, once the increment has been taken, and that
-    // with which points move: the new one or the middle one, m/s
+    // Mid-step velocity, once the increment has been used, and the velocity
+    // that moves points: the new or the mid-step one, m/s
     static constexpr unsigned int middle_velocity = force;
     static constexpr unsigned int moving_velocity = momentum;
-    // Formed of a momentum to strain the points: of that which they bring,
-    // before there are forces, or of that which they give back, m/s
+    // Velocity that strains points: from the momentum of P2G, before there are
+    // forces (USF), or from the re-mapped one (MUSL), m/s
     static constexpr unsigned int strain_velocity = remapped;
-    // Between these two
+    // Hourglass forces, between these two
     static constexpr unsigned int hourglass_force = remapped; // N
-    // Of implicit pressures, once the other forces have become increments, N
+    // Force of the implicit pressure, after the other forces were applied, N
     static constexpr unsigned int pressure_force = remapped;
   };
 
 
 
-  /** A rectangular cell: its first corner, 1 / edges, records of its nodes. */
+  /**
+   * A rectangular cell: lower corner, 1 / edges, record offsets of its nodes.
+   */
   template <int dim>
   struct CellGeometry
   {
@@ -66,9 +68,9 @@ namespace limber
 
 
   /**
-   * The nodes of the splines that do not vanish in a cell, as offsets of their
-   * records; the first direction runs fastest. Where there is none, beyond a
-   * side, that of the node in the side, and the function is zero.
+   * The nodes whose splines do not vanish in a cell, as offsets of their
+   * records; the first direction runs fastest. Where a node would lie beyond a
+   * side of the grid, the node in the side stands for it, with a zero function.
    */
   template <int dim, int degree>
   struct SplineCell
@@ -76,23 +78,23 @@ namespace limber
     static constexpr int n = degree + 1; // along a direction
 
     std::array<std::uint32_t, dim == 2 ? n * n : n * n * n> node;
-    // Of each direction: factors of the first and the last function, others
-    // where the cell ends at a side of the grid (SplineFactors).
+    // Per direction: factors of the first and the last function, which differ
+    // in cells at a side of the grid (SplineFactors).
     std::array<double, dim> lower, upper;
   };
 
 
 
   /**
-   * From a place to the cell that holds it: a table over equal bins, the cells
-   * of the lattice of the scene. Where a bin is divided into finer cells, the
-   * table leads to a block of places, as fine as the finest cell. Places
+   * Point location: the cell that contains a position, from a table of equal
+   * bins, the coarsest lattice of the scene. If a bin is refined, its entry
+   * refers to a block of sub-bins of the size of the finest cell. Positions
    * outside the table give invalid_cell.
    */
   template <int dim>
   struct BinView
   {
-    // An entry from this one on, but for invalid_cell, is a block.
+    // Entries >= this, except invalid_cell, refer to a block.
     static constexpr std::uint32_t first_block = 0x80000000u;
 
     std::array<double, dim>       lower{};
@@ -100,12 +102,13 @@ namespace limber
     std::array<std::int64_t, dim> n{};
     const std::uint32_t          *table = nullptr;
     bool one_per_cell = false; // whether each bin is a cell of its own
-    // Blocks one after the other, of so many places along each edge
+    // Blocks one after the other, with per_edge sub-bins along each edge
     const std::uint32_t *blocks   = nullptr;
     std::int64_t         per_edge = 1;
-    // Where each bin is a cell and points have domains, offsets of the records
-    // of the nodes of all bins, one more along each direction; `no_node` where
-    // there is none. Four can be read from each place. Else null
+    // If each bin is a cell and points have domains: record offsets of the
+    // nodes of the lattice of bins, n + 1 along each direction, `no_node` where
+    // there is none, padded such that four can be read from any entry; else
+    // null
     static constexpr std::uint32_t no_node = 0xffffffffu;
     const std::uint32_t           *nodes   = nullptr;
 
@@ -124,8 +127,8 @@ namespace limber
     }
 
     /**
-     * The same; a place beyond the box counts in the side next to it, and one
-     * that is no number in the lower one.
+     * The same, but a position outside the box is clamped to the nearest side,
+     * and NaN to the lower one.
      */
     std::uint32_t
     nearest_cell(const std::array<double, dim> &x) const
@@ -141,7 +144,7 @@ namespace limber
       return cell_in(table[index], x);
     }
 
-    /** Where the box ends, m. */
+    /** Upper end of the box, m. */
     double
     upper(const int d) const
     {
@@ -172,10 +175,10 @@ namespace limber
 
 
   /**
-   * The record of a node of the dual domain method (dual_domain.h): rows of a
-   * tensor, the mean velocity gradient around the node, 1/s, or what meets it,
-   * the volume times stress that points have given, J; around which volume,
-   * m^3; the force that follows from the stress, N.
+   * The record of a node of the dual domain method (dual_domain.h): the rows of
+   * a tensor (first the mean velocity gradient around the node, 1/s; then its
+   * dual, the volume times stress that points have mapped, J); the nodal
+   * volume, m^3; the force that follows from the stress, N.
    */
   template <int dim>
   struct DualDomainLayout
@@ -193,7 +196,7 @@ namespace limber
 
 
 
-  /** The table BinView::nodes. */
+  /** Make the table BinView::nodes. */
   template <int dim>
   std::vector<std::uint32_t>
   nodes_of_bins(const BinView<dim>                   &bins,
@@ -223,24 +226,24 @@ namespace limber
 
 
 
+  /** What sweeps read and write of the grid. */
   template <int dim>
   struct GridView
   {
     const CellGeometry<dim> *cells = nullptr;
     double                  *nodes = nullptr;
     BinView<dim>             bins;
-    // By cell, where the functions of the nodes are such splines; else null
+    // By cell, if the kernel is a spline of that degree; else null
     const SplineCell<dim, 2> *quadratics = nullptr;
     const SplineCell<dim, 3> *cubics     = nullptr;
-    // Records of DualDomainLayout, where gradients partly come from them
+    // Records of DualDomainLayout, if the kernel is 'ddmp'; else null
     double *dual_domain = nullptr;
 
-    // Cells that a point has entered and that were empty before; their nodes
-    // have to join the active ones.
+    // Empty cells that a point has entered; their nodes must become active.
     std::uint8_t               *occupied = nullptr; // per cell
     std::vector<std::uint32_t> *entered  = nullptr;
-    // Set when a point has gone where this rank knows no cell, or into a cell
-    // of another rank: those from this number on.
+    // Set when a point has left the cells that this rank knows, or has entered
+    // a ghost cell (cell number >= n_owned_cells).
     bool         *left          = nullptr;
     bool         *is_in_ghosts  = nullptr;
     std::uint32_t n_owned_cells = invalid_cell;
@@ -249,25 +252,26 @@ namespace limber
 
 
   /**
-   * Sums over the points of one body in each cell, from which the Hu-Washizu
-   * averages (DGQ0) follow: the mass, its moments with the monomials of the
-   * basis (xi, eta, xi eta, zeta, ... of linear functions) but the last one,
-   * and in the slot of that the sum of m times the volumetric variable.
+   * Sums over the points of one body in each cell, for the Hu-Washizu means
+   * (DGQ0): the mass, its moments with the monomials of the basis (xi, eta, xi
+   * eta, zeta, ... of linear functions) except the last, whose slot holds the
+   * sum of m times the volumetric variable.
    *
-   * Whoever moves the points gathers the sums of their new places, so that
-   * those of the present places are complete when a step begins. Nobody sets
-   * records to zero in between: each cell knows the turn in which it got its
-   * last sums, and the first to come in a new turn overwrites what is old.
+   * The sweep that moves the points also gathers the sums at their new
+   * positions, so that the present ones are complete when a step begins.
+   * Records are not set to zero in between: each cell stores the turn of its
+   * last sums, and the first contribution of a new turn overwrites the old
+   * values.
    */
   template <int dim>
   struct CellSums
   {
     static constexpr unsigned int mass = 0;
 
-    const double  *now     = nullptr;  // of the present places, complete
-    double        *next    = nullptr;  // of the places after the step
-    std::uint32_t *turn_of = nullptr;  // last in which a cell got sums
-    std::uint32_t  turn    = 0;        // in which the next sums are gathered
+    const double  *now     = nullptr;  // of the present positions, complete
+    double        *next    = nullptr;  // of the positions after the step
+    std::uint32_t *turn_of = nullptr;  // last turn with sums in a cell
+    std::uint32_t  turn    = 0;        // the turn of the next sums
     unsigned int   stride  = 1 << dim; // as many as a cell has nodes
 
     /** The slot of the sum of m times the volumetric variable. */
@@ -277,14 +281,14 @@ namespace limber
       return stride - 1;
     }
 
-    /** Whether the next sums of a cell are what this turn has gathered. */
+    /** Whether the next sums of a cell have been started in this turn. */
     bool
     is_open(const std::uint32_t cell) const
     {
       return turn_of[cell] == turn;
     }
 
-    /** The next sums of a cell, to be added to. */
+    /** The next sums of a cell, zeroed first if necessary. */
     double *
     open(const std::uint32_t cell) const
     {
@@ -297,7 +301,7 @@ namespace limber
       return record;
     }
 
-    /** The present mass in a cell, before next sums are gathered. */
+    /** The present mass in a cell; only before the next sums are gathered. */
     double
     present_mass(const std::uint32_t cell) const
     {
@@ -310,8 +314,8 @@ namespace limber
 
 
   /**
-   * The record of a cell in sums for the mean of the deviatoric strain e of one
-   * body: the mass, and m e by components (n_deviator).
+   * The record of a cell for the mean of the deviatoric strain e of one body:
+   * sums of m and of m e by components (n_deviator).
    */
   template <int dim>
   struct DeviatorSums
@@ -324,9 +328,9 @@ namespace limber
 
 
   /**
-   * The record of a node in the projection on nodes of a quantity q of one
-   * body: sums of m N_i and m N_i q over its points. When they are complete,
-   * the mean takes the place of the second.
+   * The record of a node for the lumped projection of a quantity q of one body:
+   * sums of m N_i and m N_i q over its points. finish() replaces the second by
+   * the mean.
    */
   struct NodalMeanLayout
   {

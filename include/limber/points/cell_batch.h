@@ -6,7 +6,10 @@
 
 namespace limber
 {
-  /** The window of every sweep: points of one body that share one cell. */
+  /**
+   * The unit of work of every sweep: consecutive points of one body in one
+   * cell.
+   */
   struct CellBatch
   {
     std::uint32_t cell;
@@ -16,10 +19,10 @@ namespace limber
 
 
   /**
-   * The one loop over occupied cells: call @p work for every batch, in
-   * storage order. Points that have left the neighbours they were sorted with
-   * form batches of their own, so a cell may come more than once. Returns the
-   * number of batches, which tells how far the order has decayed.
+   * The loop over batches: call @p work for every batch, in storage order.
+   * Points that have changed their cell since the last sort form batches of
+   * their own, so a cell may occur more than once. Returns the number of
+   * batches, a measure of how far the order has decayed.
    */
   template <int dim, class Work>
   __attribute__((always_inline)) inline std::size_t
@@ -42,8 +45,8 @@ namespace limber
 
 
   /**
-   * All points, wherever they are, a block at a time: few enough for plain sums
-   * over the points of a block to be accurate.
+   * Call @p work for all points in blocks, regardless of cells: blocks are
+   * short enough for plain sums over them to be accurate.
    */
   template <class Work>
   __attribute__((always_inline)) inline void

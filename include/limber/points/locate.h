@@ -7,10 +7,9 @@
 namespace limber
 {
   /**
-   * Give the points [begin, end), known to have been in @p cell, the number
-   * of the cell that holds them now, count their crossings where asked for,
-   * and report cells that come to life. A point outside the grid gets
-   * invalid_cell; MaterialPoints deals with it.
+   * Find the cells of the points [begin, end), which were in @p cell; count
+   * their cell crossings if requested, and register cells that were empty so
+   * far. A point outside the grid gets invalid_cell; MaterialPoints removes it.
    */
   template <int dim>
   __attribute__((noinline, cold)) inline void

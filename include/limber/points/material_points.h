@@ -13,7 +13,7 @@
 
 namespace limber
 {
-  /** Which quantities the points of a body have to carry. */
+  /** The quantities that the points of a body store. */
   struct PointLayout
   {
     bool         deviator     = false;
@@ -21,14 +21,14 @@ namespace limber
     int          volumetric   = -1; // history variable; -1: the pressure
     bool         affine       = false;
     bool         acceleration = false; // of the time integration
-    bool         crossings    = false; // how many cells it has entered
-    bool         reach        = false; // how far its material goes
-    bool         stretch      = false; // how it is deformed, at surfaces
+    bool         crossings    = false; // count of cell crossings
+    bool         reach        = false; // distance to the surface, for contact
+    bool         stretch      = false; // b = F F^T at the surface, for contact
     DomainForm   domains      = DomainForm::none; // GIMP, CPDI
     bool         reference    = false; // reference position, for displacements
-    bool         size_class   = false; // the level of cells they are made for
-    bool         edges        = false; // of what they stand for, at the start
-    // Functions of the initial places: also the reference position and F.
+    bool         size_class   = false; // level of cells they are made for
+    bool         edges        = false; // initial edges of their boxes
+    // Total Lagrangian: reference position and F as well.
     bool initial_frame = false;
 
     bool
@@ -40,20 +40,20 @@ namespace limber
 
 
 
-  /** A point that is to become several in a row. */
+  /** A point that is to be split into several in a row. */
   template <int dim>
   struct Division
   {
     std::size_t            point;
-    dealii::Tensor<1, dim> half_edge; // to the end of the row, m
+    dealii::Tensor<1, dim> half_edge; // half the length of the row, m
     unsigned int           direction; // axis, or edge of a parallelepiped
-    unsigned int           parts;     // if there is one in the middle, it stays
-    double                 rate = 0;  // at which it becomes longer, 1/s
+    unsigned int           parts;     // if odd, the middle one stays
+    double                 rate = 0;  // stretch rate along the row, 1/s
   };
 
 
 
-  /** A point that had to be taken out of the computation. */
+  /** A point that had to be removed from the computation. */
   template <int dim>
   struct LostPoint
   {
@@ -67,11 +67,10 @@ namespace limber
 
 
   /**
-   * The points of one body: one array per quantity, on which the sweeps work.
-   * Points that change cell only get a new cell number; hand_over() gives those
-   * that have entered cells of other ranks to these. deal.II's
-   * ParticleHandler takes all of them through a change of the mesh and is
-   * empty otherwise.
+   * The points of one body: one array per quantity, on which the sweeps work. A
+   * point that changes its cell only gets a new cell number; hand_over() sends
+   * those in ghost cells to the ranks that own these. deal.II's ParticleHandler
+   * holds the points during a change of the mesh only.
    */
   template <int dim>
   class MaterialPoints
@@ -84,8 +83,8 @@ namespace limber
     reserve(std::size_t n);
 
     /**
-     * A new point in an owned cell, by local number, and of its size; mass in
-     * kg, half edges of its domain as columns in m.
+     * Add a point in an owned cell (local number), of the size class of that
+     * cell; mass in kg, half edges of its domain as columns in m.
      */
     void
     add(std::uint32_t                 cell,
@@ -93,7 +92,7 @@ namespace limber
         double                        mass,
         const dealii::Tensor<2, dim> &half_edges = {});
 
-    /** After all add(): number the points over all ranks. Collective. */
+    /** After all add(): give the points ids, over all ranks. Collective. */
     void
     finish_adding();
 
@@ -113,7 +112,7 @@ namespace limber
     std::size_t
     n_global() const;
 
-    /** The number that the point keeps for good, its own on all ranks. */
+    /** The global id of the point, which never changes. */
     std::uint64_t
     id(const std::size_t p) const
     {
@@ -121,8 +120,8 @@ namespace limber
     }
 
     /**
-     * The level of the cells whose size the point has: cells of this level
-     * would hold as many of its kind as 'Points per cell edge' says.
+     * The refinement level of the cells for which the point is made: cells of
+     * this level would hold as many such points as 'Points per cell edge' says.
      */
     unsigned int
     size_class(const std::size_t p) const
@@ -136,14 +135,14 @@ namespace limber
       return layout.size_class;
     }
 
-    /** Of all points; empty where all are of one size. */
+    /** Of all points; empty if all have the same size. */
     const std::vector<char> &
     all_size_classes() const
     {
       return size_classes;
     }
 
-    /** Where the point was at the start; needs has_reference(). */
+    /** The initial position; needs has_reference(). */
     dealii::Point<dim>
     reference_position(const std::size_t p) const;
 
@@ -153,7 +152,7 @@ namespace limber
       return layout.has_reference();
     }
 
-    /** Changes whenever points change their places in the arrays. */
+    /** Changes whenever points change their indices in the arrays. */
     unsigned long
     order() const
     {
@@ -161,28 +160,27 @@ namespace limber
     }
 
     /**
-     * Put the arrays into the order of cells (counting sort), and return the
-     * local numbers of the cells that hold points, ascending. All points have
-     * a cell.
+     * Sort the points by cells (counting sort), and return the local numbers of
+     * the cells that contain points, ascending. All points must have a cell.
      */
     std::vector<std::uint32_t>
     sort_by_cell();
 
-    /** Take out the points without a cell and say which they were. */
+    /** Remove the points without a cell and return them. */
     std::vector<LostPoint<dim>>
     remove_lost();
 
     /**
-     * Give the points in ghost cells to the ranks that own these; what comes
-     * stands last. All points have a cell: none may have gone beyond the ghost
-     * layer since the last time. Collective.
+     * Send the points in ghost cells to the ranks that own these; received
+     * points are appended. All points must have a cell: none may have left the
+     * ghost layer since the last call. Collective.
      */
     void
     hand_over();
 
     /**
-     * Before and after the mesh is partitioned anew; in between there are no
-     * arrays. Collective.
+     * To be called before and after the mesh is changed or repartitioned; the
+     * arrays are empty in between. Collective.
      */
     void
     prepare_mesh_change();
@@ -190,8 +188,8 @@ namespace limber
     finish_mesh_change();
 
     /**
-     * After cells have been divided or joined, with the points in cells of this
-     * rank and none of these given away: the numbers of their cells.
+     * Find the cells of all points after cells have been refined or coarsened,
+     * if all points remain in cells of this rank.
      */
     void
     find_cells();
@@ -205,17 +203,16 @@ namespace limber
     }
 
     /**
-     * Let each of these points become @p parts (2 or 3) along each edge, side
-     * by side in its cell, that share its mass and are otherwise what it was.
-     * So sums over points and, as linear functions see them, over nodes do not
-     * change. Their initial places, if known, are shifted by the linear
-     * function of the present place that those in the cell follow. A domain is
-     * divided likewise. With @p spacing of points of size class 0, m, that have
-     * none. The first of two or the middle of three along each edge, which
-     * stays where it is, keeps the number, the others get numbers from
-     * @p next_id on. Of points at the surface whose outward normal there is
-     * among the @p normals (zero: not known), no part sticks out: each ends at
-     * the surface as the whole does.
+     * Split each of these points into @p parts (2 or 3) along each edge, side
+     * by side in its cell, which share its mass and otherwise copy it. So sums
+     * over points do not change, nor, with linear functions, those at nodes.
+     * Initial positions, if stored, are shifted by a linear function of the
+     * position, fitted in the cell. Domains are divided likewise; @p spacing is
+     * that of points of size class 0, m, where there are none. The first of two
+     * or the middle of three along each edge, which stays in place, keeps the
+     * id, the others get ids from @p next_id on. For surface points with an
+     * outward normal in @p normals (zero: unknown) no part sticks out: each
+     * ends at the surface as the original does.
      */
     void
     split(const std::vector<std::size_t>            &which,
@@ -225,37 +222,41 @@ namespace limber
           const std::vector<dealii::Tensor<1, dim>> &normals = {});
 
     /**
-     * Let each of these points become some that share its mass, its domain or
-     * edge, and stand where the rows that they divide have their middles, in
-     * this cell or the next. The one in the middle or, of two, the first keeps
-     * the number, the others get numbers from @p next_id on. They part as the
-     * material does, along their row: momentum and its moment stay. Returns the
-     * kinetic energy that they have more than before, J.
+     * Split each of these points along a row into several that share its mass,
+     * its domain or edge, in this cell or the next. The middle one or, of two,
+     * the first keeps the id, the others get ids from @p next_id on. Their
+     * velocities differ along the row as the material stretches; linear and
+     * angular momentum are conserved. Returns the increase of kinetic energy,
+     * J.
      */
     double
     divide(const std::vector<Division<dim>> &which, std::uint64_t next_id);
 
     /**
-     * Let the points of each of these sets, which are in one cell and of one
-     * size class, become one of the next coarser class. It has their mass and
-     * the mean by mass of all else, so that mass, momentum and the centre of
-     * mass stay; and the number of the first. No point has parts of a domain.
+     * Merge the points of each of these sets, which are in one cell and of one
+     * size class, into one of the next coarser class, with their mass and the
+     * mass-weighted mean of everything else, so that mass, momentum and centre
+     * of mass are conserved; it gets the id of the first. Not for points with
+     * domains.
      */
     void
     join(const std::vector<std::vector<std::size_t>> &sets);
 
-    /** What a point carries, as "mass" or "velocity x", in a fixed order. */
+    /**
+     * Names of the stored quantities, as "mass" or "velocity x", in fixed
+     * order.
+     */
     std::vector<std::string>
     field_names() const;
 
-    /** The array of a field, by its place among the names. */
+    /** The array of a field, by its index among the names. */
     const std::vector<double> &
     field(const unsigned int f) const
     {
       return fields[f];
     }
 
-    /** The field with the place in the grid along x; see PointView. */
+    /** The field of PointView::place along x. */
     unsigned int
     place_field() const
     {
@@ -268,13 +269,13 @@ namespace limber
       return ids;
     }
 
-    /** Forget all points, to take others from elsewhere. */
+    /** Remove all points, before others are appended. */
     void
     clear();
 
     /**
-     * Points with a number already, in owned cells; a vector per field, and
-     * size classes where there are any.
+     * Append points with ids, in owned cells; one vector per field, and size
+     * classes if there are any.
      */
     void
     append(const std::vector<std::uint32_t>       &new_cells,
@@ -306,8 +307,7 @@ namespace limber
     std::vector<std::uint32_t>
     occupied_cells() const;
 
-    // A point as consecutive numbers: its fields, its id, its size class if
-    // there are any.
+    // Serialisation of a point: its fields, its id, its size class if any.
     std::size_t
     record_size() const
     {

@@ -7,11 +7,11 @@
 namespace limber
 {
   /**
-   * What of a box along the axes is inside a shape: exact where the shape has a
-   * formula for it. Else the box is divided into 16^2 or 8^3 pieces; those at
-   * the surface are cut by the plane that the distance tells, exactly where the
-   * surface is one, or count as a whole where the shape knows no distance.
-   * Volume 0 where nothing is.
+   * The part of an axis-parallel box inside a shape: exact if the shape has a
+   * formula. Otherwise the box is divided into 16^2 or 8^3 sub-boxes; those at
+   * the surface are clipped by the plane that the signed distance gives (exact
+   * for plane surfaces), or are in or out as a whole if the shape has no signed
+   * distance. Volume 0 if nothing is inside.
    */
   template <int dim>
   PartInside<dim>

@@ -20,14 +20,16 @@ namespace limber
   /** The largest number of history variables that a law may ask for. */
   inline constexpr unsigned int max_history = 12;
 
-  /** Over what the functions of a point are averaged (convected.h). */
+  /**
+   * The domain over which the functions of a point are averaged (convected.h).
+   */
   enum class DomainForm
   {
-    none,           // the point alone
-    box,            // of fixed size
-    stretched_box,  // that follows the stretch
-    parallelepiped, // that is carried along
-    hexahedron      // or quadrilateral, whose corners are carried along
+    none,           // the point itself
+    box,            // fixed size (uGIMP)
+    stretched_box,  // stretched with the diagonal of F (cpGIMP)
+    parallelepiped, // convected by F (CPDI)
+    hexahedron      // with convected corners (CPDI2)
   };
 
 
@@ -42,9 +44,9 @@ namespace limber
 
 
   /**
-   * Numbers that a domain takes at each point: half edges along the axes of a
-   * fixed box, else components of half edges that are carried along, and of the
-   * twists of a hexahedron.
+   * Number of doubles per point for its domain: half edges along the axes of a
+   * fixed box, otherwise the components of all half edge vectors, and of the
+   * twists of a hexahedron (or quadrilateral).
    */
   inline constexpr unsigned int
   n_domain_components(const DomainForm form, const unsigned int dim)
@@ -58,9 +60,9 @@ namespace limber
 
 
   /**
-   * What the sweeps see of the points of one body: one array per quantity, in
-   * the order of cells as far as the points have not moved on since the last
-   * sort. Arrays that the body does not need are null. Every array can be
+   * The points of one body as the sweeps see them: one array per quantity,
+   * sorted by cells except for points that have changed their cell since the
+   * last sort. Arrays that the body does not need are null. Each array can be
    * read and written one pack beyond the last point.
    */
   template <int dim>
@@ -68,40 +70,39 @@ namespace limber
   {
     std::size_t               size = 0;
     std::array<double *, dim> position{}; // m
-    // Where the functions of the grid are taken, m: the position, or where the
-    // point was at the start if its body is computed in that frame.
+    // Where shape functions are evaluated, m: the position, or with the initial
+    // frame the reference position.
     std::array<double *, dim>             place{};
     std::array<double *, dim>             velocity{};         // m/s
     double                               *mass     = nullptr; // kg
     double                               *pressure = nullptr; // J p, Pa
     std::array<double *, n_deviator<dim>> deviator{};         // of J sigma, Pa
-    std::array<double *, max_history>     history{}; // meaning: the law's
+    std::array<double *, max_history>     history{}; // as the law defines them
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
-    std::array<double *, dim> acceleration{}; // of generalised-alpha, m/s^2
-    // Half edges of the domain (convected.h), m: component d of edge k at
-    // d * dim + k, of fixed boxes those with d = k alone; behind them the
-    // twists of a hexahedron, component d of twist t at dim * (dim + t) + d
+    std::array<double *, dim> acceleration{};        // generalised-alpha, m/s^2
+    // Half edges of the domain (convected.h), m: component d of edge k at d *
+    // dim + k, of fixed boxes those with d = k only; then the twists of a
+    // hexahedron, component d of twist t at dim * (dim + t) + d
     DomainForm domain_form = DomainForm::none;
     std::array<double *, n_domain_components(DomainForm::hexahedron, dim)>
       domain{};
-    // F, row-major, in the frame of the initial configuration; else null
+    // F, row-major, in the initial frame; else null
     std::array<double *, dim * dim> deformation{};
-    // The variable that carries the volumetric history (of the law's choice):
-    // one of the arrays above.
+    // The volumetric variable of the law (J or the pressure): one of the arrays
+    // above.
     double        *volumetric = nullptr;
-    std::uint32_t *cell       = nullptr; // of the place
+    std::uint32_t *cell       = nullptr; // that contains the place
     double        *crossings  = nullptr; // cells entered since the start
-    // Of a point at the surface of a body that may touch something: its
-    // distance from that before it was stretched, m; 0 of others (see
-    // reach_of())
+    // For contact, at surface points: the distance from the point to the
+    // surface in the undeformed state, m; 0 for other points (see reach_of())
     double *reach = nullptr;
-    // Of such points of a body that flows: b of the deformation since the start
-    // in the order of dealii::SymmetricTensor; null where the law knows it
+    // For surface points of plastic bodies: b = F F^T since the start in the
+    // order of dealii::SymmetricTensor; null if the law provides the stretch
     std::array<double *, dim *(dim + 1) / 2> stretch{};
-    // Of what the point stands for, as it was at the start, along the axes, m
+    // Initial edges of the box that the point represents, along the axes, m
     std::array<double *, dim> edge{};
 
-    /** Whether the functions of the grid are those of the initial places. */
+    /** Whether shape functions are evaluated at reference positions. */
     bool
     in_initial_frame() const
     {

@@ -10,20 +10,20 @@
 namespace limber
 {
   /**
-   * Fill the shape of a body with points, each on the rank that owns its
-   * cell. @p density gives the mass per volume (kg/m^3) at its place.
+   * Fill the shape of a body with points, each on the rank that owns its cell.
+   * @p density gives the mass per volume (kg/m^3) at a position.
    *
-   * Placements cell by cell give a point its share of the volume of the cell,
-   * and a point belongs to the body when its place lies inside the shape; with
-   * 'cut' a part whose corners and centre do not agree on this has the volume
-   * and the centroid of those of its 16^2 or 8^3 sample places that do. With
-   * 'gauss' what of a cell is inside, from the same parts, has the places of
-   * Gauss and Legendre in a parallelepiped with its centroid and its second
-   * moments: volume, first and second moments of the body are those of its
-   * shape, exactly in boxes and in blocks of the plane. The placement 'fitted'
-   * divides the shape itself, into parts of exact volume.
+   * Placements by cells give a point its share of the volume of the cell, if
+   * its position is inside the shape. With 'cut' a sub-box whose corners and
+   * centre do not agree on this has the volume and the centroid of those of its
+   * 16^2 or 8^3 sample positions that are inside. With 'gauss' the part of a
+   * cell inside, from the same samples, gets the Gauss-Legendre points of a
+   * parallelepiped with the same centroid and second moments, so that volume,
+   * first and second moments of the body are those of its shape, exactly in
+   * boxes and in blocks of the plane. 'fitted' divides the shape itself, into
+   * parts of exact volume.
    *
-   * Placement is reproducible: jitter depends on the place of a cell, not on
+   * Placement is reproducible: jitter depends on the position of a cell, not on
    * ranks.
    */
   template <int dim>

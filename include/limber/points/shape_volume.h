@@ -8,23 +8,22 @@
 namespace limber
 {
   /**
-   * The volume of a shape, m^dim: by formula, where it has one, else by
-   * counting places on a lattice over its bounding box, finer where its
-   * surface cuts. Some 20 000 (2D) to 400 000 (3D) places are asked, and the
-   * volume is right to some 1e-3.
+   * The volume of a shape, m^dim: by formula, if it has one, else by sampling
+   * on a lattice over its bounding box, refined at its surface. Takes some 20
+   * 000 (2D) to 400 000 (3D) samples, with an error of some 1e-3.
    */
   template <int dim>
   double
   shape_volume(const Shape<dim> &shape);
 
-  /** The same, counted whether there is a formula or not. */
+  /** The same by sampling, even if there is a formula. */
   template <int dim>
   double
   counted_volume(const Shape<dim> &shape);
 
   /**
-   * The part of a volume (m^dim) that points on this rank have inside another
-   * shape, and the sum of their places weighted with it.
+   * The volume (m^dim) of the points of this rank inside another shape, and its
+   * first moment.
    */
   template <int dim>
   struct VolumeInside
@@ -34,7 +33,7 @@ namespace limber
   };
 
   /**
-   * How much of the points of a body lies in another's @p shape; a point has
+   * How much of the points of a body overlaps another's @p shape; a point has
    * the volume of its mass (kg) over @p density (kg/m^3).
    */
   template <int dim>

@@ -6,7 +6,7 @@
 
 namespace limber
 {
-  /** The arrays of point @p p alone, as far as laws look at them. */
+  /** A view of point @p p alone, with the arrays that laws use. */
   template <int dim>
   PointView<dim>
   only(const PointView<dim> &points, const std::size_t p)

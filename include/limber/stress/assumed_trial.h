@@ -11,17 +11,18 @@ namespace limber
 {
   /**
    * The assumed strain of the points of a cell in a trial
-   * (assumed_deformation.h), with what Newton's method needs of it: the first
-   * and second derivative of the energy sum V W(F_a) by the displacements of
-   * the nodes. Turned back with the cell, G = R^T F and A G = R^T F_a vary by
+   * (assumed_deformation.h), and what Newton's method needs of it: first and
+   * second derivative of the energy sum V W(F_a) by the nodal displacements.
+   * Rotated back with the cell, G = R^T F and A G = R^T F_a vary by
    *
    *   delta (A G) = A(g) + S A(G) - A(S G),   g = R^T delta F,
    *
-   * where S = R^T delta R is the spin whose axis is H^-1 axis(<g>), H = tr(U)
-   * 1 - U. With P^ = R^T P(F_a), Q = A P^ and the torque t_a = sum V Q : S_a G
-   * about each axis a, the force is sum V Q : g less the axis of the spin
-   * times t, since P^ : S A(G) = 0 as the stress is symmetric. The second
-   * derivative of F_a, spins of spins included, is in 'add_turning'.
+   * where S = R^T delta R is the spin with the axial vector H^-1 axis(<g>),
+   * H = tr(U) 1 - U. With P^ = R^T P(F_a), Q = A P^ and the torque t_a = sum V
+   * Q : S_a G about each axis a, the force is sum V Q : g minus the axial
+   * vector of the spin times t, since P^ : S A(G) = 0 by symmetry of the
+   * stress. The second derivative of F_a, including products of spins, is in
+   * 'add_turning'.
    *
    * Degrees of freedom node by node, as in CellResponse.
    */
@@ -35,21 +36,23 @@ namespace limber
     using Vector                 = std::array<double, dim>;
     using Matrix                 = SmallMatrix<dim, double>;
     using Gradients              = std::array<Vector, n_nodes>;
-    // In 2d the first alone counts: GCC 12 loses sums in arrays of one
+    // In 2d only the first counts: GCC 12 loses sums in arrays of one
     using Axis = std::array<double, 3>;
 
-    /** What is given of a point: its own F, place and volume. */
+    /** Input of a point: its own F, position and volume. */
     struct Point
     {
       Matrix    F;
-      Vector    xi;       // natural place in the cell
+      Vector    xi;       // natural coordinates in the cell
       double    volume;   // at the start, m^dim
       Gradients gradient; // of the functions, 1/m
     };
 
     std::vector<Point> points;
 
-    /** When all points are there; false where a mean is turned inside out. */
+    /**
+     * After all points were set; false if the mean F of the cell is inverted.
+     */
     bool
     finish(const StrainTreatment &treatment)
     {
@@ -74,7 +77,7 @@ namespace limber
       return operation->evaluate(points[p].F, points[p].xi);
     }
 
-    /** Of the stress P = dW/dF_a of the points (Pa): the force on nodes, N. */
+    /** Add the nodal force (N) of the stress P = dW/dF_a of the points (Pa). */
     void
     add_force(const std::vector<Matrix> &stress, double *const force)
     {
@@ -89,11 +92,10 @@ namespace limber
     }
 
     /**
-     * What resists against the motion of the displacements k and l of nodes:
-     * @p moduli (p, d, e, f, g) is what the Kirchhoff stress along d and e,
-     * with which gradients work, grows by with the displacement along f by the
-     * gradient along g, in the present configuration of the point. Adds to the
-     * n_dofs rows of @p tangent.
+     * Add the tangent with respect to nodal displacements, n_dofs rows. @p
+     * moduli (p, d, e, f, g) is the derivative of the Kirchhoff stress (d, e),
+     * work conjugate to gradients, by the displacement gradient (f, g) in the
+     * present configuration of the point.
      */
     template <class Moduli>
     void
@@ -110,7 +112,7 @@ namespace limber
     }
 
   private:
-    using Means = std::pair<Matrix, Matrix>; // mean and, in 3d, torsion
+    using Means = std::pair<Matrix, Matrix>; // mean and, in 3d, linear part
 
     static double
     contract(const Matrix &a, const Matrix &b)
@@ -122,7 +124,7 @@ namespace limber
       return result;
     }
 
-    /** The spin about axis a: S_a : X is twice the axis of X. */
+    /** The spin about axis a; S_a : X is twice the axial vector of X. */
     static Matrix
     spin(const int a)
     {
@@ -141,7 +143,7 @@ namespace limber
       return result;
     }
 
-    /** R^T dF of a point by the displacement of degree of freedom k. */
+    /** R^T dF of a point for a unit displacement of degree of freedom k. */
     Matrix
     turned_back(const std::size_t p, const int k) const
     {
@@ -159,7 +161,7 @@ namespace limber
       return result;
     }
 
-    /** Of a field over the points, field(p). */
+    /** Means of a field over the points, field(p). */
     template <class Field>
     Means
     means_of(const Field &field) const
@@ -200,7 +202,7 @@ namespace limber
         .first;
     }
 
-    /** Stress turned back, its transpose, and what pulls at the frame. */
+    /** Rotated stress P^, its transpose map Q, and the torque on the frame. */
     void
     meet(const std::vector<Matrix> &stress)
     {
@@ -227,7 +229,7 @@ namespace limber
         }
     }
 
-    // H of the stretch, which is symmetric
+    // H of the stretch, symmetric
     void
     invert_inertia()
     {
@@ -258,7 +260,7 @@ namespace limber
       return result;
     }
 
-    /** Mean, spin and A G by each degree of freedom. */
+    /** Derivatives of mean, spin and A G by each degree of freedom. */
     void
     vary()
     {
@@ -321,7 +323,7 @@ namespace limber
                  const Moduli     &moduli,
                  double *const     tangent) const
     {
-      // the change of F_a as a gradient in the present configuration
+      // the variation of F_a as a gradient in the present configuration
       std::array<Matrix, n_dofs> gradient;
       for (int k = 0; k < n_dofs; ++k)
         {
@@ -343,11 +345,11 @@ namespace limber
         }
     }
 
-    // The stress times the second derivative of F_a: with spins S and T by k
-    // and l, primes for what belongs to l,
+    // Geometric stiffness, the stress times the second derivative of F_a: with
+    // spins S and T by k and l, primes for what belongs to l,
     //   P^ : [T delta(A G) + S (A(g') - A(T G))]
     //   - Q : [T g + S (g' - T G)] - dS' t,
-    // where the axis of the spin changes by
+    // where the axial vector of the spin changes by
     //   H dw' = axis(-T <g>) - dH' w,   dH' = tr(dU') 1 - dU',
     //   dU' = <g'> - T U.
     void
@@ -409,7 +411,7 @@ namespace limber
         }
     }
 
-    /** H^-1 t times the change of H by degree of freedom l. */
+    /** H^-1 t times the derivative of H by degree of freedom l. */
     Axis
     change_of_inertia(const int l) const
     {
@@ -440,8 +442,8 @@ namespace limber
     std::vector<Matrix>    turned, back; // P^ and Q of the points
     SmallMatrix<3, double> inverse{};    // of H
     Axis                   pull{};       // H^-1 t
-    // By degree of freedom: mean of g, axis of the spin; of each point A(g) and
-    // the change of A G
+    // By degree of freedom: mean of g, axial vector of the spin; for each point
+    // A(g) and the variation of A G
     std::array<Matrix, n_dofs> mean;
     std::array<Axis, n_dofs>   axes{};
     std::vector<Matrix>        own, varied;

@@ -8,7 +8,8 @@
 
 namespace limber
 {
-  /** A law on points whose strain, and maybe history, is averaged over cells.
+  /**
+   * A law on points whose strain (and possibly history) is averaged over cells.
    */
   template <int dim, class Law>
   class AveragedLaw : public LawOnPoints<dim, Law>

@@ -12,7 +12,7 @@
 
 namespace limber
 {
-  /** How a point is strained in a trial, and how it resists. */
+  /** Kinematics and state of a point in a trial. */
   template <class Basis, class Law>
   struct TrialMotion
   {
@@ -20,28 +20,29 @@ namespace limber
     static constexpr bool finite = Law::finite_strain;
     using State                  = typename Law::template State<dim, double>;
 
-    // of the functions where forces act, 1/m
+    // gradients in the configuration where forces act, 1/m
     std::array<std::array<double, dim>, Basis::n_nodes> gradient;
-    // From where the functions are: of the step, or F in the initial frame; as
-    // it is assumed where it is
+    // Relative to the configuration of the functions: of the step, or F in the
+    // initial frame; the assumed one with assumed strain
     SquareMatrix<dim> F;
-    // What the state is deformed by: F, or in the initial frame, where the law
-    // flows, that of the step
+    // The deformation applied to the state: F, or in the initial frame with a
+    // plastic law that of the step
     SquareMatrix<dim> f;
-    double            growth;       // of the volume by f, the point's own
+    double            growth;       // of the volume by f, of the point alone
     double            volume;       // at the start, m^dim
-    double            share;        // of its growth in the mean of the cell
-    double            former_ratio; // volume ratio that the growth belongs to
+    double            share;        // weight in the mean growth of the cell
+    double            former_ratio; // volume ratio to which growth is relative
     State             state;
-    State             start;            // where the law flows, before the step
-    double            acting       = 1; // growth that the state has followed
+    State             start;            // plastic laws: state before the step
+    double            acting       = 1; // growth that was applied to the state
     double            plastic_work = 0; // per volume at the start, Pa
-    // In the tangent: rows of the deviator, and derivative of the energy by
-    // the growth that acts, per volume at the start, Pa
+    // For the tangent: the deviator, and the derivative of the energy by the
+    // growth that acts, per initial volume, Pa
     SquareMatrix<dim> stress;
     double            slope;
 
-    /** Kirchhoff, that of the points of the cell, as it acts at this one, Pa.
+    /**
+     * Kirchhoff mean stress that acts on this point, averaged in the cell, Pa.
      */
     double
     mean_stress() const
@@ -49,7 +50,7 @@ namespace limber
       return slope * (finite ? growth : 1.);
     }
 
-    /** First Piola and Kirchhoff's, Pa. */
+    /** First Piola-Kirchhoff stress, Pa. */
     SquareMatrix<dim>
     piola() const
     {
@@ -71,13 +72,13 @@ namespace limber
 
 
 
-  /** Stands for AssumedTrial where the functions have no bending modes. */
+  /** Replaces AssumedTrial for bases without bending modes. */
   struct NoAssumedTrial
   {};
 
 
 
-  /** Of the points of a cell. */
+  /** Kinematics and states of all points of a cell in a trial. */
   template <class Basis, class Law>
   struct CellTrial
   {
@@ -89,11 +90,11 @@ namespace limber
                                        AssumedTrial<dim, Law::finite_strain>,
                                        NoAssumedTrial>;
     Assumed assumed;
-    Assumed assumed_before; // in the initial frame, where the law flows
-    double  volume = 0;     // of all at the start, m^dim
-    double  slope = 0, curvature = 0; // of the energy, by mean growth, J
+    Assumed assumed_before;           // before the step; plastic, initial frame
+    double  volume = 0;               // of all at the start, m^dim
+    double  slope = 0, curvature = 0; // derivatives of energy by mean growth, J
 
-    /** First Piola and Kirchhoff's, Pa, of all points. */
+    /** First Piola-Kirchhoff stress of all points, Pa. */
     std::vector<SquareMatrix<dim>>
     piola() const
     {

@@ -7,10 +7,10 @@
 namespace limber
 {
   /**
-   * Strain points with domains by the means of the velocity gradient over them,
-   * or by its differences between their corners, move them, and let them take
-   * their velocities where asked (StressSweep); @p law is called once per
-   * pack. The treatment is 'none', 'cell' or 'node'.
+   * Strain points with domains (GIMP, CPDI) by the mean velocity gradient over
+   * them, or by differences between their corners, move them, and do G2P in the
+   * same sweep if requested (StressSweep); @p law is called once per pack. The
+   * treatment is 'none', 'cell' or 'node'.
    */
   template <int dim>
   StressSummary

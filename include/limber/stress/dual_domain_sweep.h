@@ -8,9 +8,9 @@ namespace limber
 {
   /**
    * Strain points by the gradients of the dual domain method
-   * (interpolation/dual_domain.h), whose means around nodes the grid holds, and
-   * move them (StressSweep); @p law is called once per pack. The treatment is
-   * 'none', 'cell' or 'node'.
+   * (interpolation/dual_domain.h), with the nodal mean gradients stored in the
+   * grid, and move them (StressSweep); @p law is called once per pack. The
+   * treatment is 'none', 'cell' or 'node'.
    */
   template <int dim>
   StressSummary

@@ -12,20 +12,19 @@
 namespace limber
 {
   /**
-   * StressUpdate in the frame of the initial configuration (total Lagrangian):
-   * the functions are those of the initial places, F grows by dt grad_X v, and
-   * the stress of an elastic law follows from F alone, so that no error of a
-   * step stays in it. A law that flows follows f = F_now F_before^-1 from the
-   * state before. The velocity is the one that strains points
-   * (NodeLayout::strain_velocity), and moves them as well: they stay where
-   * their F says.
+   * StressUpdate in the initial configuration (total Lagrangian): shape
+   * functions are evaluated at reference positions, F grows by dt grad_X v, and
+   * the stress of an elastic law follows from F alone, so that errors do not
+   * accumulate. A plastic law follows f = F_now F_before^-1 from the state
+   * before. One velocity (NodeLayout::strain_velocity) strains and moves the
+   * points, so that positions agree with F.
    *
    * With the treatment 'cell' the volumetric part of the stress follows from
-   * the mean of the volume ratio over the points of the cell, with
-   * 'assumed_strain', which is that of linear functions, all of it from the F_a
-   * of assumed_deformation.h. The points never leave their cell, so they always
-   * are one batch, on one rank, and their forces can be given in the same
-   * sweep. Elastic stress that is given so is not stored.
+   * the mean volume ratio of the points of the cell (F-bar); with
+   * 'assumed_strain', for linear functions, the whole stress from F_a of
+   * assumed_deformation.h. Points never leave their cell, so they always form
+   * one batch on one rank, and strain and P2G of forces are done in one sweep.
+   * Elastic stress is not stored then.
    */
   template <class Basis, class Law, Treatment kind>
   class InitialFrameSweep final : public LawOnPoints<Basis::dim, Law>
@@ -82,7 +81,7 @@ namespace limber
       throw std::logic_error("histories are not averaged in this frame");
     }
 
-    /** Means are in the stress already: the force needs none. */
+    /** The stress contains the means already: P2G needs none. */
     const StrainTreatment &
     treatment() const override
     {
@@ -97,7 +96,7 @@ namespace limber
     }
 
   private:
-    // The work on the points of a cell
+    // The operations on the points of a cell
     template <bool give_force>
     struct Batch
     {
@@ -122,7 +121,7 @@ namespace limber
         limber::for_each_pack<dim>(batch, work);
       }
 
-      /** Each point at its own F. */
+      /** Treatment 'none': each point with its own F. */
       __attribute__((always_inline)) void
       at_points() const
       {
@@ -139,7 +138,7 @@ namespace limber
           force.add_to_nodes();
       }
 
-      /** With the mean of the volume ratio. */
+      /** Treatment 'cell': with the mean volume ratio. */
       __attribute__((always_inline)) void
       with_mean_volume() const
       {
@@ -177,9 +176,9 @@ namespace limber
           force.add_to_nodes();
       }
 
-      // Each point flows on its own at the mean growth of the volume. By that
-      // their energy grows by the mean of J p, which so is the pressure of all
-      // in the force.
+      // Each point does its return mapping at the mean growth of the volume.
+      // The derivative of their energy by it is the mean of J p, which is
+      // therefore the pressure of all points in the force.
       __attribute__((always_inline)) void
       flow_with_mean_volume(const Number           &J,
                             const Number           &growth,
@@ -210,7 +209,7 @@ namespace limber
           }
       }
 
-      /** F + dt grad_X v, which is stored, and the points move with v. */
+      /** Update F += dt grad_X v and x += dt v. */
       template <class Lanes>
       __attribute__((always_inline)) Deformed
       deform(const Lanes &lanes, const Places &xi) const
@@ -238,7 +237,7 @@ namespace limber
         return result;
       }
 
-      /** What deform() began with, once it has left @p F. */
+      /** F before deform(), from @p F after it. */
       __attribute__((always_inline)) Matrix
       deformation_before(Matrix F, const Places &xi) const
       {
@@ -254,7 +253,7 @@ namespace limber
         return F;
       }
 
-      /** The force of a stress. */
+      /** Add the internal force of a stress. */
       template <class Lanes>
       __attribute__((always_inline)) void
       give(const State            &state,
@@ -279,7 +278,10 @@ namespace limber
           }
       }
 
-      /** At the volume ratio J, and where it flows, growth of that. */
+      /**
+       * Stress at the volume ratio J or, with a plastic law, its growth in the
+       * step.
+       */
       template <class Lanes>
       __attribute__((always_inline)) State
       stress_at(const Deformed                &now,
@@ -305,7 +307,9 @@ namespace limber
         return state;
       }
 
-      /** From the state before, whose volume grows by the factor. */
+      /**
+       * Plastic law: state after the step, with the given growth of the volume.
+       */
       template <class Lanes>
       __attribute__((always_inline)) State
       flow(const Deformed &now, const Number &growth, const Lanes &lanes) const
@@ -320,7 +324,7 @@ namespace limber
                           found);
       }
 
-      /** Of the volume ratio J, if it has been that of @p before. */
+      /** Growth of the volume ratio to J since @p before. */
       __attribute__((always_inline)) static Number
       growth_of(const Number &J, [[maybe_unused]] const Matrix &before)
       {
@@ -330,7 +334,7 @@ namespace limber
           return J;
       }
 
-      /** The initial one, m^dim; zero in idle lanes. */
+      /** Initial volume, m^dim; zero in idle lanes. */
       template <class Lanes>
       __attribute__((always_inline)) Number
       volume_of(const Lanes &lanes) const
@@ -343,10 +347,10 @@ namespace limber
 
 
     /**
-     * A cell at the F_a of the assumed strain. What it does is one long chain:
-     * the mean of its points turns the frame in which each of them is
-     * stretched, and the mean of their stress comes back to all. So its stages
-     * are taken by a few cells in turn: the processor works on one while
+     * A cell with assumed strain (F_a). Its operations are one long dependency
+     * chain: the mean of its points rotates the frame in which each is
+     * strained, and the mean of their stress acts on all. So its stages are
+     * done for a few cells in turn, such that the processor works on one while
      * another waits.
      */
     template <bool give_force>
@@ -421,7 +425,7 @@ namespace limber
         {}
       };
 
-      // What is met again: the first packs, mostly all there are, are kept.
+      // The first packs, usually all of them, are kept for the second pass.
       struct KeptPack
       {
         Matrix F, P;
@@ -470,7 +474,7 @@ namespace limber
 
 
 
-    /** A few cells at the F_a of the assumed strain. */
+    /** A few cells with assumed strain, processed together. */
     template <bool give_force>
     class AssumedCells
     {
@@ -547,9 +551,9 @@ namespace limber
     }
 
     /**
-     * A bound (Gershgorin) of the largest eigenvalue of F^-1 F^-T: the square
-     * of how many initial lengths a wave passes in one present length. One at
-     * rest and in any rotation.
+     * An upper bound (Gershgorin) of the largest eigenvalue of F^-1 F^-T: the
+     * square of the initial lengths that a wave passes per present length. One
+     * at rest and in any rotation.
      */
     static Number
     largest_shortening(const Matrix &F)

@@ -11,8 +11,8 @@
 namespace limber
 {
   /**
-   * What a law knows of the points of a body, whatever strains them: the part
-   * of a StressUpdate that does not look at the grid.
+   * The part of a StressUpdate that depends on the law and the points alone,
+   * not on the grid.
    */
   template <int dim, class Law>
   class LawOnPoints : public StressUpdate<dim>
@@ -188,7 +188,8 @@ namespace limber
               state.history[first_variable() + k] = *start.variables[k];
           if (!start.is_under_stress())
             return state;
-          // Kirchhoff's stress counts the volume of the variables as well
+          // Kirchhoff stress includes the inelastic volume ratio of the
+          // variables
           double volume = 1;
           if constexpr (Law::volumetric >= 0)
             volume = law.template volume_ratio<dim>(state) /
@@ -222,8 +223,8 @@ namespace limber
     }
 
     /**
-     * Strain the points of a pack, whose history is changed before; returns
-     * their volumetric variable.
+     * Apply the law to a pack of points, after the change of their volumetric
+     * history; returns their volumetric variable.
      */
     template <class Lanes>
     __attribute__((always_inline)) PointPack<dim>
@@ -276,9 +277,9 @@ namespace limber
     }
 
     /**
-     * The states of a pack after a step in which they were deformed by @p f and
-     * their volume ratio grew by the factor @p growth, of a law that flows. One
-     * function for all functions of the grid, as it takes long to compile.
+     * The states of a pack after a step of a plastic law in which they were
+     * deformed by @p f and their volume ratio grew by the factor @p growth. Not
+     * inlined, shared by all bases, as it takes long to compile.
      */
     template <class Lanes>
     __attribute__((noinline)) State<PointPack<dim>>
@@ -296,7 +297,7 @@ namespace limber
       return state;
     }
 
-    /** The part of a summary that follows from them. */
+    /** The part of the summary that follows from the findings. */
     StressSummary
     summary(const Findings &found, const bool measure_waves) const
     {

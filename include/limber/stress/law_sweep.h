@@ -8,8 +8,8 @@
 namespace limber
 {
   /**
-   * StressUpdate for one basis, one law and one treatment of its strain, all
-   * known to the compiler: the fastest, for kernels with few nodes.
+   * StressUpdate for one basis, law and treatment, all known at compile time:
+   * the fastest, for kernels with few nodes.
    */
   template <class Basis, class Law, Treatment kind>
   class LawSweep final : public AveragedLaw<Basis::dim, Law>

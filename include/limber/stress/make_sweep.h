@@ -16,9 +16,9 @@
 namespace limber
 {
   /**
-   * The fastest there is. The treatments that most scenes have are compiled for
-   * each law, `assumed strain` for those of solids; so are none of those of a
-   * law that flows, whose return map takes longer than the call per pack.
+   * The fastest sweep there is. Common treatments are compiled for each law,
+   * `assumed strain` for solids only; not for plastic laws, as a return mapping
+   * takes longer than a virtual call per pack.
    */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
@@ -49,7 +49,7 @@ namespace limber
 
 
 
-  /** Those in the frame of the initial configuration, of solids. */
+  /** Sweeps in the initial frame (total Lagrangian), of solids. */
   template <class Basis, class Law>
   std::unique_ptr<const StressUpdate<Basis::dim>>
   make_initial_frame_sweep(const Law                              &law,

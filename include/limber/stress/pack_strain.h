@@ -8,18 +8,18 @@
 
 namespace limber
 {
-  /** What becomes of the volumetric variable of points before they strain. */
+  /** Change of the volumetric variable of points before they are strained. */
   struct HistoryChange
   {
     bool   any   = false;
-    double share = 0; // of the way to the mean
+    double share = 0; // relaxation towards the mean
     double mean  = 0; // of the cell
-    double shift = 0; // added besides
+    double shift = 0; // added to it
   };
 
 
 
-  /** What a sweep finds while it strains points, by lanes; J, m^2/s^2. */
+  /** Results of a sweep, by lanes: wave speed squared, m^2/s^2; energies, J. */
   template <int dim>
   struct PackFindings
   {
@@ -29,10 +29,9 @@ namespace limber
 
 
   /**
-   * What a law does to the points of a pack whose motion is known
-   * (LawOnPoints::strain). Sweeps of kernels that see many nodes, which take
-   * long to compile, call it once per pack and are there once, not for every
-   * law.
+   * Virtual interface to LawOnPoints::strain: a law applied to a pack of points
+   * with known motion. Sweeps of kernels with many nodes, which take long to
+   * compile, call it once per pack and are compiled once for all laws.
    */
   template <int dim>
   class PackStrain

@@ -7,10 +7,15 @@
 
 #include <memory>
 
-/** @file Sweeps that call their law once per pack: laws and kernels apart. */
+/**
+ * @file Sweeps that call the law once per pack, compiled independently of it.
+ */
 namespace limber
 {
-  /** How a kernel strains and moves the points of a body, whatever its law. */
+  /**
+   * A sweep of a kernel that strains and moves the points of a body, for any
+   * law.
+   */
   template <int dim>
   struct PackSweep
   {
@@ -21,13 +26,13 @@ namespace limber
                             const StrainTreatment &treatment,
                             const PackStrain<dim> &law,
                             PackFindings<dim>     &found);
-    // Whether it lets them take their velocities (StressUpdate).
+    // Whether it does G2P as well (StressUpdate::takes_velocity()).
     bool takes_velocity = false;
   };
 
 
 
-  /** Any law with such a sweep. */
+  /** A StressUpdate from any law and such a sweep. */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_pack_sweep(const AnyLaw          &law,

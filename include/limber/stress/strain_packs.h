@@ -8,7 +8,9 @@
 
 #include <stdexcept>
 
-/** @file What strain_packs() does, for the unit of each basis. */
+/**
+ * @file Definition of strain_packs(), for the translation unit of each basis.
+ */
 namespace limber
 {
   namespace internal

@@ -8,7 +8,9 @@
 
 namespace limber
 {
-  /** (1 + a/2) u: the way u along a field that changes by a on the way. */
+  /**
+   * (1 + a/2) u: displacement along a field whose increment has the gradient a.
+   */
   template <int dim, class Number>
   std::array<Number, dim>
   curve(const std::array<Number, dim>                  &u,
@@ -24,9 +26,9 @@ namespace limber
 
 
   /**
-   * The sweep that strains points by the functions of a shared stencil and one
-   * treatment, and moves them. What a law does with a pack whose motion is
-   * known is strain(points, lanes, motion, change, found), which returns the
+   * The sweep that strains points by a basis with a shared stencil and one
+   * treatment, and moves them. The law is strain(points, lanes, motion, change,
+   * found), which updates a pack whose motion is known and returns its
    * volumetric variables (LawOnPoints::strain).
    */
   template <class Basis, Treatment kind, bool uses_spin, class Strain>
@@ -36,7 +38,9 @@ namespace limber
     using Number             = PointPack<dim>;
 
   public:
-    /** Returns how far points have moved; what the law finds is in @p found. */
+    /**
+     * Returns how far points have moved; results of the law are in @p found.
+     */
     static StressSummary
     run(const PointView<dim>      &points,
         const GridView<dim>       &grid,
@@ -52,9 +56,9 @@ namespace limber
     }
 
   private:
-    // What the points of a batch share. One object, so that work on a pack,
-    // which is called apart for the last points of a batch, knows it by one
-    // address: to pass every part by its own took a fifth of the sweep.
+    // Data that the points of a batch share, in one object such that the
+    // out-of-line function for incomplete packs gets one address: to pass each
+    // part by its own took a fifth of the sweep.
     struct Batch
     {
       using Layout = NodeLayout<dim>;
@@ -111,8 +115,8 @@ namespace limber
         batch.strain.template evaluate<Number, uses_spin>(xi, motion);
         if constexpr (kind == Treatment::cell)
           if (rarely(what.volume_shares != nullptr && !batch.implicit))
-            // with what is of second order in the step, or what turns would
-            // grow
+            // including the second order in the step, as volume would grow in
+            // rotations otherwise
             motion.volumetric += (what.volume_shares[batch.cell_number] - 1) *
                                  (motion.volume_ratio() - 1.);
         if (rarely(batch.implicit != nullptr))
@@ -129,7 +133,7 @@ namespace limber
                   motion.volumetric + dilation;
           }
 
-        // towards the mean of the cell, or by what the cell gets
+        // relaxation to the cell mean, and checkerboard control
         HistoryChange change;
         if constexpr (projected)
           if (changes_history)
@@ -173,7 +177,7 @@ namespace limber
             const auto moved =
               move_points<dim>(points, grid, batch.cell_number, lanes, shift);
             displacement = larger(displacement, moved.displacement);
-            // without means over cells the sums may still be wanted
+            // sums may be wanted even without means over cells
             if (needs_cell_means(kind) || (projected && sums))
               {
                 const CellGatherer<Basis> gatherer(*sums);

@@ -9,9 +9,10 @@
 namespace limber
 {
   /**
-   * The strain of an hourglass mode that resists bending as a beam does:
-   * the mate contracts by nu / (1 - nu) where the third axis is held, and
-   * by nu each in the trilinear mode (doc/theory/treatments.md).
+   * The factors of the assumed strain for an hourglass mode. With 'bending' it
+   * resists as a beam does: the transverse (mate) strain is -nu / (1 - nu) of
+   * that along the beam in plane strain, and -nu in both directions in the
+   * trilinear mode (doc/theory/treatments.md).
    */
   template <class Law>
   inline StrainTreatment

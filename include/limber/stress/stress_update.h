@@ -16,24 +16,24 @@
 namespace limber
 {
   /**
-   * What an implicit pressure has found for the cells of a body that is
-   * averaged over them. Points of liquids take the pressure; their J takes the
-   * mean divergence, with nothing of second order in the step, and this
-   * dilation. Those of solids have the pressure of their own volume, and the
-   * dilation is all that they take. Where tension is cut off, points of cells
-   * whose pressure is exactly zero have J = 1 afterwards.
+   * Results of the implicit pressure in the cells of a body that is averaged
+   * over them. Points of liquids get the pressure; their J follows the mean
+   * divergence, without terms of second order in the step, plus this dilation.
+   * Points of solids get the pressure from their own J, which follows the
+   * dilation alone. With tension cutoff, points in cells whose pressure is
+   * exactly zero get J = 1.
    */
   struct CellPressures
   {
     const double *pressure     = nullptr; // J p, Pa; null: that of the law
     const double *dilation     = nullptr; // over the step, without dimension
-    bool          is_whole     = false;   // with the divergence
+    bool          is_whole     = false;   // dilation includes the divergence
     bool          cuts_tension = false;
   };
 
 
 
-  /** How a change of volume is resisted at some J. */
+  /** Pressure and its stiffness at some J. */
   struct VolumetricResponse
   {
     double pressure;  // J p, Pa
@@ -47,44 +47,45 @@ namespace limber
   {
     double step     = 0;     // over which they are strained, s
     bool   remapped = false; // grad v of the re-mapped velocity, not the new
-    // Points are strained by the f by which they move: f = 1 + a + c a^2 with
-    // a = step grad v and this c (but with USAVG, which keeps the energy of
-    // bodies that turn instead of their size). A body that turns would grow by
-    // w^2 dt/2 of its radius per second otherwise. No matter in the initial
-    // frame, where F gets step grad_X v.
+    // Increment f = 1 + a + c a^2 of the deformation gradient, a = step grad v,
+    // with this c, consistent with the motion of points (except with USAVG,
+    // which conserves the energy of rotating bodies instead of their size).
+    // Otherwise a rotating body would grow by w^2 dt/2 of its radius per
+    // second. Not used in the initial frame, where F gets step grad_X v.
     double square = 0;
-    // Over which they then move with the new velocity, s; 0: they stay.
+    // Step over which they then move with the new velocity, s; 0: not at all.
     double move = 0;
-    // Whether they follow the velocity field as it is now on their way: by
-    // step (1 + a/2) v, of second order, so that what turns does not grow.
+    // Whether points follow the present velocity field along their path: by
+    // step (1 + a/2) v, second order, so that rotating bodies do not grow.
     bool curved = false;
-    // With Treatment::cell and functions of the corners: whether all places of
-    // a cell move apart as its mean divergence says, by the velocity without
-    // beyond_uniform_divergence().
+    // With Treatment::cell and linear functions: whether the velocity that
+    // moves points has the mean divergence everywhere in a cell, i.e. is
+    // without beyond_uniform_divergence().
     bool uniform_divergence = false;
-    // With this share of FLIP points take their velocities in the same sweep,
-    // where takes_velocity(); empty: they keep them.
+    // G2P in the same sweep with this FLIP share, if takes_velocity(); empty:
+    // no G2P.
     std::optional<double> flip_share;
-    // Give the nodes the forces of the new stress, where gives_force(); the
-    // stress is then not stored.
+    // P2G of the forces of the new stress, if gives_force(); the stress is then
+    // not stored.
     bool give_force = false;
-    // Share of the way that the volumetric variable goes to the mean of the
-    // cell in this step: 0 keeps the history, 1 replaces it.
+    // Share by which the volumetric variable is relaxed to the mean of the cell
+    // in this step: 0 keeps the history, 1 replaces it.
     double relaxation = 0;
-    // Per cell, what that variable gets besides; null: nothing.
+    // Per cell, change of that variable (checkerboard control); null: none
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
-    // By cell, with Treatment::cell: the dilation of a liquid over the mean
+    // By cell, with Treatment::cell: dilation of a liquid over the mean
     // divergence of the cell (LiquidMeans); null: one
     const double *volume_shares = nullptr;
     // Of an implicit pressure, with Treatment::cell; null: there is none
     const CellPressures *implicit = nullptr;
-    // The divergence, likewise projected (GiveToGrid::projected_pressure)
+    // Divergence projected on nodes, as GiveToGrid::projected_pressure
     const double *projected_divergence = nullptr;
   };
 
 
 
+  /** Results of a sweep that strains points. */
   struct StressSummary
   {
     double wave_speed_squared = 0; // the largest, m^2/s^2
@@ -92,14 +93,14 @@ namespace limber
     double history            = 0; // removed with history or tension, J
     double plastic            = 0; // work on plastic strain, J
     double displacement       = 0; // the largest over the edge of its cell
-    // where points take their velocities
+    // if the sweep does G2P:
     double speed_squared = 0; // the largest, m^2/s^2
     double removed       = 0; // kinetic energy that FLIP would have kept, J
   };
 
 
 
-  /** Extremes and sums of a body that statistics ask for now and then. */
+  /** Extremes and sums of a body for statistics. */
   struct StateSummary
   {
     double strain_energy   = 0; // J
@@ -110,9 +111,9 @@ namespace limber
 
 
   /**
-   * The sweep over the points of a body that turns the motion of the grid
-   * into strain, averages it where the body is projected, and calls the law.
-   * The type of the law is erased here, once per body and step.
+   * The sweep over the points of a body that computes strain increments from
+   * the grid velocity, averages them as the treatment says, and calls the law.
+   * Type erasure of the law: one virtual call per body and step.
    */
   template <int dim>
   class StressUpdate
@@ -127,29 +128,30 @@ namespace limber
            const StressSweep    &what) const = 0;
 
     /**
-     * Add to the next records of the cells (DeviatorSums) the mass of the
-     * points and their deviatoric strain times mass. For laws that keep one.
+     * Add mass and mass times deviatoric strain of the points to the next
+     * records of the cells (DeviatorSums). Only for laws that keep such a
+     * strain.
      */
     virtual void
     sum_deviators(const PointView<dim> &points,
                   const CellSums<dim>  &sums) const = 0;
 
     /**
-     * Let the components that the treatment averages go @p share of the way
-     * to the mean of the cell; returns the energy that this removes, J.
+     * Relax the components that the treatment averages by @p share to the mean
+     * of the cell; returns the energy that this removes, J.
      */
     virtual double
     relax_deviators(const PointView<dim> &points,
                     const double         *sums,
                     double                share) const = 0;
 
-    /** How the strain, and with it the stress, is averaged over cells. */
+    /** The averages of strain and stress over cells. */
     virtual const StrainTreatment &
     treatment() const = 0;
 
     /**
-     * Whether points can take their velocities in the same sweep, which spares
-     * one where each looks its nodes up.
+     * Whether G2P can be done in the same sweep, which saves one for kernels
+     * whose points look their nodes up one by one.
      */
     virtual bool
     takes_velocity() const
@@ -157,7 +159,7 @@ namespace limber
       return false;
     }
 
-    /** Whether it gives the nodes the internal forces (initial frame). */
+    /** Whether it does P2G of the internal forces as well (initial frame). */
     virtual bool
     gives_force() const
     {
@@ -173,34 +175,34 @@ namespace limber
     wave_speed_squared(const PointView<dim> &points) const = 0;
 
     /**
-     * Of the volumetric part of the law, at a value of its volumetric variable
-     * (J or, where that is the history, the pressure itself); for liquids and
-     * elastic solids.
+     * Pressure and stiffness of the volumetric part of the law at a value of
+     * its volumetric variable (J or, if that is the history, the pressure); for
+     * liquids and elastic solids.
      */
     virtual VolumetricResponse
     volumetric_response(double variable) const = 0;
 
     /**
-     * Volume of a point that starts so over its volume without stress, as its
-     * mass counts it: one where strain is small.
+     * Volume of a point in this initial state over its stress-free volume, from
+     * which its mass follows: one at small strain.
      */
     virtual double
     volume_ratio_at(const PointStart<dim> &start) const = 0;
 
-    /** Let point p start so; false where the law does not admit it. */
+    /** Set the initial state of point p; false if the law does not admit it. */
     virtual bool
     initialise(const PointView<dim>  &points,
                std::size_t            p,
                const PointStart<dim> &start) const = 0;
 
-    /** J at all points, written to an array of their number. */
+    /** Write J of all points to an array. */
     virtual void
     volume_ratio(const PointView<dim> &points, double *volume_ratio) const = 0;
 
     /**
-     * How much wider the material at point p is along a unit vector, between
-     * surfaces across it, than without stress. What has flowed plastically
-     * tells its elastic part.
+     * The stretch of the material at point p along a unit vector, relative to
+     * the stress-free state: the distance of material surfaces normal to it.
+     * Only the elastic part if it has yielded.
      */
     virtual double
     stretch_along(const PointView<dim>          &points,
@@ -209,7 +211,7 @@ namespace limber
 
     virtual unsigned int
     n_history() const = 0;
-    /** Where the variables that have names begin in the history. */
+    /** Index of the first named variable in the history. */
     virtual unsigned int
     first_variable() const = 0;
     virtual bool
@@ -231,10 +233,9 @@ namespace limber
 
 
   /**
-   * The sweep for the law of that name; @p values in the order of its
-   * entries. In the initial frame the law is elastic, the kernel linear and
-   * the treatment 'none', 'cell' or 'assumed_strain'; the last is for linear
-   * kernels alone.
+   * The StressUpdate for the law of that name; @p values in the order of its
+   * entries. In the initial frame the law is a solid's, and the treatment
+   * 'none', 'cell' or, for linear kernels only, 'assumed_strain'.
    */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>

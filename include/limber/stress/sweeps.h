@@ -9,7 +9,7 @@
 
 namespace limber
 {
-  /** The sweeps of all laws, each basis in a translation unit of its own. */
+  /** The sweeps of all laws, each basis in its own translation unit. */
   template <int dim>
   std::unique_ptr<const StressUpdate<dim>>
   make_linear_sweep(const AnyLaw          &law,

@@ -12,9 +12,10 @@
 namespace limber
 {
   /**
-   * Strains the points of a cell by the displacements of its nodes and finds
-   * their states, those of points left as they are (TrialStress). What is by
-   * growth is by that of the mean volume where this acts, else by the own.
+   * Strains the points of a cell by trial displacements of its nodes and
+   * computes their states, without changing the points (TrialStress). The
+   * growth of the volume is the mean of the cell with Treatment::cell, else
+   * that of the point.
    */
   template <class Basis, class Law>
   class TrialStrain
@@ -38,7 +39,7 @@ namespace limber
       , treatment(treatment)
     {}
 
-    /** Kinematics and states; false where a point is turned inside out. */
+    /** Kinematics and states; false if a point is inverted. */
     bool
     operator()(const PointView<dim> &points,
                const GridView<dim>  &grid,
@@ -94,8 +95,8 @@ namespace limber
     }
 
     /**
-     * Of the volumetric energy, by the growth that acts, per volume at the
-     * start, Pa: J p = - J dU/dJ.
+     * Derivative of the volumetric energy by the growth that acts, per initial
+     * volume, Pa: J p = - J dU/dJ.
      */
     static double
     slope(const Motion &motion, const double growth)
@@ -103,7 +104,7 @@ namespace limber
       return finite ? -motion.state.pressure / growth : -motion.state.pressure;
     }
 
-    /** Its derivative, Pa; zero where a law flows, whose rates tell it. */
+    /** Its derivative, Pa; zero for a plastic law, see FlowRates. */
     double
     curvature(const Motion &motion, const double growth) const
     {
@@ -117,7 +118,9 @@ namespace limber
         }
     }
 
-    /** Of the nodes of its cell, where the forces of a point act. */
+    /**
+     * The functions of the nodes of its cell, where the forces of a point act.
+     */
     static BasisFunctions<Basis>
     functions_at(const PointView<dim> &points,
                  const GridView<dim>  &grid,
@@ -131,7 +134,7 @@ namespace limber
     const bool                    mean_volume, assumes, initial;
 
   private:
-    // Each point is deformed as its cell lets it; false as above.
+    // Apply the assumed strain; false as above.
     bool
     assume(const PointView<dim> &points,
            const GridView<dim>  &grid,
@@ -171,7 +174,7 @@ namespace limber
       return true;
     }
 
-    /** Whether F is that since the initial frame, but states follow steps. */
+    /** Whether F is relative to the initial frame, but states follow steps. */
     bool
     follows_steps() const
     {
@@ -189,7 +192,7 @@ namespace limber
       return F;
     }
 
-    // f, of F and where states follow steps the one before, and its growth;
+    // Set f and its growth from F and, if states follow steps, the F before;
     // false as above.
     bool
     set_further(const Matrix &before, Motion &motion) const

@@ -16,11 +16,11 @@
 namespace limber
 {
   /**
-   * How the points of a body in a cell resist a displacement of its nodes.
-   * Degrees of freedom node by node, in the order of the basis: component d of
-   * node i is i * dim + d. Where volumes are averaged, the tangent is that at a
-   * given mean growth, and the derivative of the force has the term of rank one
-   * besides
+   * Force and stiffness of the points of a body in a cell for displacements of
+   * its nodes. Degrees of freedom node by node, in the order of the basis:
+   * component d of node i is i * dim + d. With averaged volumes the tangent is
+   * that at constant mean growth, and the derivative of the force has the rank
+   * one term besides
    *
    *   volume_stiffness * volume_row volume_row^T,
    *
@@ -43,7 +43,7 @@ namespace limber
         std::fill(values->begin(), values->end(), 0.);
     }
 
-    /** Put that much of the volume stiffness into the tangent. */
+    /** Add that much of the rank one volume stiffness to the tangent. */
     void
     add_volume_stiffness(const double stiffness)
     {
@@ -53,7 +53,7 @@ namespace limber
     }
 
     const unsigned int  n;                    // degrees of freedom
-    double              energy = 0;           // of strain, J
+    double              energy = 0;           // strain energy, J
     std::vector<double> force;                // derivative of the energy, N
     std::vector<double> tangent;              // of the force, row by row, N/m
     std::vector<double> volume_row;           // of the mean growth, 1/m
@@ -62,32 +62,31 @@ namespace limber
 
 
 
-  /** What points tell of a displacement that they have taken. */
+  /** Results of an accepted displacement. */
   struct AcceptedMotion
   {
-    double longest_way  = 0; // over the edge of its cell
+    double longest_way  = 0; // displacement over cell edge
     double plastic_work = 0; // J
   };
 
 
 
   /**
-   * The stress at the end of a step as a function of the displacements of the
-   * nodes in it, for solids; in the frame of the initial configuration with
-   * linear functions or quadratic splines, in the current one with linear
-   * functions. Trials leave the points as they are; one of them is then
-   * accepted. Laws that flow return to their yield surface in each trial, from
-   * the state at the start of the step, and count plastic work as energy.
+   * The stress at the end of a step as a function of the nodal displacements in
+   * it, for implicit and quasi-static steps of solids; in the initial frame
+   * with linear functions or quadratic splines, in the current one with linear
+   * functions. Trials do not change the points; one of them is then accepted.
+   * Plastic laws do the return mapping in each trial, from the state at the
+   * start of the step, and count plastic work as energy.
    *
-   * In the frame of the initial configuration the functions are those of the
-   * initial places and F grows by the gradient of the displacement; in the
-   * current one they are those of the places at the beginning of the step, and
-   * what follows is deformed further by f = 1 + grad u. With
-   * Treatment::cell the volume of all points in a cell grows by the mean of
-   * det f (current frame) or as the mean of det F does (initial frame),
-   * weighted by initial volume, in energy, force and tangent alike, so that the
-   * tangent is symmetric (doc/theory/implicit_steps.md). With
-   * Treatment::assumed_strain f or F is the assumed one of
+   * In the initial frame shape functions are those of the reference positions
+   * and F grows by the displacement gradient; in the current one they are those
+   * of the positions at the start of the step, and the deformation of the step
+   * is f = 1 + grad u. With Treatment::cell the volume of all points of a cell
+   * grows by the mean of det f (current frame) or as the mean of det F does
+   * (initial frame), weighted by initial volume, in energy, force and tangent
+   * alike, so that the tangent is symmetric (doc/theory/implicit_steps.md).
+   * With Treatment::assumed_strain f or F is the assumed one of
    * assumed_deformation.h.
    */
   template <int dim>
@@ -99,16 +98,16 @@ namespace limber
     using Work = std::function<void(std::uint32_t cell, CellResponse &)>;
 
     /**
-     * Call @p work for each occupied cell, with the tangent on request. All
-     * points of a cell must follow each other in @p points. @p displacement: by
-     * number of a node and component, m. False where a point is turned inside
-     * out; not all cells have been called for then.
+     * Call @p work for each occupied cell, with the tangent if requested. All
+     * points of a cell must be consecutive in @p points. @p displacement is by
+     * node number and component, m. Returns false if a point is inverted; then
+     * not all cells have been called.
      *
-     * With @p former displacements, those of the iterate before, the stress in
-     * the tangent is the one that they and their linearisation lead to, instead
-     * of the one at @p displacement: where thin bodies turn the two differ by
-     * much, and Newton's method takes fewer iterations (mixed integration
-     * points: Magisano, Leonetti and Garcea, Int. J. Numer. Methods Eng. 2017).
+     * With @p former displacements, those of the previous iterate, the stress
+     * in the tangent is that of their linearisation, instead of that at @p
+     * displacement: where slender bodies rotate the two differ much, and
+     * Newton's method takes fewer iterations (mixed integration points:
+     * Magisano, Leonetti and Garcea, Int. J. Numer. Methods Eng. 2017).
      */
     virtual bool
     respond(const PointView<dim> &points,
@@ -119,8 +118,8 @@ namespace limber
             const Work           &work) const = 0;
 
     /**
-     * Strain the points by a displacement at which they have responded, and
-     * move them.
+     * Accept a displacement for which respond() succeeded: update states and
+     * positions of the points.
      */
     virtual AcceptedMotion
     accept(const PointView<dim> &points,
@@ -131,7 +130,7 @@ namespace limber
     virtual double
     young_modulus() const = 0;
 
-    /** Where the mean volume of the points in a cell acts: K / G at rest. */
+    /** K / G at rest if the mean volume of the cell acts. */
     virtual double
     bulk_over_shear() const = 0;
 
@@ -142,10 +141,10 @@ namespace limber
 
 
   /**
-   * For the law of that name, of a solid; @p values in the order of its
-   * entries, the treatment 'none', 'cell' or 'assumed_strain'; @p response
-   * counts with the last, which is for linear functions alone. The grid has to
-   * have the functions of @p kernel, 'linear' or 'quadratic'.
+   * For the law of that name, a solid's; @p values in the order of its entries,
+   * the treatment 'none', 'cell' or, for linear functions only,
+   * 'assumed_strain', to which @p response applies. The grid must have the
+   * functions of @p kernel, 'linear' or 'quadratic'.
    */
   template <int dim>
   std::unique_ptr<const TrialStress<dim>>

@@ -11,11 +11,11 @@
 namespace limber
 {
   /**
-   * The second derivative of the energy of a cell (Simo and Hughes,
-   * Computational Inelasticity, 7.1 and 9.2): material part, stress on the
-   * change of the gradients, and the curvature of the volumetric energy. Where
-   * flow couples pressure and shear, the deviator follows the mean volume, and
-   * the pressure of the cell the strains of its points.
+   * The algorithmic tangent of a cell (Simo and Hughes, Computational
+   * Inelasticity, 7.1 and 9.2): material part, geometric part, and curvature of
+   * the volumetric energy. If plastic flow couples pressure and shear, the
+   * deviator depends on the mean volume, and the pressure of the cell on the
+   * strains of its points.
    */
   template <class Basis, class Law>
   class TrialTangent
@@ -28,8 +28,8 @@ namespace limber
     using Motion                  = TrialMotion<Basis, Law>;
     using Trial                   = CellTrial<Basis, Law>;
     using Rates                   = FlowRates<dim>;
-    // [d, e][k, l]: what the force along d by the gradient along e grows by
-    // with the displacement along k by the gradient along l
+    // [d, e][k, l]: derivative of the Kirchhoff stress (d, e), work conjugate
+    // to gradients, by the displacement gradient (k, l)
     using Moduli = decltype(Rates::deviator);
 
   public:
@@ -102,8 +102,8 @@ namespace limber
               mean_growth[k] * slope_of_cell[l] + by_growth[k] * mean_growth[l];
     }
 
-    // What the stress of a point grows by; an elastic law has no part of the
-    // deviator by growth and none of the slope by strain.
+    // Derivatives of the stress of a point; those of the deviator by growth and
+    // of the slope by strain vanish for an elastic law.
     Rates
     rates_of(const Motion &motion) const
     {
