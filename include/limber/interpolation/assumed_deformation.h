@@ -6,7 +6,7 @@
 #include <limber/materials/treatment.h>
 
 /**
- * @file The assumed strain in the frame of the initial configuration. The law
+ * @file The assumed strain in the initial frame (total Lagrangian). The law
  * gets, instead of the deformation gradient F of a point,
  *
  *   F_a = R A(R^T F),   <F> = R U the polar decomposition of the cell's mean,
@@ -15,9 +15,9 @@
  *   (A G)_de = <G_de>  (2d),  <G_de> + xi_f' <xi_f' G_de> / <xi_f'^2>  (3d),
  *
  * where brackets are means over the points of the cell, weighted by mass,
- * primes the deviations from them, and d, e, f different axes. So a cell that
- * bends has no shear, and contracts across as (e1, e2) say; the frame that
- * turns with the cell makes this independent of rotations of any size.
+ * primes the deviations from them, and d, e, f different axes. So a cell in
+ * bending has no (parasitic) shear, and its transverse strain is given by
+ * (e1, e2); the corotational frame R makes this objective for any rotation.
  *
  * A is its own transpose with masses as weights. Hence the energy sum V W(F_a)
  * has the derivative
@@ -26,14 +26,14 @@
  *   P^ = R^T P(F_a),  R^T dR = spin with axis 2 (tr(U) 1 - U)^-1 axis(R^T
  * d<F>),
  *
- * and these are the forces on the nodes. Without the second term, which is
- * quadratic in the strain, a body at rest would not keep its angular momentum.
- * With laws for small strain R = 1: it is the operator of strain_operator.h
- * but for the part of a bending cell across its plane in 3d.
+ * which gives the nodal forces. Without the second term, which is quadratic in
+ * the strain, a body at rest would not conserve its angular momentum. With laws
+ * for small strain R = 1: it is the operator of strain_operator.h except for
+ * the part of a bending cell normal to its plane in 3d.
  */
 namespace limber
 {
-  /** F_a of the points of a body in a cell, by packs or one by one. */
+  /** F_a of the points of a body in a cell, for packs or single points. */
   template <int dim, bool finite_strain, class Number = PointPack<dim>>
   class AssumedDeformation
   {
@@ -48,7 +48,9 @@ namespace limber
       set_zero(sums);
     }
 
-    /** Points with F at natural places xi; @p mass zero in idle lanes. */
+    /**
+     * Add points with F at natural coordinates xi; @p mass zero in idle lanes.
+     */
     __attribute__((always_inline)) void
     add(const Matrix &F, const std::array<Number, dim> &xi, const Number &mass)
     {
@@ -74,7 +76,7 @@ namespace limber
         }
     }
 
-    /** When all points of the cell have been added. */
+    /** After all points of the cell have been added: means and rotation. */
     __attribute__((always_inline)) void
     finish()
     {
@@ -95,7 +97,7 @@ namespace limber
           {
             const double variance =
               total[square_sum(f)] * inverse_mass - centroid[f] * centroid[f];
-            // points in one plane do not see a torsion of the cell
+            // points in one plane cannot resolve a torsion of the cell
             inverse_variance[f] = variance > 1e-12 ? 1 / variance : 0;
             for (int e = 0; e < dim; ++e)
               if (e != f)
@@ -138,14 +140,14 @@ namespace limber
         return G;
     }
 
-    /** F_a from F at natural places xi. */
+    /** F_a from F, at natural coordinates xi. */
     __attribute__((always_inline)) Matrix
     evaluate(const Matrix &F, const std::array<Number, dim> &xi) const
     {
       return turned(assume(turned_back(F), stretch, torsion, xi));
     }
 
-    /** A G, of which mean and torsion are known. */
+    /** A G, with known mean and torsion of G. */
     __attribute__((always_inline)) Matrix
     assume(const Matrix                  &G,
            const Mean                    &mean,
@@ -178,13 +180,13 @@ namespace limber
     std::array<double, dim> centroid;  // of the points
     Mean                    rotation;  // R, at finite strain
     Mean                    stretch;   // U = R^T <F>
-    // In 3d, of (R^T F)_de with the third coordinate
+    // In 3d: slope of (R^T F)_de along the third coordinate
     Mean                    torsion;
     std::array<double, dim> inverse_variance; // of the coordinates, 3d
 
   private:
-    // Where the sums over points are: masses, places, F; in 3d the squares of
-    // places and their products with F.
+    // Indices of the sums over points: masses, coordinates, F; in 3d squares of
+    // coordinates and their products with F.
     static constexpr int
     place_sum(const int d)
     {
@@ -223,7 +225,7 @@ namespace limber
 
 
 
-  /** The transpose: from the stress of the points to forces on the nodes. */
+  /** The transpose of A: from the stress of the points to nodal forces. */
   template <int dim, bool finite_strain>
   class AssumedDeformationStress
   {
@@ -242,7 +244,7 @@ namespace limber
       set_zero(torque);
     }
 
-    /** First, of all points: P^ and their volume (zero in idle lanes). */
+    /** First pass over all points: P^ and volume (zero in idle lanes). */
     __attribute__((always_inline)) void
     add_to_means(const Matrix                  &P,
                  const std::array<Number, dim> &xi,
@@ -281,7 +283,7 @@ namespace limber
           }
     }
 
-    /** Then, of all points again, with F. */
+    /** Second pass over all points, with F as well. */
     __attribute__((always_inline)) void
     add(const Matrix                  &P,
         const Matrix                  &F,
@@ -324,9 +326,9 @@ namespace limber
 
   private:
     /**
-     * What the turn of the frame adds to the stress that meets d<F>, Pa: -R S
-     * / sum(V) with S the spin whose axis is H^-1 torque, H = tr(U) 1 - U (in
-     * 2d tr(U)).
+     * Contribution of the rotation of the frame to the mean stress conjugate to
+     * d<F>, Pa: -R S / sum(V) with S the spin with axial vector H^-1 torque, H
+     * = tr(U) 1 - U (in 2d tr(U)).
      */
     Mean
     turn_of_frame() const
@@ -368,7 +370,7 @@ namespace limber
       return 1 + dim * dim + d * (dim - 1) + (e < d ? e : e - 1);
     }
 
-    // of V, V P^ and, in 3d, the moments of V P^_de along the third axis
+    // sums of V, V P^ and, in 3d, first moments of V P^_de along the third axis
     std::array<Number, dim == 2 ? 5 : 16> sums;
     double                                inverse_volume = 0;
     Mean                                  mean, torsion;

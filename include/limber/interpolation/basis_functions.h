@@ -43,9 +43,8 @@ namespace limber
 
 
   /**
-   * Values and gradients (1/m) of the functions of a cell at the natural
-   * coordinates xi, where both are wanted for one point at a time and the basis
-   * is known.
+   * Values and gradients (1/m) of the functions of a cell at natural
+   * coordinates xi, for single points and a basis known at compile time.
    */
   template <class Basis>
   struct BasisFunctions

@@ -13,9 +13,8 @@
 namespace limber
 {
   /**
-   * Packs of points are as wide as a cell has nodes, but no wider than the
-   * registers of the machine: comparisons of what needs two of them are done
-   * by GCC lane by lane.
+   * A pack of points: as wide as a cell has nodes, but no wider than a
+   * register, as GCC compares packs of two registers lane by lane.
    */
   template <int dim>
   using PointPack = Pack<(dim == 2 ? 4 : widest_pack)>;
@@ -23,10 +22,9 @@ namespace limber
 
 
   /**
-   * A few points of a batch as lanes of a pack. The last pack of a batch may
-   * not be @p full. The lanes beyond then repeat the first point, so that
-   * nothing can be computed in them that could not be computed in the others;
-   * what is stored there is what was there before.
+   * Some points of a batch as lanes of a pack. The last pack of a batch may not
+   * be @p full: idle lanes then repeat the first point on loading, so that they
+   * cannot produce exceptions of their own, and are not overwritten on storing.
    */
   template <int dim, bool full>
   class BatchLanes
@@ -61,7 +59,7 @@ namespace limber
                       array + first);
     }
 
-    /** The values of the points of the batch, zero in the other lanes. */
+    /** Values in active lanes, zero in idle ones. */
     Number
     only_active(const Number &values) const
     {
@@ -84,7 +82,7 @@ namespace limber
     static constexpr int width = pack_width<Number>;
 
     const std::size_t first; // point in the first lane
-    const int         n;     // how many lanes hold points of the batch
+    const int         n;     // number of active lanes
 
   private:
     const decltype(first_lanes<Number>(0)) active;
@@ -94,7 +92,7 @@ namespace limber
 
   namespace internal
   {
-    /** Out of the way of the loop over full packs. */
+    /** Out of line, to keep the loop over full packs small. */
     template <class Work, class Lanes>
     __attribute__((noinline)) void
     do_apart(const Work &work, const Lanes &lanes)
@@ -106,8 +104,8 @@ namespace limber
 
 
   /**
-   * Call @p work with the points of a batch, a pack at a time. Work is best
-   * always inlined: the call would cost as much as a point.
+   * Call @p work for the points of a batch, pack by pack. @p work should be
+   * always inlined: a call would cost as much as a point.
    */
   template <int dim, class Work>
   __attribute__((always_inline)) inline void
@@ -129,7 +127,7 @@ namespace limber
 
 
 
-  /** The deviator of J sigma of a pack of points of a solid, Pa. */
+  /** The Kirchhoff deviator of a pack of points of a solid, Pa. */
   template <int dim, class Lanes>
   __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
   stress_deviator(const PointView<dim> &points, const Lanes &lanes)
@@ -148,14 +146,14 @@ namespace limber
   struct MovedPack
   {
     std::array<PointPack<dim>, dim> xi; // natural coordinates in the old cell
-    PointPack<dim>                  displacement; // largest over the edge
-    bool                            inside;       // all of them, still
+    PointPack<dim>                  displacement; // max. shift over edge
+    bool                            inside;       // all are still in the cell
   };
 
 
 
   /**
-   * Move the points of a pack by @p shift (m), and find the cells of those
+   * Move the points of a pack by @p shift (m), and locate the cells of those
    * that have left @p cell.
    */
   template <int dim, class Lanes>
@@ -190,8 +188,9 @@ namespace limber
 
 
   /**
-   * Monomial coefficients of some components of the nodal records of a cell:
-   * @p n_components slots from @p first on.
+   * Monomial coefficients of @p n_components slots of the nodal records of a
+   * cell, from slot @p first on; computed once per batch, for evaluation at
+   * many points.
    */
   template <class Basis, unsigned int first, unsigned int n_components>
   class NodalCoefficients
@@ -200,7 +199,7 @@ namespace limber
     using Window             = RecordWindow<dim, first, n_components>;
     static constexpr unsigned int width = Window::width;
     static constexpr unsigned int start = Window::start;
-    // What does not fit into a register goes one after the other.
+    // Records wider than a register are transformed in parts.
     using Part =
       std::conditional_t<width <= widest_pack, typename Window::Lanes, Pack<4>>;
 
@@ -213,7 +212,7 @@ namespace limber
         transform(grid, Basis::nodes_of(grid, cell), lane);
     }
 
-    /** Coefficients of one component, counted from the first slot. */
+    /** Coefficients of one component, counted from slot @p first. */
     auto
     component(const unsigned int c) const
     {
@@ -222,11 +221,11 @@ namespace limber
       };
     }
 
-    /** As many components as there are directions; refers to its object. */
+    /** A vector field, as coefficients; refers to its owner. */
     class VectorField
     {
     public:
-      /** Component d is in lane first_lane + d; other lanes mean nothing. */
+      /** Component d is in lane first_lane + d; other lanes are undefined. */
       using Components                = Pack<dim == 2 ? 2 : 4>;
       static constexpr int first_lane = dim == 3 && first > start ? 1 : 0;
 
@@ -247,12 +246,12 @@ namespace limber
       }
 
     private:
-      // Coefficient 0 of component 0. As an address, for which of two fields
-      // it is may be known at run time only.
+      // Coefficient 0 of component 0; a pointer, as which of two fields it is
+      // may be known at run time only.
       const double *values;
     };
 
-    /** From that component on. */
+    /** The vector field whose first component is that one. */
     VectorField
     field(const unsigned int begin) const
     {
@@ -260,7 +259,7 @@ namespace limber
     }
 
   private:
-    /** The lanes of a part from @p lane on. */
+    /** Transform the lanes of one part, from @p lane on. */
     template <class Nodes>
     __attribute__((always_inline)) void
     transform(const GridView<dim> &grid,
@@ -276,7 +275,7 @@ namespace limber
       {
         store(value, &coefficients[k * width + lane]);
       };
-      // With 27 nodes all at once is faster even where some are spilled.
+      // 27 nodes at once are faster even if some registers are spilled.
       if constexpr (Basis::n_nodes > 32)
         Basis::template to_monomials_by_planes<Part>(
           nodes,
@@ -298,8 +297,8 @@ namespace limber
         }
     }
 
-    // Rows within lines of the cache: what has just been stored across two of
-    // them cannot be loaded before it is there.
+    // Rows must not straddle cache lines: loads across two lines right after
+    // the store would stall (no store forwarding).
     alignas(64) std::array<double, width * Basis::n_nodes> coefficients;
   };
 } // namespace limber

@@ -7,10 +7,11 @@
 namespace limber
 {
   /**
-   * The block of cells that the domains of the points of a pack reach into,
-   * where all cells are alike: points are in one cell and no domain is longer
-   * than that, so that a block has up to three cells along a direction, of
-   * which each domain sees two at most. At least two, as for the sake of sides.
+   * The block of cells that the domains of the points of a pack (GIMP, CPDI)
+   * overlap, on a uniform lattice: the points are in one cell and no domain is
+   * longer than a cell, so that a block has up to three cells along a
+   * direction, of which each domain sees at most two. Blocks have at least two
+   * cells, for domains that reach beyond a side of the grid.
    */
   template <int dim>
   class BlockNodes
@@ -19,13 +20,13 @@ namespace limber
     using Number                  = PointPack<dim>;
     using Vector                  = std::array<Number, dim>;
     static constexpr int n_points = pack_width<Number>;
-    static constexpr int longest  = 4; // nodes along a direction
-    static constexpr int n_nodes  = dim == 2 ? 16 : 64; // and in all
+    static constexpr int longest  = 4; // max. nodes along a direction
+    static constexpr int n_nodes  = dim == 2 ? 16 : 64; // max. in all
 
     /**
-     * Find the block of points that are in @p cell, at the natural coordinates
-     * @p xi; nothing of their domains is farther than @p half, of 0.5 at most,
-     * from them. False if there is none.
+     * Find the block for points in @p cell at natural coordinates @p xi, whose
+     * domains extend at most @p half <= 0.5 (in cells) from them. False if
+     * there is none.
      */
     bool
     find(const GridView<dim> &grid,
@@ -33,8 +34,7 @@ namespace limber
          const Vector        &xi,
          const Vector        &half);
 
-    /** Call work(i, record) for each node: its number, and where its record is.
-     */
+    /** Call work(i, record) for each node: its number and its record offset. */
     template <class Work>
     __attribute__((always_inline)) void
     for_nodes(const Work &work) const
@@ -53,17 +53,17 @@ namespace limber
     }
 
     std::array<int, 3> n; // nodes along each direction
-    // Where the cell of the points begins in the block: 0, 1
+    // First node of the cell of the points in the block: 0 or 1
     std::array<double, dim> cell_begin;
-    // Where the two cells that a point sees begin, likewise
+    // First of the two cells that each point sees
     Vector start;
-    // Whether a domain reaches beyond a side of the grid there
+    // Whether a domain extends beyond a side of the grid, per direction
     std::array<bool, dim> reaches_beyond;
-    // of the nodes, the first direction running fastest, in rows of `longest`
+    // record offsets, first direction fastest, rows of length `longest`
     std::array<std::uint32_t, n_nodes> records;
 
   private:
-    /** Place of the first cell in the lattice of cells of one size. */
+    /** Index of the first cell in the lattice of cells of one size. */
     using Place = std::array<std::int64_t, 3>;
 
     bool

@@ -7,12 +7,12 @@
 namespace limber
 {
   /**
-   * The functions of the nodes of a block on boxes along the axes (GIMP;
-   * convected.h), points as lanes: for each direction the means over the box of
-   * 1 - x, 1 - |x - 1| and x - 1, or zero, and half their change from one end
-   * to the other. A function is a product of means, and its change along an
-   * axis has the change along that one in place of a mean. Beyond a side of the
-   * grid the first and the last go on.
+   * GIMP functions of the nodes of a block on axis-parallel boxes
+   * (domain_shape.h), points as lanes: for each direction the mean over the box
+   * of 1 - x, 1 - |x - 1| and x - 1, or zero, and half the difference of that
+   * function between the ends of the box. N_i is a product of means; for its
+   * change along an axis that factor is replaced by the half difference. Beyond
+   * a side of the grid the first and the last function are continued linearly.
    */
   template <int dim>
   class BoxFunctions : public MeanFunctions<dim>
@@ -22,17 +22,17 @@ namespace limber
     using Number = typename Block::Number;
     using Vector = typename Block::Vector;
 
-    /** On boxes around @p xi (BlockNodes::find) with the edges 2 @p half. */
+    /** For boxes around @p xi (BlockNodes::find) with the edges 2 @p half. */
     void
     set(const Block &block, const Vector &xi, const Vector &half);
 
-    /** All that take() and give() of MeanFunctions need. */
+    /** Prepare take() and give() of MeanFunctions. */
     void
     find_means(const Block &block);
 
     /**
-     * Of the vector field from @p slot on the value at the points, and half its
-     * change along each axis from one end of the box to the other.
+     * G2P of the vector field from @p slot on: its value at the points, and
+     * half its difference along each axis between the ends of the box.
      */
     void
     take_with_changes(const Block             &block,
@@ -42,9 +42,9 @@ namespace limber
                       std::array<Vector, dim> &change) const;
 
     /**
-     * The transpose: what points give with N_i, by slots of the window, and
-     * to the forces with its changes along the axes. With ForceWindow @p alike
-     * does not count.
+     * P2G, the transpose: add @p alike times N_i to the slots of the window,
+     * and @p along times the changes of N_i along the axes to the forces. With
+     * ForceWindow @p alike is not used.
      */
     template <class Window>
     void

@@ -7,10 +7,10 @@
 namespace limber
 {
   /**
-   * The means over the points of a body in a cell, weighted by mass, of the
-   * monomials in natural coordinates, in the order of the basis. In place of
-   * the last one, which no derivative of its functions needs, stands the mean
-   * of the volumetric variable.
+   * Mass-weighted means over the points of a body in a cell of the monomials in
+   * natural coordinates, in the order of the basis. The slot of the last one,
+   * which no derivative of its functions needs, holds the mean of the
+   * volumetric variable.
    */
   template <class Basis>
   class CellMeans
@@ -19,7 +19,7 @@ namespace limber
     static constexpr int dim     = Basis::dim;
     static constexpr int n_nodes = Basis::n_nodes;
 
-    /** Not to be asked where nothing is projected and there are no sums. */
+    /** Without sums (nothing is averaged) no mean may be asked for. */
     CellMeans(const CellSums<dim> *const sums, const std::uint32_t cell)
       : record(sums ? sums->now + std::size_t(cell) * n_nodes : nullptr)
       , inverse_mass(sums ? 1 / record[CellSums<dim>::mass] : 0)
@@ -37,8 +37,10 @@ namespace limber
       return record[n_nodes - 1] * inverse_mass;
     }
 
-    /** The mean of the derivative with respect to natural coordinate d of a
-     * function with monomial coefficients c(k). */
+    /**
+     * The mean over the points of the derivative with respect to natural
+     * coordinate d of a function with monomial coefficients c(k).
+     */
     template <class Coefficients>
     double
     derivative(const Coefficients &c, const int d) const
@@ -52,7 +54,7 @@ namespace limber
       return c(stride(d)) + inverse_mass * sum;
     }
 
-    /** The same of all components of a vector field, as lanes, for each d. */
+    /** The same for all components of a vector field, as lanes, for each d. */
     template <class VectorField>
     auto
     derivatives_of(const VectorField &c) const
@@ -73,7 +75,7 @@ namespace limber
       return result;
     }
 
-    /** Lane k: the same of the linear monomial k, times a factor. */
+    /** The mean derivatives of all monomials (lane k), times a factor. */
     auto
     derivatives(const int d, const double factor) const
     {
@@ -82,7 +84,7 @@ namespace limber
              Basis::derivatives(load<Nodes>(record), d);
     }
 
-    /** The mean of the derivative in direction d of monomial k alone. */
+    /** The mean derivative of monomial k in direction d. */
     double
     derivative_of(const int k, const int d) const
     {
@@ -97,7 +99,7 @@ namespace limber
 
 
 
-  /** Adds points that have moved to the sums of the cells they are in now. */
+  /** Adds moved points to the sums (CellSums) of their new cells. */
   template <class Basis>
   class CellGatherer
   {
@@ -110,7 +112,7 @@ namespace limber
       : sums(sums)
     {}
 
-    /** The points of a pack, all in that cell at natural places xi. */
+    /** Add a pack of points, all in that cell, at natural coordinates xi. */
     __attribute__((always_inline)) void
     add(const std::uint32_t            cell,
         const std::array<Number, dim> &xi,
@@ -138,7 +140,7 @@ namespace limber
         record[k] = sum(added[k]) + (opened ? record[k] : 0);
     }
 
-    /** The points [begin, end), wherever they are now. */
+    /** Add the points [begin, end), each in its own cell. */
     __attribute__((noinline, cold)) void
     add_one_by_one(const PointView<dim> &points,
                    const GridView<dim>  &grid,
@@ -158,7 +160,7 @@ namespace limber
     }
 
   private:
-    /** What points add to the slots, each from one with a factor less. */
+    /** Contributions of points to the slots; each monomial from a lower one. */
     template <class T>
     __attribute__((always_inline)) static std::array<T, n_nodes>
     products(const std::array<T, dim> &xi, const T &mass, const T &volumetric)
@@ -175,7 +177,7 @@ namespace limber
       return result;
     }
 
-    /** The last of those in which a monomial has a power. */
+    /** The last direction in which a monomial has a power. */
     static constexpr int
     last_direction(const int k)
     {

@@ -18,9 +18,9 @@ namespace limber
     using Nodes = typename Linear<dim>::Nodes;
 
     /**
-     * The corners that are in one cell, with sums over them for its nodes:
-     * 2^-d sum_c N_i(x_c) and 2^-d sum_c s_ck N_i(x_c), or with the shares of
-     * the corners of a hexahedron.
+     * The corners of a domain that are in one cell, with sums over them for the
+     * nodes of that cell: 2^-d sum_c N_i(x_c) and 2^-d sum_c s_ck N_i(x_c), or
+     * with the weights of the corners of a hexahedron.
      */
     struct Piece
     {
@@ -29,7 +29,7 @@ namespace limber
       std::array<Nodes, dim> along;
     };
 
-    /** Of point p, which is in @p cell. */
+    /** The domain of point p, which is in @p cell. */
     __attribute__((always_inline)) ConvectedDomain(const PointView<dim> &points,
                                                    const GridView<dim>  &grid,
                                                    const std::uint32_t   cell,
@@ -58,9 +58,9 @@ namespace limber
     std::array<Piece, n_corners> pieces;
 
     /**
-     * N_i(x), over the number of corners; a place beyond the cell, in a side
-     * of the grid or by round-off, counts in its face. No weight is negative:
-     * nodes that get next to nothing get a positive mass.
+     * N_i(x) over the number of corners; a position outside the cell, beyond a
+     * side of the grid or by round-off, is clamped to its face. No weight is
+     * negative, so that even a tiny nodal mass is positive.
      */
     __attribute__((always_inline)) static Nodes
     weights(const CellGeometry<dim> &cell, const std::array<double, dim> &x)
@@ -88,7 +88,9 @@ namespace limber
         piece.along[k] += this->share(c, k) * weight;
     }
 
-    /** The part of a box in each of the cells that its corners are in. */
+    /**
+     * GIMP: integrate over the part of the box in each cell that it overlaps.
+     */
     __attribute__((noinline, cold)) void
     set_parts_of_box(const GridView<dim> &grid)
     {
@@ -119,7 +121,7 @@ namespace limber
                                             (x - cell.origin[d]) *
                                               cell.inverse_edge[d]);
               };
-              upper             = std::max(lower, upper); // but for round-off
+              upper             = std::max(lower, upper); // for round-off
               const Nodes first = at(lower), last = at(upper);
               const Nodes mean = (upper - lower) / (2 * this->extent[d]) *
                                  larger(0.5 * (first + last), Nodes{});

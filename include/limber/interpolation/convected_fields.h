@@ -9,7 +9,7 @@ namespace limber
 {
   /**
    * Fields of the grid on the domain of a point: slots of the nodal records as
-   * lanes, as a window (record_window.h) shows them.
+   * lanes, as in a window (record_window.h).
    */
   template <int dim, class Window>
   struct FieldsOnDomain
@@ -38,21 +38,21 @@ namespace limber
         }
     }
 
-    /** u of the field in that slot. */
+    /** Mean u of the field in that slot. */
     double
     value(const unsigned int slot) const
     {
       return mean[Window::lane_of(slot)];
     }
 
-    /** u,k: half of its change along edge k, from one end to the other. */
+    /** u,k: half of its difference between the ends of edge k. */
     double
     change(const unsigned int slot, const int k) const
     {
       return along[k][Window::lane_of(slot)];
     }
 
-    /** Derivative along axis e of the field in that slot, with R^-1. */
+    /** Derivative along axis e of the field in that slot, with given R^-1. */
     double
     slope(const SmallMatrix<dim, double> &inverse,
           const unsigned int              slot,
@@ -71,7 +71,7 @@ namespace limber
 
 
 
-  /** Have the cells that corners of these points have entered take part. */
+  /** Mark the cells that corners of these points have entered as occupied. */
   template <int dim>
   __attribute__((noinline)) void
   enter_corners_one_by_one(const PointView<dim> &points,

@@ -5,12 +5,12 @@
 #include <limber/interpolation/convected_pack.h>
 
 /**
- * @file How points with convected domains take velocities from the grid, move
- * and have their domains follow, a pack at a time.
+ * @file G2P of velocities, motion, and convection of the domains of points with
+ * domains, a pack at a time.
  */
 namespace limber
 {
-  /** What is found while points take their velocities, by lanes. */
+  /** Results of G2P, by lanes. */
   template <int dim>
   struct VelocityFindings
   {
@@ -21,8 +21,8 @@ namespace limber
 
 
   /**
-   * New velocities of a pack, v = alpha (v + sum N dv) + (1 - alpha) sum N v
-   * with alpha = @p flip_share, from the means of dv and v (m/s).
+   * G2P for a pack (FLIP/PIC blend): v = alpha (v + sum N dv) + (1 - alpha) sum
+   * N v with alpha = @p flip_share, from the means of dv and v (m/s).
    */
   template <int dim, class Lanes>
   __attribute__((always_inline)) inline void
@@ -52,7 +52,7 @@ namespace limber
 
 
 
-  /** The velocity of the grid at a place that counts in a cell, m/s. */
+  /** The grid velocity at a position that is clamped to a cell, m/s. */
   template <int dim>
   inline std::array<double, dim>
   moving_velocity(const GridView<dim>           &grid,
@@ -72,10 +72,10 @@ namespace limber
 
 
   /**
-   * Carry the corners of the domain of a point along over @p step (s), each
-   * with the velocity of the grid there, and return how far its centroid moves,
-   * m. A domain that does not count as it is (convected.h) is carried along as
-   * one with edges, by the mean gradient.
+   * CPDI2: move the corners of the domain of a point over @p step (s), each
+   * with the grid velocity there, and return the displacement of the centroid,
+   * m. A restricted domain (domain_shape.h) is convected by the mean gradient
+   * instead, as in CPDI.
    */
   template <int dim>
   __attribute__((noinline)) std::array<double, dim>
@@ -151,7 +151,7 @@ namespace limber
 
 
 
-  /** The same for a pack, one by one: corners are in any cells. */
+  /** The same for a pack, one by one: corners in any cells. */
   template <int dim>
   __attribute__((noinline, cold)) std::array<PointPack<dim>, dim>
   carry_corners_one_by_one(const ConvectedPack<dim> &domains,
@@ -174,8 +174,8 @@ namespace limber
 
 
   /**
-   * The same for a pack with the @p velocity of the grid, whose means over
-   * domains move those that turn inside out.
+   * The same for a pack, with corner velocities in @p velocity; domains that
+   * become inverted move by the mean velocity.
    */
   template <int dim, class Lanes>
   __attribute__((noinline)) std::array<PointPack<dim>, dim>
@@ -209,8 +209,8 @@ namespace limber
 
 
   /**
-   * Carry the domains of a pack along: R += @p step grad v R, step in s, with
-   * R^-1. Boxes of fixed size stay.
+   * Convect the domains of a pack (CPDI): R += @p step grad v R, step in s,
+   * with given R^-1. Boxes of fixed size do not change.
    */
   template <int dim, class Lanes>
   __attribute__((always_inline)) inline void
@@ -224,7 +224,7 @@ namespace limber
     const PointView<dim> &points = domains.points;
     if (points.domain_form == DomainForm::box)
       return;
-    // As they are, which may be more than what counts.
+    // R as stored, which may be larger than the restricted one.
     SmallMatrix<dim, Number> R, slope;
 #pragma GCC unroll 3
     for (int d = 0; d < dim; ++d)
@@ -249,7 +249,7 @@ namespace limber
 
 
 
-  /** Whether all cells around a cell take part. */
+  /** Whether all cells around a cell are occupied. */
   template <int dim>
   inline bool
   is_surrounded(const GridView<dim> &grid, const std::uint32_t cell)
@@ -283,7 +283,7 @@ namespace limber
 
 
   /**
-   * Have the cells take part that corners of the points of a pack are in now.
+   * Mark the cells as occupied that corners of the points of a pack are in now.
    * The points were in @p cell.
    */
   template <int dim, class Lanes>
@@ -315,7 +315,7 @@ namespace limber
           {
             for (unsigned int t = 0; t < n_twists(dim); ++t)
               half += magnitude(load(points.domain[dim * (dim + t) + d]));
-            half *= 2.; // from the centroid, and at most so far from the middle
+            half *= 2.; // at most that far from the centroid
           }
         half *= geometry.inverse_edge[d];
         const Number xi =
@@ -332,9 +332,9 @@ namespace limber
 
 
   /**
-   * Move the points of a pack with the @p velocity of the grid over @p step
-   * (s), and have their domains follow, with R^-1. Returns the displacement
-   * over the edge of their cell.
+   * Move the points of a pack with the grid @p velocity over @p step (s), and
+   * update their domains, with given R^-1. Returns the displacement over the
+   * edge of their cell.
    */
   template <int dim, class Lanes>
   __attribute__((always_inline)) inline PointPack<dim>

@@ -15,7 +15,7 @@ namespace limber
     using Number = PointPack<dim>;
     using Vector = std::array<Number, dim>;
 
-    /** Derivative of component d along axis e, with R^-1. */
+    /** Derivative of component d along axis e, with given R^-1. */
     Number
     slope(const SmallMatrix<dim, Number> &inverse,
           const int                       d,
@@ -30,17 +30,17 @@ namespace limber
 
     Vector                       value;      // u
     std::array<Vector, dim>      change;     // u,k
-    std::array<Vector, 1 << dim> at_corners; // where there are; not of boxes
+    std::array<Vector, 1 << dim> at_corners; // hexahedra and CPDI, not boxes
   };
 
 
 
   /**
-   * The domains of the points of a pack (convected.h) and the functions of the
-   * nodes on them. Where all cells are alike, or those around, domains no
-   * longer than one lie in one block of cells: the functions of its nodes are
-   * computed with the points as lanes, for the same formula whichever cells
-   * the corners are in. A pack with other domains is done point by point.
+   * The domains of the points of a pack (domain_shape.h) and the functions of
+   * the nodes on them. Where cells are uniform, at least locally, and no domain
+   * is longer than a cell, all lie in one block of cells, and the functions of
+   * its nodes are computed with points as lanes, by the same formula whichever
+   * cells the corners are in. Other packs are done point by point.
    */
   template <int dim>
   class ConvectedPack
@@ -52,7 +52,7 @@ namespace limber
     static constexpr int n_points  = pack_width<Number>;
     static constexpr int n_corners = 1 << dim;
 
-    /** Of points that are in @p cell. */
+    /** For points that are in @p cell. */
     template <class Lanes>
     __attribute__((always_inline)) ConvectedPack(const PointView<dim> &points,
                                                  const GridView<dim>  &grid,
@@ -80,10 +80,10 @@ namespace limber
     const GridView<dim>  &grid;
     const std::uint32_t   cell;
 
-    // 1/m; of all cells, or where these have several sizes of that of the pack
+    // 1/m; of all cells or, on an adaptive grid, of the cell of the pack
     const std::array<double, dim> &inverse_edge;
 
-    /** R^-1, 1/m, of R as it counts. */
+    /** R^-1, 1/m, of the restricted R. */
     __attribute__((always_inline)) Matrix
     inverse() const
     {
@@ -110,7 +110,7 @@ namespace limber
       return result;
     }
 
-    /** Before take() and give(), which see nothing but means. */
+    /** Prepare take() and give(), which use means alone. */
     void
     find_means()
     {
@@ -120,7 +120,7 @@ namespace limber
                            at_corners.find_means(block);
     }
 
-    /** The fields in n slots of the nodal records from @p slot on, u. */
+    /** G2P of n slots of the nodal records from @p slot on: mean u. */
     template <int n_slots>
     std::array<Number, n_slots>
     take(const unsigned int slot) const
@@ -130,7 +130,7 @@ namespace limber
       return functions().template take<n_slots>(block, grid.nodes, slot);
     }
 
-    /** Add N_i times what points give, by slots of the window, to the nodes. */
+    /** P2G: add N_i times @p given, by slots of the window, to the nodes. */
     template <class Window>
     void
     give(const std::array<Number, Window::width> &given) const
@@ -140,7 +140,7 @@ namespace limber
       functions().template give<Window>(block, grid.nodes, given);
     }
 
-    /** The vector field from @p slot on, u and u,k. */
+    /** G2P of the vector field from @p slot on: u and u,k. */
     void
     take_field(const unsigned int slot, FieldOnPack<dim> &field) const
     {
@@ -153,8 +153,10 @@ namespace limber
       at_corners.combine(field.at_corners, field.value, field.change);
     }
 
-    /** Add N_i times @p given and, to the forces, the changes of N_i times
-     * @p along to the nodes. */
+    /**
+     * P2G: add N_i times @p given and, to the forces, the changes of N_i times
+     * @p along.
+     */
     template <class Window>
     void
     give_with_changes(const std::array<Number, Window::width> &given,
@@ -168,7 +170,7 @@ namespace limber
                              block, grid.nodes, given, along);
     }
 
-    /** Whether moved_corners() is there: hexahedra, all in a block. */
+    /** Whether moved_corners() is available: hexahedra, all in a block. */
     bool
     has_corners() const
     {
@@ -176,8 +178,8 @@ namespace limber
     }
 
     /**
-     * Where the corners of the hexahedra are, from their points (m), once they
-     * have moved for the time @p step (s) with the velocity @p field there.
+     * Corners of the hexahedra relative to their points (m), after moving for
+     * @p step (s) with the velocity @p field there.
      */
     std::array<Vector, n_corners>
     moved_corners(const FieldOnPack<dim> &field, const double step) const
@@ -199,7 +201,7 @@ namespace limber
       return at_corners;
     }
 
-    /** Convected domains; false if one is none for a block. */
+    /** CPDI domains; false if one does not fit into a block. */
     template <class Lanes>
     __attribute__((always_inline)) bool
     set_edges(const Vector &xi, const Lanes &lanes)
@@ -228,7 +230,7 @@ namespace limber
       return true;
     }
 
-    /** Hexahedra; out of the way of the others. */
+    /** CPDI2 domains; not inlined, being less frequent. */
     template <class Lanes>
     __attribute__((noinline)) bool
     set_hexahedra(const Vector &xi, const Lanes &lanes)
@@ -292,7 +294,7 @@ namespace limber
       return true;
     }
 
-    // One by one: seldom, and out of the way.
+    // Point by point: rare, and out of line.
 
     ConvectedDomain<dim>
     domain_of(const int p) const
@@ -369,13 +371,13 @@ namespace limber
 
     const std::size_t first;
     const int         n;
-    bool              fits; // every domain, in one block
+    bool              fits; // whether every domain is in one block
 
-    Matrix               edges; // R as it counts, in cells, where they fit
-    BlockNodes<dim>      block;
-    BoxFunctions<dim>    on_boxes;         // of one form of domains or ...
-    CornerFunctions<dim> at_corners;       // ... of the others
-    std::array<Vector, n_corners> offsets; // of corners of hexahedra, in cells
+    Matrix                        edges; // restricted R, in cells, if they fit
+    BlockNodes<dim>               block;
+    BoxFunctions<dim>             on_boxes;   // GIMP, or ...
+    CornerFunctions<dim>          at_corners; // ... CPDI, CPDI2
+    std::array<Vector, n_corners> offsets;    // corners of hexahedra, in cells
   };
 } // namespace limber
 

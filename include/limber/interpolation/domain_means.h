@@ -8,24 +8,25 @@
 #include <stdexcept>
 
 /**
- * @file What treatments average of a quantity q of points with domains
- * (convected.h): around nodes (nodal_means.h), or over the points of the cell,
+ * @file Averages of a quantity q of points with domains (domain_shape.h) for
+ * locking treatments: around nodes (nodal_means.h), or over the points of the
+ * cell,
  *
  *   <q> = sum m q / sum m.
  *
- * As with any stencil of a point's own, the mean of the divergence is formed
+ * As each point has its own stencil, the mean of the divergence is formed
  * from values at the points, in a sweep before the one that needs it. With
- * masses as weights it is symmetric, so that the mean of the pressure acts on
- * the gradients at the points: the exact transpose.
+ * masses as weights the average is symmetric, so that the averaged pressure
+ * acts on the gradients at the points: the exact transpose.
  */
 namespace limber
 {
-  /** What points of a cell give to its mean. */
+  /** Contributions of the points of a cell to its mean. */
   template <int dim>
   class CellMeanSums
   {
   public:
-    /** A point, wherever it is in the cell. */
+    /** Add a point, anywhere in the cell. */
     void
     add(const std::array<double, dim> &, const double mass, const double q)
     {
@@ -51,7 +52,7 @@ namespace limber
 
 
 
-  /** What points of a cell give to the means around its nodes. */
+  /** Contributions of the points of a cell to the means around its nodes. */
   template <int dim>
   class NodalMeanSums : public NodalSums<dim>
   {
@@ -67,7 +68,7 @@ namespace limber
 
 
 
-  /** Those that points with domains have; std::logic_error for the others. */
+  /** Throws std::logic_error if points with domains have no such treatment. */
   inline void
   check_treatment_of_domains(const Treatment kind)
   {
@@ -79,16 +80,16 @@ namespace limber
 
 
   /**
-   * The mean within a cell that a treatment asks for: none, over its points,
-   * or around its nodes. Which is asked once per batch, and whether there is
-   * one once per pack of convected domains, whose functions outweigh it by far:
-   * compiled for each treatment they took half as long again.
+   * The mean within a cell that a treatment needs: none, over its points, or
+   * around its nodes. The kind is a run-time choice, once per batch and pack,
+   * as the functions of domains outweigh it by far: compiled for each treatment
+   * they took half as long again to compile.
    */
   template <int dim>
   class DomainMean
   {
   public:
-    /** With the @p records of the means, which none needs. */
+    /** With the @p records of the means; not used by 'none'. */
     DomainMean(const Treatment          kind,
                const double *const      records,
                const CellGeometry<dim> &geometry,
@@ -107,7 +108,7 @@ namespace limber
           records[std::size_t(cell) * NodalMeanLayout::stride + value];
     }
 
-    /** Whether there is one; else points keep their own value. */
+    /** Whether there is a mean; otherwise points keep their own value. */
     bool
     is_averaged() const
     {
@@ -125,7 +126,7 @@ namespace limber
 
   private:
     const bool averaged;
-    // of the monomials
+    // of monomials
     std::array<double, Linear<dim>::n_nodes> coefficients{};
   };
 } // namespace limber

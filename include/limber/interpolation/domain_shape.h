@@ -13,22 +13,25 @@
 
 namespace limber
 {
-  /** Flatter domains than that share of the box around them do not count. */
+  /**
+   * Domains whose volume is less than that share of their bounding box are
+   * replaced by it.
+   */
   inline constexpr double flattest_domain = 1e-3;
 
 
 
-  /** Boxes count for no more than that many cells on either side. */
+  /** Boxes are restricted to that half edge, in cells. */
   inline constexpr double largest_half_box = 0.5;
 
-  /** Boxes that have shrunk to less count for that many cells. */
+  /** Lower limit of the half edge of boxes, in cells. */
   inline constexpr double smallest_half_box = 1e-6;
 
 
 
   /**
-   * Half an edge of the box of a point, or of a pack of points, along d, m;
-   * @p load gives what an array has for them.
+   * Half edge of the box of a point, or of a pack of points, along d, m; @p
+   * load reads an array for them.
    */
   template <int dim, class Load>
   __attribute__((always_inline)) inline auto
@@ -103,7 +106,7 @@ namespace limber
   public:
     static constexpr int n_corners = 1 << dim;
 
-    /** Of point p, which is in @p cell. */
+    /** The domain of point p, which is in @p cell. */
     __attribute__((always_inline)) DomainShape(const PointView<dim> &points,
                                                const GridView<dim>  &grid,
                                                const std::uint32_t   cell,
@@ -157,26 +160,26 @@ namespace limber
       return x;
     }
 
-    /** Its share in u; over the one of a parallelepiped, 2^-d. */
+    /** Weight of a corner in u, relative to that of a parallelepiped, 2^-d. */
     __attribute__((always_inline)) double
     share(const int c) const
     {
       return is_hexahedron ? n_corners * hexahedron.shares[c] : 1.;
     }
 
-    /** Its share in u,k, likewise. */
+    /** Weight of a corner in u,k, likewise. */
     __attribute__((always_inline)) double
     share(const int c, const int k) const
     {
       return is_hexahedron ? n_corners * hexahedron.along[k][c] : sign(c, k);
     }
 
-    /** The cell in which a place counts. */
+    /** The cell in which a position counts. */
     __attribute__((always_inline)) std::uint32_t
     cell_at(const GridView<dim> &grid, const std::array<double, dim> &x) const
     {
       const std::uint32_t cell = grid.bins.nearest_cell(x);
-      // by round-off where the ghost cells end
+      // by round-off at the end of the ghost cells
       return rarely(cell == invalid_cell) ? home : cell;
     }
 
@@ -197,11 +200,11 @@ namespace limber
 
     const std::uint32_t home;       // the cell of the point
     bool                is_at_home; // all corners are in it
-    // Each corner counts for itself; and where it is, not shortened.
+    // Whether corners are independent (CPDI2), and not restricted
     bool is_hexahedron = false, is_whole = false;
 
   protected:
-    std::array<double, dim> place, extent; // m; of the box around the domain
+    std::array<double, dim> place, extent; // m; extent of the bounding box
 
   private:
     __attribute__((always_inline)) void
@@ -226,8 +229,8 @@ namespace limber
     }
 
     /**
-     * Where cells have several sizes: those next to each other differ by a
-     * factor of two, so ends and middles of the edges meet the smallest one.
+     * On an adaptive grid: neighbouring cells differ by a factor of two (2:1
+     * balance), so the ends and middles of the edges find the smallest one.
      */
     __attribute__((noinline, cold)) void
     restrict_box(const GridView<dim> &grid)
@@ -307,7 +310,7 @@ namespace limber
           }
     }
 
-    /** Let R, and with it the box around it, count as the rules say. */
+    /** Restrict R, and its bounding box, by the rules above. */
     __attribute__((always_inline)) void
     restrict_edges(const CellGeometry<dim> &geometry)
     {
@@ -330,7 +333,7 @@ namespace limber
             edges[d][k] = d == k ? extent[d] : 0;
     }
 
-    SmallMatrix<dim, double> edges; // R as it counts, m
+    SmallMatrix<dim, double> edges; // restricted R, m
     Hexahedron<dim, double>  hexahedron;
   };
 } // namespace limber

@@ -8,22 +8,23 @@
 
 /**
  * @file The gradients of the dual domain material point method (Zhang, Ma and
- * Giguere, JCP 230 (2011) 6379): functions are linear, but a point takes
+ * Giguere, JCP 230 (2011) 6379): shape functions are linear, but the gradient
+ * at a point is
  *
  *   alpha(x) grad N_i(x) + (1 - alpha(x)) sum_j N_j(x) G_ij,
  *   G_ij = (1/V_j) int N_j grad N_i dV,   V_j = int N_j dV,
  *
- * so that gradients are continuous where alpha vanishes on the faces of cells.
- * G is never formed: the mean gradient around each node is summed up cell by
- * cell (add_mean_gradients()), and the stress that points give to nodes comes
- * back as forces by the transpose of that (add_forces_of_stress()).
+ * so that gradients are continuous, as alpha vanishes on the faces of cells.
+ * G is never formed: the mean gradient around each node is assembled cell by
+ * cell (add_mean_gradients()), and the stress that points map to nodes becomes
+ * forces by its transpose (add_forces_of_stress()).
  *
- * Cells count in the integrals by a weight (weight_of_cell()): where there is
+ * Cells enter the integrals with a weight (weight_of_cell()): where there is
  * no material, there is no velocity to take a gradient of.
  */
 namespace limber
 {
-  /** The record of the node behind lane i of a cell. */
+  /** The dual domain record of node i of a cell. */
   template <int dim>
   inline double *
   dual_domain_record(double *const            records,
@@ -37,10 +38,10 @@ namespace limber
 
 
   /**
-   * alpha at natural coordinates: the product over directions of
-   * 4 xi (1 - xi), one at the centre. It goes to zero with the distance from a
-   * face as fast as the mass of nodes behind it, so that no force of its own
-   * is large on a node that is hardly touched.
+   * alpha at natural coordinates: the product over directions of 4 xi (1 - xi),
+   * one at the centre. It vanishes with the distance from a face as fast as the
+   * mass of the nodes behind it, so that its force on a node with tiny mass is
+   * small as well.
    */
   template <int dim, class Number>
   __attribute__((always_inline)) inline Number
@@ -72,7 +73,7 @@ namespace limber
         volume /= cell.inverse_edge[d];
     }
 
-    /** Add to the volumes around the nodes. */
+    /** Add the volume to those of the nodes. */
     void
     add_volumes(double *const records) const
     {
@@ -82,8 +83,8 @@ namespace limber
     }
 
     /**
-     * Add int N_j grad v to the tensors of the nodes, v being the field in
-     * slots from @p first on of their records @p nodes (NodeLayout), m/s.
+     * Add int N_j grad v to the tensors of the nodes; v is the field in slots
+     * from @p first on of the records @p nodes (NodeLayout), m/s.
      */
     void
     add_mean_gradients(const double *const nodes,
@@ -107,8 +108,8 @@ namespace limber
     }
 
     /**
-     * The transpose: subtract from the forces of the nodes what their tensors
-     * do, volume times stress over the volume around the node.
+     * The transpose: subtract from the nodal forces the divergence of the nodal
+     * tensors, volume times stress over the nodal volume.
      */
     void
     add_forces_of_stress(double *const records) const
@@ -131,7 +132,7 @@ namespace limber
     }
 
   private:
-    // int N_j over the cell along direction e, and the slope of N_i there
+    // int N_j over the cell along direction e, times the slope of N_i
     double
     factor(const int e) const
     {
@@ -150,18 +151,17 @@ namespace limber
     }
 
     const CellGeometry<dim> &cell;
-    double                   volume; // that counts, m^3
+    double                   volume; // weighted, m^3
   };
 
 
 
   /**
-   * How much a cell counts that points are in: fully as long as no node of it
-   * has less than 2^-dim of the mass of another one, as at the corner of a body
-   * that fills its cells, and the less the more empty it is, nothing where one
-   * node has no mass. So that functions do not jump when a point enters an
-   * empty cell, and the force on a node that is hardly touched is as small as
-   * its mass.
+   * Weight of a cell that contains points: one as long as no node of it has
+   * less than 2^-dim of the mass of another, as at the corner of a body that
+   * fills its cells; less for emptier cells, zero if a node has no mass. So
+   * gradients are continuous when a point enters an empty cell, and the force
+   * on a node with tiny mass is small as well.
    */
   template <int dim>
   inline double
@@ -179,7 +179,7 @@ namespace limber
 
 
 
-  /** The velocity gradient at points of a cell, 1/s. */
+  /** The dual domain velocity gradient at points of a cell, 1/s. */
   template <int dim, unsigned int first, unsigned int strained>
   class DualDomainGradient
   {
@@ -188,8 +188,8 @@ namespace limber
 
   public:
     /**
-     * Velocities are in slots from @p first on of the records of nodes, of two
-     * fields of which that from component @p strained on is asked for.
+     * Velocities are in the nodal slots from @p first on, two fields, of which
+     * that from component @p strained on is differentiated.
      */
     __attribute__((always_inline))
     DualDomainGradient(const GridView<dim> &grid, const std::uint32_t cell)
@@ -234,7 +234,7 @@ namespace limber
       return result;
     }
 
-    /** The velocities themselves. */
+    /** The velocity components themselves. */
     auto
     component(const unsigned int c) const
     {

@@ -40,7 +40,7 @@ namespace limber
     std::array<std::array<Number, dim>, n_corners> offsets; // of corners
     std::array<Number, n_corners>                  shares;
     std::array<std::array<Number, n_corners>, dim> along; // slope_c . r_k
-    Number smallest; // determinant of the map at the Gauss points, m^d
+    Number smallest; // smallest determinant at Gauss points, m^d
     Number volume;   // m^d
 
     /** +1 or -1: at which end of edge k the corner is. */
@@ -50,7 +50,7 @@ namespace limber
       return corner >> k & 1 ? 1. : -1.;
     }
 
-    /** From corners, counted from anywhere, m. Returns x_0. */
+    /** From corner positions, relative to any origin, m. Returns x_0. */
     std::array<Number, dim>
     set_corners(const std::array<std::array<Number, dim>, n_corners> &corners)
     {
@@ -79,8 +79,8 @@ namespace limber
     }
 
     /**
-     * From edges and twists all the rest; offsets are from the centroid.
-     * Returns where this is from x_0, m.
+     * Compute everything else from edges and twists; offsets are from the
+     * centroid. Returns the centroid relative to x_0, m.
      */
     __attribute__((always_inline)) std::array<Number, dim>
     integrate()
@@ -141,8 +141,8 @@ namespace limber
     }
 
     /**
-     * The centroid from x_0, m, with the volume and the smallest determinant,
-     * of edges and twists.
+     * The centroid relative to x_0, volume and smallest determinant, from edges
+     * and twists.
      */
     std::array<Number, dim>
     find_centroid()
@@ -167,13 +167,13 @@ namespace limber
     }
 
   private:
-    // Of corners, or of Gauss points, each next to a corner; or for each
-    // product of natural coordinates, with a bit for each factor
+    // By corner, or by Gauss point (each next to a corner), or by product of
+    // natural coordinates, with a bit for each factor
     using AtCorners = std::array<Number, n_corners>;
 
     static constexpr double gauss = 0.57735026918962576451; // 1 / sqrt(3)
 
-    /** The natural coordinates whose product twist t has, as bits. */
+    /** The natural coordinates in the product of twist t, as bits. */
     static constexpr int
     factors_of_twist(const int t)
     {
@@ -181,8 +181,10 @@ namespace limber
       return dim == 2 || t == 3 ? all : all ^ 1 << t;
     }
 
-    /** work(lower, upper) for the ends of all edges, one direction after the
-     * other. */
+    /**
+     * Call work(lower, upper) for the ends of all edges, direction by direction
+     * (butterfly).
+     */
     template <class Work>
     __attribute__((always_inline)) static void
     for_pairs(const Work &work, AtCorners &values)
@@ -196,7 +198,8 @@ namespace limber
     }
 
     /**
-     * Component d of x - x_0 where all natural coordinates are + or - @p reach.
+     * Component d of x - x_0 at the points with all natural coordinates + or -
+     * @p reach.
      */
     __attribute__((always_inline)) AtCorners
     places(const int d, const double reach) const
@@ -219,8 +222,8 @@ namespace limber
     }
 
     /**
-     * sum_q M_c(q) f_q from f at the Gauss points, in place; the factor of M_c
-     * along @p k, if that is a direction, left out.
+     * sum_q M_c(q) f_q from f at the Gauss points, in place; if @p k is a
+     * direction, without the factor of M_c along it.
      */
     __attribute__((always_inline)) static void
     to_corners(AtCorners &f, const int k)
@@ -244,7 +247,7 @@ namespace limber
             }
     }
 
-    /** The map at the Gauss points. */
+    /** The Jacobian of the map at the Gauss points. */
     struct GaussPoints
     {
       __attribute__((always_inline)) GaussPoints(const Hexahedron &shape)
@@ -267,14 +270,14 @@ namespace limber
           }
       }
 
-      /** dx_d / dxi_k, which xi_k has no part in. */
+      /** dx_d / dxi_k, which does not depend on xi_k. */
       const Number &
       derivative(const int q, const int k, const int d) const
       {
         return column[k][q & ~(1 << k)][d];
       }
 
-      /** Entry (d, k) of the cofactors of the map. */
+      /** Entry (d, k) of the cofactor matrix of the Jacobian. */
       __attribute__((always_inline)) Number
       normal(const int q, const int k, const int d) const
       {

@@ -11,14 +11,14 @@
 namespace limber
 {
   /**
-   * Bilinear and trilinear functions (Q1) on a rectangular cell. Node i lies
-   * at the upper end in direction d where bit d of i is set, which is
-   * deal.II's order of vertices.
+   * Bilinear and trilinear functions (Q1) on a rectangular cell. Node i lies at
+   * the upper end in direction d if bit d of i is set, which is deal.II's order
+   * of vertices.
    *
-   * Points give to nodes with the nodes as lanes of a pack: the weights of
-   * all nodes of the cell at one point. Points take from nodes with points as
-   * lanes: the nodal values become the coefficients of the monomials 1, xi,
-   * eta, xi eta, ..., once per batch, and are evaluated at many points.
+   * P2G has nodes as lanes of a pack: the weights of all nodes of the cell at
+   * one point. G2P has points as lanes: once per batch the nodal values are
+   * converted to coefficients of the monomials 1, xi, eta, xi eta, ..., which
+   * are evaluated at many points.
    */
   template <int dimension>
   struct Linear
@@ -27,14 +27,14 @@ namespace limber
     static constexpr int n_nodes = 1 << dim;
     using Nodes                  = Pack<n_nodes>;
 
-    /** Of the nodes and monomials of a cell: neighbours in direction d. */
+    /** Index distance of neighbours (nodes or monomials) in direction d. */
     static constexpr int
     stride(const int d)
     {
       return 1 << d;
     }
 
-    /** The end at which node i is, or the power of monomial i, along d. */
+    /** The end (0, 1) of node i, or the power of monomial i, along d. */
     static constexpr int
     power(const int i, const int d)
     {
@@ -48,7 +48,7 @@ namespace limber
       return grid.cells[cell];
     }
 
-    /** Lanes of the nodes at the upper end in direction d: +1, others -1. */
+    /** Lanes of nodes at the upper end in direction d: +1, others -1. */
     static Nodes
     sign(const int d)
     {
@@ -62,7 +62,7 @@ namespace limber
       return lower_ends[d] + signs[d] * xi;
     }
 
-    /** Exchange the lanes of the two ends of each edge in direction d. */
+    /** Swap the lanes of the two ends of each edge in direction d. */
     static Nodes
     across(const Nodes &a, const int d)
     {
@@ -98,7 +98,7 @@ namespace limber
 
     /**
      * The transpose of to_monomials() with one lane per coefficient: from
-     * what acts on the coefficients to what acts on the nodes.
+     * forces on coefficients to forces on nodes.
      */
     static Nodes
     to_nodes(Nodes a)
@@ -109,8 +109,8 @@ namespace limber
     }
 
     /**
-     * From values of the monomials, or means, to those of their derivatives
-     * in direction d, one lane per monomial.
+     * From values of the monomials, or their means, to those of their
+     * derivatives in direction d, one lane per monomial.
      */
     static Nodes
     derivatives(const Nodes &monomials, const int d)
@@ -178,8 +178,7 @@ namespace limber
   private:
     using Numbers = typename internal::PackType<n_nodes>::mask;
 
-    // Constants that the compiler sees through: one lane per node, one entry
-    // per direction.
+    // Compile-time constants: one lane per node, one entry per direction.
     template <int... node>
     static constexpr std::array<Nodes, dim>
     end_values(const double lower,
@@ -202,7 +201,7 @@ namespace limber
       return result;
     }
 
-    // The monomial without the coordinate, or the first lane of zeros.
+    // Index of the monomial divided by the coordinate, or of a zero lane.
     template <int... k>
     static constexpr std::array<Numbers, dim>
     monomials_without(std::integer_sequence<int, k...>)

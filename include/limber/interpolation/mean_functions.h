@@ -6,15 +6,15 @@
 
 namespace limber
 {
-  /** Mass, force and momentum of nodes: what points bring. */
+  /** Slots for P2G: mass, force and momentum of nodes. */
   template <int dim>
   using MotionWindow = RecordWindow<dim, NodeLayout<dim>::mass, 1 + 2 * dim>;
 
-  /** Their force alone. */
+  /** The force alone. */
   template <int dim>
   using ForceWindow = RecordWindow<dim, NodeLayout<dim>::force, dim>;
 
-  /** The momentum that points give back. */
+  /** The re-mapped momentum (MUSL). */
   template <int dim>
   using RemapWindow = RecordWindow<dim, NodeLayout<dim>::remapped, dim>;
 
@@ -22,7 +22,7 @@ namespace limber
 
   /**
    * The means N_i over domains (domain_shape.h) of the functions of the nodes
-   * of a block, points as lanes, and what points take and give with them.
+   * of a block, points as lanes; G2P and P2G with them.
    */
   template <int dim>
   class MeanFunctions
@@ -32,12 +32,12 @@ namespace limber
     using Number                  = typename Block::Number;
     static constexpr int n_points = Block::n_points;
 
-    /** The fields in n slots of the nodal records from @p slot on. */
+    /** G2P of n slots of the nodal records from @p slot on. */
     template <int n>
     std::array<Number, n>
     take(const Block &block, const double *nodes, unsigned int slot) const;
 
-    /** Add sum_p N_i(p) times what points give to the slots of a window. */
+    /** P2G: add sum_p N_i(p) given(p) to the slots of a window. */
     template <class Window>
     void
     give(const Block                             &block,

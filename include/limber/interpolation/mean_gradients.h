@@ -9,16 +9,16 @@ namespace limber
 {
   /**
    * The mean over the points of a body in a cell of the gradients of the linear
-   * functions, <grad N_a> for the corners a, 1/m: the row of the mean
-   * divergence, whose transpose gives a mean pressure to the nodes (Treatment
-   * `cell` in strain_operator.h), node by node.
+   * functions, <grad N_a> for the corners a, 1/m: the B-bar row of the mean
+   * divergence, whose transpose maps a mean pressure to the nodes (Treatment
+   * `cell` in strain_operator.h).
    */
   template <int dim>
   std::array<std::array<double, dim>, 1 << dim>
   mean_gradients(const CellGeometry<dim>      &cell,
                  const CellMeans<Linear<dim>> &means)
   {
-    // <xi_e> or <1 - xi_e>, as the corner lies
+    // <xi_e> or <1 - xi_e>, by the end of corner a
     const auto factor = [&](const int a, const int e) {
       return a >> e & 1 ? means[1 << e] : 1 - means[1 << e];
     };

@@ -17,7 +17,7 @@
  */
 namespace limber
 {
-  /** The record of the node behind lane i of a cell. */
+  /** Offset of the projection record of node i of a cell. */
   template <int dim>
   inline std::size_t
   nodal_mean_record(const CellGeometry<dim> &cell, const int i)
@@ -28,7 +28,7 @@ namespace limber
 
 
 
-  /** What points of a cell give to the sums of its nodes. */
+  /** Contributions of the points of a cell to the sums of its nodes. */
   template <int dim>
   class NodalSums
   {
@@ -36,8 +36,9 @@ namespace limber
     using Nodes = typename Linear<dim>::Nodes;
 
     /**
-     * A point at natural coordinates @p xi. Products of weights keep small
-     * sums exact, so that their ratio is a mean whatever their size.
+     * Add a point at natural coordinates @p xi. As products of weights, tiny
+     * sums are exact relative to their size, so that their ratio is always a
+     * mean.
      */
     __attribute__((always_inline)) void
     add(const std::array<double, dim> &xi, const double mass, const double q)
@@ -68,8 +69,8 @@ namespace limber
 
 
   /**
-   * S q within a cell, where a treatment asks for it. Empty for others, who
-   * have no records.
+   * S q within a cell, if the treatment needs it; otherwise empty, without
+   * records.
    */
   template <int dim, Treatment kind>
   class NodalMean

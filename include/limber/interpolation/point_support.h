@@ -9,7 +9,9 @@ namespace limber
 {
   namespace internal
   {
-    /** Of a point with a domain; a node comes once for each piece that it has.
+    /**
+     * For a point with a domain; a node occurs once for each cell of the
+     * domain.
      */
     template <int dim>
     Support<dim>
@@ -46,8 +48,8 @@ namespace limber
 
 
   /**
-   * The functions by which point @p p gives to the nodes and takes from them:
-   * those at its place, or their means over its domain.
+   * The shape functions of point @p p for P2G and G2P: those at its position,
+   * or their means over its domain.
    */
   template <int dim, bool gradients = true>
   Support<dim>

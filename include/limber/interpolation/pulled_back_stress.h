@@ -6,17 +6,16 @@
 #include <limber/interpolation/batch_lanes.h>
 
 /**
- * @file Stress in the frame of the initial configuration. The forces on the
- * nodes are
+ * @file Stress in the initial frame (total Lagrangian). The nodal forces are
  *
  *   f_i = - sum (m / rho_0) P grad_X N_i,
  *   P   = dev(tau) F^-T + (J_p / J) (-J p) F^-T,
  *
  * with J_p = det F and J the volume ratio that the law was given, which is
- * that of the cell where the volumetric part is averaged. This is the
+ * that of the cell if the volumetric part is averaged (F-bar). This is the
  * derivative of the energy sum (m / rho_0) (U(J) + W(F)) with respect to the
- * places of the nodes: J = <J_p> depends on F by J_p F^-T, so the stress
- * needs no mean of its own (Simo, Taylor and Pister, CMAME 51, 1985). A law
+ * nodal positions: J = <J_p> depends on F by J_p F^-T, so the stress needs
+ * no averaging of its own (Simo, Taylor and Pister, CMAME 51, 1985). A law
  * for small strain has P = sigma.
  */
 namespace limber
@@ -38,9 +37,8 @@ namespace limber
 
 
   /**
-   * P (first Piola and Kirchhoff's stress, Pa) of points whose law was given F
-   * and the volume ratio J, from the stress that it gave: the deviator of J
-   * sigma and J p.
+   * P (first Piola-Kirchhoff stress, Pa) of points whose law was given F and
+   * the volume ratio J, from its result: the deviator of J sigma and J p.
    */
   template <int dim, bool finite_strain, class Number>
   __attribute__((always_inline)) inline SmallMatrix<dim, Number>
@@ -53,7 +51,7 @@ namespace limber
     Number                   p = pressure;
     if constexpr (finite_strain)
       {
-        // over J_p, as the cofactor is J_p F^-T
+        // divided by J_p, as the cofactor is J_p F^-T
         const Number inverse = 1. / determinant<dim>(F);
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
@@ -73,7 +71,7 @@ namespace limber
 
 
 
-  /** The sums over points of a cell of V and V times each monomial. */
+  /** Sums over the points of a cell of V times each monomial. */
   template <int dim>
   class MonomialSums
   {
@@ -86,7 +84,10 @@ namespace limber
       set_zero(sums);
     }
 
-    /** Points of volume V (m^dim, zero in idle lanes) at natural places xi. */
+    /**
+     * Add points of volume V (m^dim, zero in idle lanes) at natural coordinates
+     * xi.
+     */
     __attribute__((always_inline)) void
     add(const std::array<Number, dim> &xi, const Number &V)
     {
@@ -102,7 +103,7 @@ namespace limber
         sums[k] += monomials[k];
     }
 
-    /** Those of all points. */
+    /** The sums over all points. */
     std::array<double, n_monomials>
     total() const
     {
@@ -115,7 +116,7 @@ namespace limber
 
 
 
-  /** Gathers from the points of a cell what their P gives to its nodes. */
+  /** Sums up the forces of the P of the points of a cell on its nodes. */
   template <int dim>
   class StressOnNodes
   {
@@ -129,14 +130,14 @@ namespace limber
       set_zero(on_coefficients);
     }
 
-    /** P times volume (J, zero in idle lanes) at natural places xi. */
+    /** Add P times volume (J, zero in idle lanes) at natural coordinates xi. */
     __attribute__((always_inline)) void
     add(const SmallMatrix<dim, Number> &VP, const std::array<Number, dim> &xi)
     {
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          std::array<Number, dim> s; // meets natural derivatives
+          std::array<Number, dim> s; // conjugate to natural derivatives
 #pragma GCC unroll 8
           for (int e = 0; e < dim; ++e)
             {
@@ -157,9 +158,8 @@ namespace limber
     }
 
     /**
-     * The forces on the nodes, one lane each, for each direction; with those
-     * of the same P (Pa) at all points besides, of which the monomials have
-     * been summed up.
+     * The forces on the nodes, one lane each, for each direction, including
+     * those of a uniform P (Pa) at all points, given by their summed monomials.
      */
     __attribute__((always_inline)) std::array<Nodes, dim>
     forces(const SmallMatrix<dim, double>     &P,
@@ -169,7 +169,7 @@ namespace limber
 #pragma GCC unroll 8
       for (int d = 0; d < dim; ++d)
         {
-          Nodes uniform{}; // lane k meets c_k
+          Nodes uniform{}; // lane k acts on c_k
 #pragma GCC unroll 8
           for (int k = 1; k < 1 << dim; ++k)
             {
@@ -187,7 +187,7 @@ namespace limber
       return result;
     }
 
-    /** The same without. */
+    /** The forces without a uniform P. */
     __attribute__((always_inline)) std::array<Nodes, dim>
     forces() const
     {

@@ -9,12 +9,12 @@
 namespace limber
 {
   /**
-   * B-splines, products of one for each direction (spline_factors.h). Their
-   * knots are the faces of the cells, so that a cell sees the functions of its
-   * neighbours: degree + 1 in each direction. All points of a cell see the same
-   * ones. They are positive, have any linear field exactly and a continuous
-   * derivative of order degree - 1. Conditions at a side remain conditions on
-   * the nodes in it, which alone have functions that do not vanish there.
+   * Tensor product B-splines (spline_factors.h). Their knots are the faces of
+   * the cells, so that a cell sees functions of neighbouring nodes: degree + 1
+   * in each direction, the same for all points of a cell. They are positive,
+   * reproduce linear fields and are C^(degree - 1). Dirichlet conditions at a
+   * side remain conditions on the nodes in it, which alone have functions that
+   * do not vanish there.
    *
    * (Steffen, Kirby and Berzins 2008; Piegl and Tiller, The NURBS Book, 2.2)
    */
@@ -28,14 +28,16 @@ namespace limber
     static constexpr int n       = degree + 1; // along a direction
     static constexpr int n_nodes = dim == 2 ? n * n : n * n * n;
 
-    /** Of the nodes and monomials of a cell: neighbours in direction d. */
+    /** Index distance of neighbours (nodes or monomials) in direction d. */
     static constexpr int
     stride(const int d)
     {
       return d == 0 ? 1 : (d == 1 ? n : n * n);
     }
 
-    /** The place of node i, or the power of monomial i, along d: 0 ... degree.
+    /**
+     * The position of node i, or the power of monomial i, along d: 0 ...
+     * degree.
      */
     static constexpr int
     power(const int i, const int d)
@@ -53,7 +55,7 @@ namespace limber
         return grid.cubics[cell];
     }
 
-    /** Values of the functions along a direction, and derivatives. */
+    /** Values and derivatives of the functions along a direction. */
     template <class Number>
     __attribute__((always_inline)) static
       typename Factors::template Weights<Number>
@@ -62,7 +64,7 @@ namespace limber
       return Factors::weights(cell.lower[d], cell.upper[d], xi);
     }
 
-    /** Where the nodes along a direction are, in natural coordinates. */
+    /** Positions of the nodes along a direction, in natural coordinates. */
     static std::array<double, n>
     places(const Cell &cell, const int d)
     {
@@ -83,9 +85,9 @@ namespace limber
     }
 
     /**
-     * The same from values that @p read(i) has read, for what does not fit into
-     * registers as a whole: plane by plane, then across the planes. @p write(k,
-     * value) keeps what @p read_back(k) gives back.
+     * The same plane by plane, then across the planes, for what does not fit
+     * into registers. @p read(i) gives nodal values; @p write(k, value) stores
+     * intermediate values that @p read_back(k) returns.
      */
     template <class Number, class Read, class ReadBack, class Write>
     __attribute__((always_inline)) static void
@@ -127,7 +129,7 @@ namespace limber
         }
     }
 
-    /** The transpose: from what acts on coefficients to what acts on nodes. */
+    /** The transpose: from forces on coefficients to forces on nodes. */
     template <class Number>
     __attribute__((always_inline)) static void
     to_nodes(std::array<Number, n_nodes> &a, const Cell &cell)

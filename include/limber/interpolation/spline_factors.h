@@ -7,15 +7,16 @@
 namespace limber
 {
   /**
-   * The B-splines of a degree p along one direction of a cell, whose faces are
+   * The B-splines of degree p along one direction of a cell, whose faces are
    * knots: p + 1 functions of the natural coordinate xi, eta = 1 - xi. The
-   * first is l eta^p and the last u xi^p; l and u are 1/p!, but for cells next
-   * to a side of the grid (SplineCell). There the function beyond is that of
-   * plain splines whose node beyond the side has the value 2 v_side - v_inside,
-   * so that the node in the side alone has a function that does not vanish in
-   * it, and all linear fields are exact with nodes at the places().
+   * first is l eta^p and the last u xi^p; l and u are 1/p!, except in cells at
+   * a side of the grid (SplineCell). There the function of a node beyond the
+   * side is eliminated by the nodal value 2 v_side - v_inside, so that the node
+   * in the side alone has a function that does not vanish in it, and linear
+   * fields are reproduced with nodes at the places().
    *
-   * Functions of polynomials a_0 + a_1 xi + ... + a_p xi^p take any a(k).
+   * Functions of polynomials a_0 + a_1 xi + ... + a_p xi^p accept any callable
+   * a(k).
    */
   template <int degree>
   struct SplineFactors;
@@ -23,12 +24,12 @@ namespace limber
 
 
   /**
-   * Quadratic ones, around the centres of cells: with l = u = 1/2
+   * Quadratic splines, centred in cells: with l = u = 1/2
    *
    *   N_0 = eta^2 / 2,  N_1 = 1/2 + xi eta,  N_2 = xi^2 / 2,
    *
-   * and l = 1 where the grid ends: the knots are open, and the node beyond is
-   * one in the side itself, half a cell off.
+   * and l = 1 at a side of the grid: open knots, with a node in the side itself
+   * instead of one beyond, half a cell from the next.
    */
   template <>
   struct SplineFactors<2>
@@ -52,7 +53,7 @@ namespace limber
               {{-2 * l * eta, (l + u) * (eta - xi) + (l - u), 2 * u * xi}}};
     }
 
-    /** Where the nodes are, in natural coordinates. */
+    /** Positions of the nodes, in natural coordinates. */
     static std::array<double, n>
     places(const double l, const double u)
     {
@@ -115,16 +116,15 @@ namespace limber
 
 
   /**
-   * Cubic ones, around the corners of cells: linear functions plus, for the
-   * second difference of the nodal values around either end, l eta^3 and u
-   * xi^3,
+   * Cubic splines, centred at corners of cells: linear functions plus l eta^3
+   * and u xi^3 times the second difference of the nodal values at either end,
    *
    *   N_0 = l eta^3,                     N_1 = eta - 2 l eta^3 + u xi^3,
    *   N_2 = xi + l eta^3 - 2 u xi^3,     N_3 = u xi^3,
    *
-   * l = u = 1/6. Where the grid ends l = 0: there is no node beyond, and the
-   * second derivative vanishes in the side, as that of what mirrored material
-   * does normal to a wall.
+   * l = u = 1/6. At a side of the grid l = 0: there is no node beyond, and the
+   * second derivative vanishes in the side, as for the velocity normal to a
+   * mirror plane.
    */
   template <>
   struct SplineFactors<3>

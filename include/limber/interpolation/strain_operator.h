@@ -8,12 +8,13 @@
 #include <limber/materials/treatment.h>
 
 /**
- * @file The strain operator B of each treatment and its transpose. B takes
- * the velocities of the nodes of a cell to the rate of deformation at the
- * points of a body in it; its transpose takes their stresses to forces on the
- * nodes. They stand side by side because a treatment is consistent (conserves
- * energy in space) if and only if one is the transpose of the other with the
- * same weights: sum f_i v_i = - sum V (stress : B v), for all v and stresses.
+ * @file The strain operator B of each locking treatment (B-bar) and its
+ * transpose. B maps the velocities of the nodes of a cell to the rate of
+ * deformation at the points of a body in it; its transpose maps their stresses
+ * to internal nodal forces. Both are in one file because a treatment is
+ * consistent (conserves energy in space) if and only if one is the transpose
+ * of the other with the same weights: sum f_i v_i = - sum V (stress : B v),
+ * for all v and stresses.
  *
  * Both use the coefficients c_k of the monomials of a component of velocity,
  * u = c_0 + c_1 xi + c_2 eta + c_3 xi eta + ... (bits of k: coordinates), and
@@ -32,18 +33,18 @@
  *   hybrid          as node, but D_de = <D_de>
  *
  * with S the projection on nodes of nodal_means.h. It is its own transpose
- * with masses as weights, so the stress meets grad v after S as well: the
- * pressure that acts is S p.
+ * with masses as weights, so that the force is formed with S p instead of the
+ * pressure p.
  *
  * Derivation and proofs: doc/theory/treatments.md.
  *
- * Loops over directions are unrolled by hand: GCC does not do it in bodies as
- * large as these, and an array with a variable index lives in memory, which
- * makes the sweeps half as slow again in 3d.
+ * Loops over directions are unrolled by pragmas: GCC does not do it in function
+ * bodies as large as these, and arrays with variable indices then live in
+ * memory, which makes the sweeps half as slow again in 3d.
  */
 namespace limber
 {
-  /** Whether points get another shear than their own. */
+  /** Whether the shear strain of points is replaced (by a mean, or assumed). */
   inline constexpr bool
   replaces_shear(const Treatment kind)
   {
@@ -52,7 +53,9 @@ namespace limber
 
 
 
-  /** B of a cell for one velocity field, times the step. */
+  /**
+   * The strain operator B of a cell, applied to one velocity field, times dt.
+   */
   template <class Basis, Treatment kind, class Coefficients>
   class StrainOperator
   {
@@ -100,8 +103,8 @@ namespace limber
     }
 
     /**
-     * dt D + dt W at natural coordinates xi, with the spin W as it is; on
-     * request without it where averages make that cheaper.
+     * dt D + dt W at natural coordinates xi, with the spin W not averaged;
+     * optionally without W if averages make that cheaper.
      */
     template <class Number, bool with_spin = true>
     __attribute__((always_inline)) void
@@ -162,8 +165,8 @@ namespace limber
     }
 
   private:
-    // Components as lanes: what is summed up here belongs to a cell, not to a
-    // point, and eight points a cell would have to pay for it one by one.
+    // With components as lanes: this work is per cell, not per point, and with
+    // eight points per cell scalar code would be noticeable.
     __attribute__((always_inline)) void
     set_hourglass(const CellMeans<Basis> &means,
                   const StrainTreatment  &treatment)
@@ -183,10 +186,10 @@ namespace limber
         }
       else
         {
-          // The coefficients of the bilinear modes, f being the axis that is
-          // not in them, in monomials of deviations from the centroid: those
-          // of the cell have a corner of it as their origin, which would leave
-          // its mirror image with another strain.
+          // The coefficients of the bilinear modes (f: the axis not in them) in
+          // monomials of deviations from the centroid. Monomials of the cell
+          // have their origin in one of its corners, which would give mirrored
+          // motions strains that are not mirrored.
           const Components trilinear = velocity.components(7);
 #pragma GCC unroll 8
           for (int f = 0; f < dim; ++f)
@@ -254,26 +257,26 @@ namespace limber
     std::array<double, dim>     scale;
     double                      divergence = 0;
     std::array<Components, dim> mean_gradient; // <du/dx_d>
-    // Of the assumed strain, times the step. In 3d the modes are numbered by
-    // the axis that is not in them, the last is trilinear.
+    // Assumed strain, times dt. In 3d bilinear modes are numbered by the axis
+    // that is not in them; the last mode is trilinear.
     struct Modes
     {
-      // what mode and scale give to the strain along a component itself, and
-      // to those along the other axes of the mode
+      // contribution of a mode to the normal strain along the axis of the
+      // component, and along the other axes of the mode
       std::array<Components, dim == 2 ? 1 : 4> own, mate;
       std::array<Components, dim == 2 ? 0 : 3> bilinear; // about the centroid
     };
     Modes                   modes;
     std::array<double, dim> centroid;
-    std::array<double, dim> product_mean; // of the other two coordinates'
-    std::array<double, dim> torsion; // slope along d of the shear across it
+    std::array<double, dim> product_mean; // <xi_e' xi_f'> of the two other axes
+    std::array<double, dim> torsion; // slope along d of the shear normal to it
   };
 
 
 
   /**
-   * The transpose: gathers from the points of a batch what their stress gives
-   * to the coefficients c_k, and turns it into forces on the nodes.
+   * The transpose B^T: sums up what the stress of the points of a batch
+   * contributes to the coefficients c_k, and maps these to nodal forces.
    */
   template <int dim, Treatment kind, bool deviator>
   class StressOperator
@@ -282,7 +285,7 @@ namespace limber
     using Number = PointPack<dim>;
     using Nodes  = typename Linear<dim>::Nodes;
 
-    /** @p nodal is the pressure S p, Pa. */
+    /** @p nodal is the projected pressure S p, Pa. */
     StressOperator(const CellGeometry<dim>      &cell,
                    const StrainTreatment        &treatment,
                    const CellMeans<Linear<dim>> &means,
@@ -294,9 +297,9 @@ namespace limber
     {}
 
     /**
-     * The points from @p first on, at most a pack and at most @p n. What lies
-     * beyond is read as well and gets the weight zero. What @p begins needs
-     * no sums to add to: few batches have more than one pack.
+     * Add the points from @p first on, at most a pack and at most @p n; lanes
+     * beyond are read as well but have zero weight. With @p begins the sums
+     * need not be initialised: few batches have more than one pack.
      */
     template <bool begins>
     __attribute__((always_inline)) void
@@ -352,7 +355,7 @@ namespace limber
         }
     }
 
-    /** Let only a share count of what the pressure of the points has given. */
+    /** Scale the contribution of the pressure of the points. */
     void
     scale_pressure(const double share)
     {
@@ -382,7 +385,7 @@ namespace limber
           else
             {
               Nodes scale = broadcast<Nodes>(1.);
-              scale[0]    = 0; // nothing acts on c_0, whatever is there
+              scale[0]    = 0; // c_0 has no force; its lane may be in use
 #pragma GCC unroll 8
               for (int e = 0; e < dim; ++e)
                 scale[1 << e] = cell.inverse_edge[e];
@@ -404,8 +407,8 @@ namespace limber
 
   private:
     static constexpr bool mean_pressure = averages_volume_in_cells(kind);
-    // No stress acts on c_0, so that its lane is free for the sum of the
-    // pressures. Pays with eight lanes only.
+    // No force acts on c_0, so that its lane can be used for the sum of the
+    // pressures. Faster with eight lanes only.
     static constexpr bool pressure_in_lane =
       mean_pressure && deviator && dim == 3;
     static constexpr bool normal_as_is =
@@ -422,8 +425,8 @@ namespace limber
     }
 
     /**
-     * What acts on the coefficient c_k of component d, in lane k; in those of
-     * linear modes the stress alone.
+     * The forces on the coefficients c_k of component d, in lane k; for linear
+     * modes the summed stress alone.
      */
     __attribute__((always_inline)) Nodes
     on_coefficients(const int d) const
@@ -443,9 +446,9 @@ namespace limber
     }
 
     /**
-     * Stress that meets mean gradients acts on all modes. For all components
-     * once their sums are there, and in two chains: with one chain for each,
-     * right behind its sum, the processor waited.
+     * Stress that is work conjugate to mean gradients acts on all modes. Done
+     * for all components after their sums, in two dependency chains: with one
+     * chain each, right after its sum, the processor stalled.
      */
     __attribute__((always_inline)) void
     distribute(std::array<Nodes, dim> &on_coefficients) const
@@ -465,7 +468,7 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         {
           on_coefficients[d] *= Linear<dim>::bilinear();
-          // bilinear modes about the centroid hold part of c_7
+          // bilinear modes about the centroid contain part of c_7
           if constexpr (kind == Treatment::assumed_strain && dim == 3)
 #pragma GCC unroll 8
             for (int f = 0; f < dim; ++f)
@@ -482,7 +485,7 @@ namespace limber
         }
     }
 
-    /** What acts on coefficients of hourglass modes at the points. */
+    /** Add the forces of the points on coefficients of hourglass modes. */
     template <bool begins>
     __attribute__((always_inline)) void
     add_hourglass(const std::array<std::array<Number, dim>, dim> &t,
@@ -491,7 +494,7 @@ namespace limber
       if constexpr (kind == Treatment::cell_full)
         return;
       const double *const h = cell.inverse_edge.data();
-      // deviations from the mean, where strains are split so
+      // coordinates relative to the centroid for the assumed strain
       std::array<Number, dim> xi = place;
       if constexpr (kind == Treatment::assumed_strain)
 #pragma GCC unroll 8
@@ -536,7 +539,7 @@ namespace limber
         }
     }
 
-    /** Of the mode xi_d xi_e of component d. */
+    /** For the mode xi_d xi_e of component d. */
     template <bool begins>
     __attribute__((always_inline)) void
     add_bilinear(const std::array<std::array<Number, dim>, dim> &t,

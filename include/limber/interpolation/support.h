@@ -7,8 +7,8 @@
 namespace limber
 {
   /**
-   * The nodes whose functions do not vanish at a place, whatever the basis:
-   * for what is done seldom, or at few points. Sweeps over all points have
+   * The nodes whose functions do not vanish at a position, and these, for any
+   * basis: for rare operations or few points. Sweeps over all points have
    * faster ways.
    */
   template <int dim>
@@ -25,8 +25,8 @@ namespace limber
 
 
   /**
-   * At a place @p x in a cell, or near it: the functions are continued. On
-   * request without gradients.
+   * At a position @p x in a cell, or near it by extrapolation of its
+   * polynomials; optionally without gradients.
    */
   template <int dim, bool gradients = true>
   Support<dim>

@@ -10,23 +10,23 @@
 namespace limber
 {
   /**
-   * What a velocity v of corner functions has, at natural places xi in a cell,
-   * beyond a velocity that has the same components across the faces of the
-   * cell and the same divergence everywhere in it: that of v at the mean place.
-   * In two dimensions, with the coefficient c^e of xi eta in v_e, m the mean
-   * place and h the edges, it is
+   * The correction w of a velocity v of linear functions, at natural
+   * coordinates xi in a cell, such that v - w has the same normal components on
+   * the faces and a uniform divergence, that of v at the centroid of the
+   * points. In two dimensions, with the coefficient c^e of xi eta in v_e, m the
+   * centroid and h the edges, it is
    *
    *   w_d = c^e h_d/h_e (xi_d - a_d)(xi_d - b_d)/2,  a_d <= xi_d <= b_d,
    *
-   * where a_d + b_d = 2 m_d: all of the cell where the mean is its middle,
-   * else what lies around the mean from one of the faces on; beyond it is zero.
-   * So div w is the deviation of div v from its mean where material is, and w
-   * is zero across the faces: nothing goes through a side. In three
-   * dimensions each c is taken at the place along the third direction, for the
-   * term of all coordinates half way to the mean.
+   * where a_d + b_d = 2 m_d: the whole cell if the centroid is its centre, else
+   * the interval around the centroid that starts at one of the faces; beyond it
+   * w = 0. So div w is the deviation of div v from its mean where there is
+   * material, and w is zero normal to the faces: nothing penetrates a side. In
+   * three dimensions each c is taken at the position along the third direction,
+   * for the trilinear term half way to the centroid.
    *
-   * @p component(d) gives the coefficients of component d by monomials, @p
-   * means the mean of each monomial (CellMeans).
+   * @p component(d) gives the monomial coefficients of component d, @p means
+   * the mean of each monomial (CellMeans).
    */
   template <int dim, class Number, class Components, class Means>
   __attribute__((always_inline)) inline std::array<Number, dim>
@@ -42,7 +42,7 @@ namespace limber
         mean[d]            = means[Linear<dim>::stride(d)];
         const double lower = std::max(0., 2 * mean[d] - 1),
                      upper = std::min(1., 2 * mean[d]);
-        // which is positive beyond
+        // positive outside of the interval, where it is set to zero
         bubble[d] =
           smaller((0.5 * (xi[d] - lower)) * (xi[d] - upper), Number{});
       }

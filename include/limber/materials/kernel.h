@@ -15,7 +15,7 @@ namespace limber
     quadratic, // quadratic B-splines
     cubic,     // cubic B-splines
     gimp,      // linear functions averaged over fixed boxes (uGIMP)
-    cpgimp,    // the same, boxes stretch with the diagonal of F
+    cpgimp,    // the same, boxes follow the stretch (cpGIMP)
     cpdi,      // the same over parallelepipeds convected by F
     cpdi2,     // the same, each corner moves with the grid velocity
     ddmp       // dual domain MPM: gradients partly from nodal means

@@ -27,7 +27,7 @@ namespace limber
   {
     none,           // the point itself
     box,            // fixed size (uGIMP)
-    stretched_box,  // stretched with the diagonal of F (cpGIMP)
+    stretched_box,  // follows the stretch along the axes (cpGIMP)
     parallelepiped, // convected by F (CPDI)
     hexahedron      // with convected corners (CPDI2)
   };

@@ -112,7 +112,7 @@ namespace limber
     }
 
   private:
-    using Means = std::pair<Matrix, Matrix>; // mean and, in 3d, linear part
+    using Means = std::pair<Matrix, Matrix>; // mean and, in 3d, torsion
 
     static double
     contract(const Matrix &a, const Matrix &b)
@@ -202,7 +202,7 @@ namespace limber
         .first;
     }
 
-    /** Rotated stress P^, its transpose map Q, and the torque on the frame. */
+    /** Rotated stress P^, Q = A P^, and H^-1 times the torque. */
     void
     meet(const std::vector<Matrix> &stress)
     {
