@@ -315,7 +315,7 @@ namespace limber
           {
             for (unsigned int t = 0; t < n_twists(dim); ++t)
               half += magnitude(load(points.domain[dim * (dim + t) + d]));
-            half *= 2.; // at most that far from the centroid
+            half *= 2.; // x_0 is at most that far from the centroid
           }
         half *= geometry.inverse_edge[d];
         const Number xi =
