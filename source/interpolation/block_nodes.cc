@@ -27,8 +27,8 @@ namespace limber
         if (rarely(last < 1))
           return false;
 
-        // A point sees its cell and one next to it, or half and less of a cell
-        // around a side.
+        // A point sees its cell and one neighbour; at a side of the grid, its
+        // own cell and up to half a cell beyond the side.
         const auto below     = xi[d]<half[d], above = xi[d] + half[d]> 1.;
         const bool any_below = !all(!below), any_above = !all(!above);
         reaches_beyond[d] =
@@ -103,7 +103,8 @@ namespace limber
       for (int j = 0; j < n[1]; ++j)
         for (int i = 0; i < n[0]; ++i)
           {
-            // nodes are those of the cells that begin there, but for the last
+            // node i is the first one of cell i; the last node that of the cell
+            // before
             const std::array<int, 3> node{{i, j, k}};
             std::array<double, dim>  middle;
             int                      in_cell = 0;

@@ -11,7 +11,7 @@ namespace limber
   {
     for (int d = 0; d < dim; ++d)
       {
-        // in the cells that the box sees
+        // relative to the two cells that the box sees
         const Number at    = xi[d] + (block.cell_begin[d] - block.start[d]);
         const Number lower = at - half[d], upper = at + half[d];
         const Number share = 0.5 / half[d];
@@ -56,7 +56,7 @@ namespace limber
 
 
 
-  // Sums over rows, planes and the block.
+  // Sum factorisation: sums over rows, planes and the block.
   template <int dim>
   void
   BoxFunctions<dim>::take_with_changes(const Block             &block,
@@ -146,8 +146,8 @@ namespace limber
     };
     for (int k = 0; k < block.n[2]; ++k)
       {
-        // Of the plane: all that N_i in it is a factor of, then what its
-        // changes along the plane are
+        // Of the plane: the factor of N_i in it, then those of its changes
+        // along the axes of the plane
         Slots  plane;
         Vector along_x = along[0], along_y = along[1];
         set_zero(plane);

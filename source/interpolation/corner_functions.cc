@@ -139,7 +139,7 @@ namespace limber
                                         const unsigned int  slot,
                                         Corners            &values) const
   {
-    // As many at a time as short registers hold
+    // As many corners at a time as narrow registers can hold
     constexpr int some = 4;
     for (int begin = 0; begin < n_corners; begin += some)
       {

@@ -32,7 +32,7 @@ namespace limber
                            double *const                            nodes,
                            const std::array<Number, Window::width> &given) const
   {
-    const auto own = given; // which nodes are no part of
+    const auto own = given; // local copy: stores to nodes cannot alias it
     block.for_nodes([&](const int i, const std::uint32_t record) __attribute__((
       always_inline)) {
       const Number                      N = load<Number>(mean[i]);

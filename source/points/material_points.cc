@@ -99,7 +99,8 @@ namespace limber
   void
   MaterialPoints<dim>::finish_adding()
   {
-    // Numbers are unique over all ranks: this rank's follow its predecessors'.
+    // Ids are unique over all ranks: each rank continues after the previous
+    // one.
     const unsigned long own    = size();
     unsigned long       before = 0;
     const int           ierr   = MPI_Exscan(
@@ -279,8 +280,8 @@ namespace limber
   std::vector<std::uint32_t>
   MaterialPoints<dim>::occupied_cells() const
   {
-    // A bit per cell of the box: to sort the numbers would take as long as to
-    // reorder the points.
+    // One bit per cell: sorting cell numbers would take as long as reordering
+    // the points.
     constexpr unsigned int     n_bits = 64;
     std::vector<std::uint64_t> holds_points(grid.n_cells() / n_bits + 1);
     for (std::size_t p = 0; p < cell.size(); ++p)
@@ -302,7 +303,7 @@ namespace limber
     ++n_reorderings;
     std::vector<std::uint32_t> cells = occupied_cells();
 
-    // Only the entries of occupied cells are touched: an empty box is free.
+    // Only entries of occupied cells are initialised: empty cells cost nothing.
     const std::unique_ptr<std::uint32_t[]> offset(
       new std::uint32_t[grid.n_cells()]);
     for (const std::uint32_t c : cells)
@@ -400,7 +401,7 @@ namespace limber
   {
     for (const auto &field : fields)
       *record++ = field[p];
-    *record++ = ids[p]; // exact: there are fewer than 2^53
+    *record++ = ids[p]; // exact in a double below 2^53
     if (layout.size_class)
       *record = size_classes[p];
   }
@@ -428,8 +429,8 @@ namespace limber
       return;
 
     ++n_reorderings;
-    // Behind each record stands the receiver's number of the cell, so that it
-    // need not search.
+    // After each record follows the receiver's number of the cell, so that the
+    // receiver need not search.
     const std::size_t                           stride = record_size() + 1;
     std::map<unsigned int, std::vector<double>> leaving;
     std::size_t                                 kept = 0;
@@ -465,7 +466,7 @@ namespace limber
   void
   MaterialPoints<dim>::prepare_mesh_change()
   {
-    // Points must be in their cells before these are split or moved.
+    // Points must be in owned cells before these change.
     hand_over();
     sort_by_cell();
     carrier = std::make_unique<dealii::Particles::ParticleHandler<dim>>(
@@ -495,7 +496,7 @@ namespace limber
             }
         }
     carrier->update_cached_numbers();
-    // The carrier makes copies of its own; the arrays make room for these.
+    // The carrier holds copies; the arrays are freed to make room for them.
     for (auto &field : fields)
       std::vector<double>().swap(field);
     resize(0);
@@ -544,13 +545,12 @@ namespace limber
   void
   MaterialPoints<dim>::resize(const std::size_t n)
   {
-    // Exactly as much memory as asked for: vectors would double what they have.
+    // Reserve exactly: vectors would double their capacity.
     reserve(n);
     for (auto &field : fields)
       {
         field.resize(n + padding);
-        // What lies beyond the points is read, multiplied by zero, and so has
-        // to be finite.
+        // The padding is read and multiplied by zero, so it must be finite.
         std::fill(field.end() - padding, field.end(), 0.);
       }
     cell.resize(n);

@@ -24,7 +24,9 @@ namespace limber
 
 
 
-    /** Sums up pieces of a region, about a place near them. */
+    /**
+     * Sums up volume, first and second moments of pieces, about a near centre.
+     */
     template <int dim>
     class MomentsAbout
     {
@@ -33,7 +35,7 @@ namespace limber
         : centre(centre)
       {}
 
-      /** A piece of a volume, with its centroid and its spread. */
+      /** Add a piece with its volume, centroid and second moments about it. */
       void
       add(const double                           volume,
           const dealii::Point<dim>              &place,
@@ -67,9 +69,12 @@ namespace limber
 
 
 
-    /** Of a small box, given by its centre and edges, what is on the inner side
-     * of the plane at a distance from the centre: rods along the direction that
-     * the normal is nearest to, cut where the plane meets their axes. */
+    /**
+     * Add the part of a small box, given by its centre and edges, on the inner
+     * side of a plane (signed distance at the centre): 2^(dim-1) Gauss rods
+     * along the main direction of the normal, clipped where the plane meets
+     * their axes.
+     */
     template <int dim>
     void
     add_cut_box(const dealii::Point<dim>     &centre,
@@ -101,7 +106,7 @@ namespace limber
               std::clamp(0.5 - value / std::abs(slope) / edges[along], 0., 1.);
           if (share == 0)
             continue;
-          // from the end where it is inside
+          // the part at the inner end
           place[along] -=
             std::copysign(0.5 * (1 - share) * edges[along], slope);
           dealii::SymmetricTensor<2, dim> spread;
@@ -113,9 +118,11 @@ namespace limber
 
 
 
-    /** Of a box, the pieces inside a shape that knows its distance: those of
-     * n^dim equal ones, which are cut by a plane where some of their corners
-     * are inside and some are not. */
+    /**
+     * Add the parts of a box inside a shape with a signed distance: the box is
+     * divided into n^dim equal ones, and those with corners on both sides are
+     * clipped by a plane.
+     */
     template <int dim>
     void
     add_pieces(const Shape<dim>   &shape,
@@ -177,13 +184,13 @@ namespace limber
     const double volume = volume_of<dim>(box);
     if (auto part = shape.inside_of(box))
       {
-        // Decimal fractions need not meet exactly.
+        // Round-off of decimal fractions: no sliver.
         if (part->volume <= 1e-6 * volume)
           part->volume = 0;
         return *part;
       }
 
-    // of a box n times as small along each edge
+    // second moments of a box n times smaller along each edge
     const auto spread_of_box = [&](const unsigned int n) {
       dealii::SymmetricTensor<2, dim> result;
       for (int d = 0; d < dim; ++d)
@@ -202,8 +209,9 @@ namespace limber
       return place;
     };
 
-    // Whether corners and centre may all be on one side of a surface that
-    // is there: of a thin sheet, or of the tip of a corner.
+    // Whether a surface may intersect the box although corners and centre are
+    // all on one side, as a thin sheet or the tip of a corner: its distance is
+    // less than half the diagonal.
     const dealii::Point<dim> centre =
       box.first + 0.5 * (box.second - box.first);
     const auto distance = shape.signed_distance(centre);
@@ -232,7 +240,7 @@ namespace limber
               sum.add(samples.weight(q) * volume, place, spread_of_box(fine));
           }
       }
-    // Of the smallest one that counting finds: lighter points fly off.
+    // Volumes below one sub-box count as zero: very light points fly off.
     PartInside<dim> result = sum.part();
     if (result.volume < volume / (dim == 2 ? 256 : 512))
       result.volume = 0;

@@ -15,7 +15,7 @@ namespace limber
 {
   namespace
   {
-    /** A place in the unit cell and its share of the volume. */
+    /** A position in the unit cell and its share of the volume (weight). */
     template <int dim>
     struct Site
     {
@@ -80,7 +80,7 @@ namespace limber
 
 
 
-    /** Several parts as one. */
+    /** Volume, centroid and second moments of the union of several parts. */
     template <int dim>
     PartInside<dim>
     sum_of(const std::vector<PartInside<dim>> &parts)
@@ -107,9 +107,9 @@ namespace limber
 
 
     /**
-     * Add what of this box is inside. Around a corner that points into the body
-     * its centroid may be outside, in an obstacle for instance: it is divided
-     * in halves along each axis until those of its parts are inside.
+     * Add the part of this box inside the shape. At a re-entrant corner its
+     * centroid may be outside, in an obstacle for instance: then the box is
+     * bisected along each axis until the centroids of its parts are inside.
      */
     template <int dim>
     void
@@ -118,7 +118,7 @@ namespace limber
                      std::vector<PartInside<dim>> &parts,
                      const unsigned int            divisions = 0)
     {
-      constexpr unsigned int most_divisions = 3; // then it is on the surface
+      constexpr unsigned int most_divisions = 3; // then close to the surface
       const PartInside<dim>  inside         = inside_of(shape, box);
       if (inside.volume == 0)
         return;
@@ -137,15 +137,15 @@ namespace limber
 
 
     /**
-     * The symmetric map of the cube [-1/2, 1/2]^dim to a parallelepiped of this
-     * spread, see PartInside; of a box it is the box.
+     * The symmetric map of the cube [-1/2, 1/2]^dim to a parallelepiped with
+     * these second moments, see PartInside; for those of a box it is the box.
      */
     template <int dim>
     dealii::Tensor<2, dim>
     box_of_spread(const dealii::SymmetricTensor<2, dim> &spread)
     {
       dealii::Tensor<2, dim> result;
-      // rotations of Jacobi's, which leave what is diagonal as it is
+      // Jacobi rotations, which leave a diagonal matrix as it is
       for (const auto &[square, axis] :
            eigenvectors(spread,
                         dealii::SymmetricTensorEigenvectorMethod::jacobi))
@@ -157,11 +157,12 @@ namespace limber
 
 
     /**
-     * The places of Gauss and Legendre in what of a cell is inside, whatever
-     * its shape: their box has the same centroid and second moments, so that a
-     * body that bends has its energy. Should some be beyond the cell, two along
-     * each edge, which are closer to the centroid; if even of these some are,
-     * all are drawn towards it. @p work gets each place and its volume.
+     * Gauss-Legendre points for the part of a cell inside, of whatever shape:
+     * those of a parallelepiped with the same centroid and second moments, so
+     * that a body in bending has the right energy. If some are outside of the
+     * cell, two along each edge, which are closer to the centroid; if some of
+     * these are outside, all are moved towards it. @p work gets each position
+     * and its volume.
      */
     template <int dim, class Work>
     void
@@ -172,7 +173,7 @@ namespace limber
     {
       const dealii::Tensor<2, dim> box = box_of_spread(inside.spread);
 
-      // The largest share, up to 1, of their distances from the centroid with
+      // The largest factor, up to 1, of their distances from the centroid with
       // which all are within the cell.
       const auto largest_share = [&](const std::vector<Site<dim>> &sites) {
         double share = 1;
@@ -217,10 +218,10 @@ namespace limber
 
 
     /**
-     * A point on the edge of its cell gives nothing to the nodes beyond, which
-     * may have no mass then and no velocity, but it is strained by them, and
-     * its stress would be lost there. However little they get, momentum over
-     * mass is right.
+     * Move a point off the faces of its cell. A point on a face gives nothing
+     * to the nodes beyond, which may then have neither mass nor velocity, but
+     * strain it, and its stress would be lost there. With any tiny weight
+     * momentum over mass is right.
      */
     template <int dim>
     dealii::Point<dim>
@@ -228,7 +229,7 @@ namespace limber
                   const BackgroundGrid<dim> &grid,
                   const std::uint32_t        cell)
     {
-      constexpr double         least    = 1e-9; // edges
+      constexpr double         least    = 1e-9; // in edges
       const CellGeometry<dim> &geometry = grid.geometry[cell];
       dealii::Point<dim>       result   = place;
       for (int d = 0; d < dim; ++d)
@@ -284,7 +285,7 @@ namespace limber
           if (body.placement == Placement::jittered)
             random.emplace(seed);
 
-          // with a box of their volume around them
+          // domain: a box of the volume of the point
           const auto give = [&](const dealii::Point<dim> &place,
                                 const double              part) {
             dealii::Tensor<2, dim> half_edges;
@@ -335,7 +336,7 @@ namespace limber
 
 
 
-    /** The same for the parts of a lattice in natural coordinates. */
+    /** The same for placement 'fitted': a lattice in natural coordinates. */
     template <int dim, class Work>
     void
     for_each_part(const Body<dim>           &body,
@@ -396,7 +397,7 @@ namespace limber
 
   namespace
   {
-    /** A list says of each point where it is, how large, and how it moves. */
+    /** Points from a list, with their positions, sizes and velocities. */
     template <int dim>
     void
     add_listed_points(
@@ -407,8 +408,8 @@ namespace limber
     {
       for (const ListedPoint<dim> &listed : list.points)
         {
-          // Cells do not have their upper faces; those of the box have the
-          // last.
+          // Upper faces do not belong to cells; those of the box are moved
+          // inside.
           std::array<double, dim> x;
           for (int d = 0; d < dim; ++d)
             x[d] = std::min(listed.place[d],
@@ -451,7 +452,7 @@ namespace limber
         points.finish_adding();
         return;
       }
-    // Counted first, so that the arrays never take more than they need.
+    // Counted first, so that the arrays get exactly the memory they need.
     std::size_t n = 0;
     for_each_point(body, grid, [&n](const auto &...) { ++n; });
     points.reserve(n);

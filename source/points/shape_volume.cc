@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    /** Equal boxes over a larger one, about as long as they are wide. */
+    /** A lattice of equal, nearly cubic boxes over a larger one. */
     template <int dim>
     struct BoxLattice
     {
@@ -23,7 +23,7 @@ namespace limber
         for (unsigned int d = 0; d < dim; ++d)
           {
             const double length = box.second[d] - box.first[d];
-            // a thin box is not to be seen as one layer
+            // even a thin box gets several layers
             n[d]    = std::clamp(std::lround(length / wanted), 8l, 4096l);
             edge[d] = length / n[d];
           }
@@ -66,7 +66,7 @@ namespace limber
 
 
 
-    /** The share of a box of the lattice that is inside, from places in it. */
+    /** The volume fraction of a box of the lattice inside, by sampling. */
     template <int dim>
     double
     share_inside(const Shape<dim>            &shape,
@@ -88,7 +88,7 @@ namespace limber
     }
 
 
-    /** Whether the corners of all boxes are inside; each is asked once. */
+    /** Whether the corners of the boxes are inside, each tested once. */
     template <int dim>
     std::vector<char>
     corners_inside(const Shape<dim> &shape, const BoxLattice<dim> &lattice)
@@ -107,7 +107,7 @@ namespace limber
 
 
 
-    /** The volume of the shape in boxes of the lattice. */
+    /** The number of boxes of the lattice inside, with fractions. */
     template <int dim>
     double
     count_boxes(const Shape<dim> &shape, const BoxLattice<dim> &lattice)

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <unordered_map>
 
-/** @file Points of a MaterialPoints that become several, or one. */
+/** @file Splitting and joining of points (adaptivity). */
 namespace limber
 {
-  // Of what the point stands for, as columns: its domain, along the axes or its
-  // own edges, or its share of the cell that it was made for.
+  // Half edges of the material of a point, as columns: of its domain, along the
+  // axes or its own edges, or of its share of the cell that it was made for.
   template <int dim>
   dealii::Tensor<2, dim>
   MaterialPoints<dim>::half_edges(const PointView<dim>          &points,
@@ -36,8 +36,8 @@ namespace limber
 
 
 
-  // How far a half may be shifted along an axis, nearly as far as the cell
-  // reaches: on a face of the cell round-off would decide where a point is.
+  // How far a part may be shifted along an axis within the cell; not onto its
+  // face, where round-off would decide which cell a point is in.
   template <int dim>
   double
   MaterialPoints<dim>::room_in_cell(const PointView<dim> &points,
@@ -56,11 +56,11 @@ namespace limber
   namespace
   {
     /**
-     * How the initial places of points change with their present ones, dX/dx:
-     * where parts of a point have been at the start. By least squares over the
-     * points of a cell or, where they are in one row, of the cells around it.
-     * Where places have been mixed, or there are too few, one says as much as
-     * another: the unit tensor, as if the part had been displaced as the whole.
+     * Gradient dX/dx of initial positions by present ones, for the initial
+     * positions of the parts of a point: least squares over the points of a
+     * cell or, if they are in one row, of the cells around it. If the material
+     * is mixed, or there are too few points, the unit tensor, as if each part
+     * had been displaced as the whole.
      */
     template <int dim>
     class InitialPlaces
@@ -98,10 +98,9 @@ namespace limber
       Set
       around(const std::uint32_t cell)
       {
-        const CellGeometry<dim> &geometry = grid.geometry[cell];
-        std::vector<std::uint32_t>
-            seen; // a larger one is in several directions
-        Set result;
+        const CellGeometry<dim>   &geometry = grid.geometry[cell];
+        std::vector<std::uint32_t> seen; // skip larger cells seen before
+        Set                        result;
         for (unsigned int n = 0; n < (dim == 2 ? 9 : 27); ++n)
           {
             std::array<double, dim> x;
@@ -119,8 +118,11 @@ namespace limber
         return result;
       }
 
-      /** Whether the points spread over a tenth of the cell in every direction
-       * and their places are linear to a fifth of the spread. */
+      /**
+       * Linear fit; whether the points spread over a tenth of the cell in every
+       * direction and the fit leaves less than a fifth of the spread of initial
+       * positions.
+       */
       bool
       fit(const std::uint32_t     cell,
           const Set              &set,
@@ -162,7 +164,7 @@ namespace limber
         if (!(determinant(spread) > edges * edges))
           return false;
         result = common * invert(spread);
-        // what the linear function leaves of the spread of the initial places
+        // residual variance of the initial positions
         const double rest = whole - scalar_product(result, common);
         return rest < largest_rest * whole;
       }
@@ -194,7 +196,7 @@ namespace limber
 
 
 
-  // Asked of all points before any changes.
+  // For all points before any of them changes.
   template <int dim>
   std::vector<dealii::Tensor<2, dim>>
   MaterialPoints<dim>::initial_gradients(
@@ -214,8 +216,9 @@ namespace limber
   namespace
   {
     /**
-     * Shorten the @p steps, columns, between the parts of a point at a surface
-     * across it, so that the outermost, @p end steps off, goes at most so far.
+     * Shorten the @p steps (columns) between the parts of a surface point along
+     * the normal such that the outermost part, @p end steps away, moves by at
+     * most 0.75 of the distance to the surface.
      */
     template <int dim>
     void
@@ -237,8 +240,8 @@ namespace limber
 
 
 
-  // Shifted alike to both sides: the centre of mass stays, and with it whatever
-  // is linear in each direction within the cell.
+  // Parts are shifted symmetrically: the centre of mass is conserved, and so
+  // are sums of anything multilinear within the cell.
   template <int dim>
   void
   MaterialPoints<dim>::split(const std::vector<std::size_t>            &which,
@@ -308,8 +311,8 @@ namespace limber
 
 
 
-  // What the parts may touch is usually along the stretched direction, across
-  // which their material reaches as far as before.
+  // `reach` is not changed: contact is usually in the stretched direction, and
+  // normal to it the material reaches as far as before.
   template <int dim>
   double
   MaterialPoints<dim>::divide(const std::vector<Division<dim>> &which,
@@ -341,8 +344,8 @@ namespace limber
         const unsigned int     along = division.direction, n = division.parts;
         const double           end  = 0.5 * (n - 1); // in steps
         dealii::Tensor<1, dim> step = 2. / n * division.half_edge;
-        // Nothing comes close to the sides of the box, or goes where this rank
-        // knows no cell.
+        // Parts stay clear of the sides of the box and of cells that this rank
+        // does not know.
         if (cell_at(p, -1.1 * end * step) == invalid_cell ||
             cell_at(p, 1.1 * end * step) == invalid_cell)
           for (int d = 0; d < dim; ++d)
@@ -382,8 +385,8 @@ namespace limber
 
 
 
-  // How far it is from the middle of a set to the surface that its outermost
-  // point reaches, if one along an axis.
+  // Distance from the centre of a set to the surface, from its outermost
+  // surface point, as if along an axis.
   template <int dim>
   double
   MaterialPoints<dim>::joint_reach(const std::vector<std::size_t> &set) const
@@ -429,7 +432,7 @@ namespace limber
           {
             if (field.data() == mass)
               continue;
-            // Differences from the first: a mean of equal numbers is that one.
+            // Differences from the first one: exact for equal numbers.
             double sum = 0;
             for (const std::size_t p : set)
               sum += mass[p] * (field[p] - field[set[0]]);

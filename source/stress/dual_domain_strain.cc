@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    /** By the field from that component on. */
+    /** Strain by the velocity field whose first component is @p strained. */
     template <int dim, bool averaged, unsigned int strained>
     StressSummary
     strain_dual_domain(const PointView<dim>  &points,

@@ -6,7 +6,9 @@ namespace limber
 {
   namespace
   {
-    /** StressUpdate of a law that the sweep of a kernel calls. */
+    /**
+     * A StressUpdate whose law is called from the sweep of a kernel, by pack.
+     */
     template <int dim, class Law>
     class LawOnPacks final : public AveragedLaw<dim, Law>,
                              private PackStrain<dim>

@@ -11,7 +11,7 @@ namespace limber
 {
   namespace
   {
-    /** Without shear stress there is no more to project than the pressure. */
+    /** A law without deviator has only its pressure to average. */
     template <class Law>
     Treatment
     treatment_for(const Treatment kind)

@@ -55,7 +55,8 @@ namespace limber
           resist(trial, response);
           if (with_tangent)
             {
-              // what yields is not linear in its strain
+              // extrapolation is for hyperelastic laws only: yielding is not
+              // linear
               if constexpr (finite && !flows)
                 if (former != nullptr &&
                     strain(points, grid, former, batch, trial_before))
@@ -108,8 +109,8 @@ namespace limber
                  0;
       }
 
-      // Flow whose strength follows the pressure makes volume as it is given
-      // only where it is associated.
+      // Pressure-dependent strength: non-associated flow gives an unsymmetric
+      // tangent.
       bool
       has_symmetric_tangent() const override
       {
@@ -117,9 +118,9 @@ namespace limber
       }
 
     private:
-      // To the stress of the iterate before and its growth with the
-      // displacements since, which is linear in them in the frame that moves
-      // with the material.
+      // Replace the stress by that of the previous iterate plus its
+      // linearisation in the displacement since, which is linear in the
+      // material frame.
       void
       extrapolate(const Trial &before, Trial &trial) const
       {
@@ -168,8 +169,9 @@ namespace limber
           }
       }
 
-      // The first derivative of the energy. Where volumes are averaged, it goes
-      // by the mean growth, whose derivative is the mean of growth * gradient.
+      // Energy and its first derivative, the force. With averaged volumes it
+      // follows from the mean growth, whose derivative is the mean of growth *
+      // gradient.
       void
       resist(Trial &trial, CellResponse &response) const
       {
@@ -199,7 +201,7 @@ namespace limber
           }
       }
 
-      /** As the nodes deform the point, whatever its cell assumes. */
+      /** F of the point from the nodes, not the assumed one. */
       const Matrix &
       own_deformation(const Trial &trial, const std::size_t k) const
       {

@@ -11,7 +11,7 @@ namespace limber
 
 
 
-    /** Call work(slot, sign) for every pattern, seen from corner a. */
+    /** Call work(slot, sign) for every pattern, with its sign at corner a. */
     template <int dim, class Work>
     void
     for_each_pattern(const int a, const Work &work)
@@ -77,7 +77,7 @@ namespace limber
         for (int a = 0; a < 1 << dim; ++a)
           {
             const double *const node = grid.nodes + grid.cells[cell].node[a];
-            // At the surface patterns do meet a force.
+            // At a free surface patterns do cause a force.
             if (node[number] != all)
               continue;
             double sum = 0;

@@ -9,7 +9,9 @@ namespace limber
 {
   namespace
   {
-    /** J sigma of a pack of points, Pa, with the pressure that does the work.
+    /**
+     * Kirchhoff stress of a pack of points, Pa, with the averaged pressure of
+     * the treatment.
      */
     template <int dim, class Lanes>
     __attribute__((always_inline)) inline SmallMatrix<dim, PointPack<dim>>
@@ -30,8 +32,10 @@ namespace limber
 
 
 
-    /** J sigma R^-T times the mass over the density: what acts on the changes
-     * of functions along the edges k, by [k]. */
+    /**
+     * -V J sigma R^-T, which acts on the changes of functions along the edges
+     * k, by [k].
+     */
     template <int dim>
     __attribute__((always_inline)) inline auto
     forces_along_edges(const SmallMatrix<dim, PointPack<dim>> &t,

@@ -24,7 +24,7 @@ namespace limber
 
 
 
-    /** What a batch gives, before it goes to the nodes. */
+    /** Sums of a batch before P2G. */
     template <int dim, bool averaged, bool deviator>
     class DualDomainStress
     {
@@ -32,7 +32,7 @@ namespace limber
       using Nodes                  = typename Basis::Nodes;
       using Number                 = PointPack<dim>;
       static constexpr int n_nodes = Basis::n_nodes;
-      // Without shear stress there is one component for all.
+      // Without deviator all diagonal components are equal.
       static constexpr int n_components = deviator ? dim * (dim + 1) / 2 : 1;
 
     public:
@@ -84,7 +84,7 @@ namespace limber
               }
       }
 
-      /** To the nodes: forces, and tensors to the @p records. */
+      /** P2G: forces, and tensors to the @p records. */
       __attribute__((always_inline)) void
       give(double *const nodes, double *const records) const
       {
@@ -114,7 +114,7 @@ namespace limber
       }
 
     private:
-      // Of component c of a symmetric tensor: the diagonal first
+      // Indices of component c of a symmetric tensor: the diagonal first
       static constexpr std::pair<int, int>
       indices(const int c)
       {

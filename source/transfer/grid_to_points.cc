@@ -13,7 +13,7 @@ namespace limber
 {
   namespace
   {
-    /** Momentum of the points of a batch, to the nodes of their cell. */
+    /** MUSL: map the momentum of the points of a batch back to the nodes. */
     template <bool affine, int dim>
     __attribute__((always_inline)) inline void
     remap_momentum(const Linear<dim>,
@@ -63,20 +63,20 @@ namespace limber
 
 
 
-    /** What the nodes tell the points of a pack of gradients, 1/s. */
+    /** Velocity gradients of the grid at the points of a pack, 1/s. */
     template <int dim>
     struct NodalGradients
     {
       using Number = PointPack<dim>;
 
-      std::array<Number, dim>       D;        // sum_i N_i (x_i - x)^2, m^2
+      std::array<Number, dim>       D;        // APIC sum_i N_i (x_i - x)^2, m^2
       std::array<Number, dim * dim> velocity; // row-major
       std::array<Number, dim * dim> change;   // of the increments
     };
 
 
 
-    /** With linear functions the gradient of the velocity of the grid ... */
+    /** APIC with linear functions: the gradient of the grid velocity ... */
     template <int dim, class Nodal>
     __attribute__((always_inline)) inline NodalGradients<dim>
     nodal_gradients(const Linear<dim>,
@@ -113,10 +113,10 @@ namespace limber
 
 
     /**
-     * ... and with splines, where that would not keep angular momentum,
-     * B D^-1 with the moments B = sum N_i v_i (x_i - x) of the velocity and
-     * D = sum N_i (x_i - x) (x_i - x), which is diagonal (Jiang et al. 2015,
-     * sec. 5.3).
+     * ... and with splines, where that would not conserve angular momentum, B
+     * D^-1 with the moments B = sum N_i v_i (x_i - x) of the velocity and D =
+     * sum N_i (x_i - x) (x_i - x), which is diagonal (Jiang et al. 2015, sec.
+     * 5.3).
      */
     template <int dim, int degree, class Nodal>
     inline NodalGradients<dim>
@@ -149,7 +149,7 @@ namespace limber
                   change[d] += weight * record[NodeLayout<dim>::increment + d];
                 }
             }
-          // No arm is left to a point that lies in a side of the grid.
+          // B = D = 0 for a point that lies in a side of the grid.
           const double edge_inverse = geometry.inverse_edge[e];
           const Number inverse =
             edge_inverse / larger(D, broadcast<Number>(1e-30));
@@ -165,7 +165,7 @@ namespace limber
 
 
 
-    /** Nodes of a cell that are light, with linear functions. */
+    /** The light nodes of a cell, with linear functions. */
     template <class Basis, bool affine>
     inline LightNodes<Basis::dim>
     light_nodes(const GridView<Basis::dim> &grid,
@@ -187,9 +187,9 @@ namespace limber
 
 
     /**
-     * The gradients without what is left out of the increments of these, L,
-     * but with a spin that keeps their angular momentum,
-     * W_de = (S_de - S_ed) / (D_d + D_e), S = L D.
+     * Remove from the gradients the part L of the increments of light nodes,
+     * except for a spin that conserves their angular momentum, W_de = (S_de -
+     * S_ed) / (D_d + D_e), S = L D.
      */
     template <int dim, class Nodal>
     __attribute__((noinline)) void
@@ -226,19 +226,19 @@ namespace limber
 
 
     /**
-     * The gradient C that the points of a pack carry: that of the nodes (APIC)
-     * and, with the share alpha of increments, a spin W that makes up for what
-     * the points would else forget of the angular momentum that they gave and
-     * that the increments of the nodes bring,
+     * Set the gradient C of the points of a pack: that of the grid (APIC) and,
+     * with the FLIP share alpha (AFLIP), a spin W that restores the angular
+     * momentum which would be lost: what the points gave to the grid and what
+     * the increments of the nodes add,
      *
      *   (D_d + D_e) W_de = alpha (S_de - S_ed),  S = (C + dC - C_nodes) D.
      *
-     * So FLIP, which forgets no velocity, forgets no spin either.
+     * So FLIP, which loses no velocity, loses no spin either.
      *
      * Returns twice the work, per mass (J/kg), that the increments of the nodes
-     * do on the affine velocity, former and new: sum_i N_i dv_i . (x_i - x)
-     * C / 2 of both. It is in the motion that strains, but not in the velocity
-     * of the points.
+     * do on the affine velocity, old and new: sum_i N_i dv_i . (x_i - x)
+     * C / 2 of both. It is part of the motion that strains, but not of the
+     * velocity of the points.
      */
     template <int dim, class Lanes>
     __attribute__((always_inline)) inline PointPack<dim>
@@ -277,8 +277,8 @@ namespace limber
 
 
     /**
-     * Velocities @p take_velocity of the grid besides their increments; else
-     * that is all the points need.
+     * The G2P sweep. With @p take_velocity the nodal velocities are read
+     * besides their increments (PIC share, affine, or motion).
      */
     template <class Basis,
               bool affine,

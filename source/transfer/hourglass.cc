@@ -9,7 +9,7 @@ namespace limber
 {
   namespace
   {
-    /** chi c m / h of a cell, summed over the bodies, kg/s. */
+    /** k = chi c m / h of a cell, summed over the bodies, kg/s. */
     template <int dim>
     double
     resistance(const CellGeometry<dim>                     &cell,
@@ -26,7 +26,7 @@ namespace limber
 
 
 
-    /** The sets of directions of the modes, as bits: pairs first. */
+    /** The sets of directions of the hourglass modes, as bits: pairs first. */
     template <int dim>
     constexpr std::array<int, CellTwist<dim>::n_modes>
     directions_of_modes()
@@ -54,7 +54,7 @@ namespace limber
     using Layout          = NodeLayout<dim>;
     using Twist           = CellTwist<dim>;
     constexpr int n_nodes = Kernel::n_nodes;
-    // shared by all cells around a node
+    // A nodal mass is shared by all cells around it
     const double   largest_share = 2. / n_nodes / step;
     constexpr auto directions    = directions_of_modes<dim>();
 
@@ -75,11 +75,11 @@ namespace limber
         const Nodes mass = of_nodes(Layout::mass);
         twist.resistance = std::min(resistance(cell, number, bodies),
                                     largest_share * minimum(mass));
-        // Nothing to resist, or all points on a side: a node has no velocity.
+        // No resistance, or a node without mass, as all points lie on a side.
         if (!(twist.resistance > 0))
           continue;
         const Nodes inverse_mass = 1. / mass;
-        // Cells of several sizes are similar, so one area serves all pairs.
+        // Cells of different sizes are similar, so one area serves all pairs.
         const double inverse_area = cell.inverse_edge[0] * cell.inverse_edge[1];
         twist.area                = 1 / inverse_area;
 
@@ -89,7 +89,8 @@ namespace limber
 #pragma GCC unroll 8
         for (int d = 0; d < dim; ++d)
           {
-            // From the nodes to the modes, products of their signs
+            // Nodal values to modes, products of their signs (Hadamard
+            // transform)
             Nodes velocity = of_nodes(Layout::momentum + d) * inverse_mass;
             for (int e = 0; e < dim; ++e)
               velocity -= Kernel::sign(e) * Kernel::across(velocity, e);
@@ -161,7 +162,7 @@ namespace limber
                 area * mean[TwistLayout<dim>::twist + d * Twist::n_pairs + k];
             for (unsigned int k = Twist::n_pairs; k < Twist::n_modes; ++k)
               modes[directions[k]] = twist.amplitude[d][k];
-            // and back to the nodes
+            // and back to the nodes (transpose)
             for (int e = 0; e < dim; ++e)
               modes += Kernel::sign(e) * Kernel::across(modes, e);
             force[d] = -twist.resistance * modes;

@@ -15,7 +15,7 @@ namespace limber
 
 
 
-    /** The linear functions of a cell as splines of degree 1. */
+    /** Linear functions in the form of SplineFactors of degree 1. */
     struct LinearFactors
     {
       template <class Number>
@@ -55,7 +55,7 @@ namespace limber
 
 
 
-    // sum_p V_p xi^a eta^b zeta^c: functions are polynomials in a cell.
+    // Moments sum_p V_p xi^a eta^b zeta^c: functions are polynomials in a cell.
     template <int dim, int degree>
     __attribute__((
       always_inline)) inline std::array<double, Powers<dim, degree>::n>
@@ -141,7 +141,7 @@ namespace limber
 
 
 
-    // Of a pack of points; the lanes beyond the last repeat it.
+    // Positions of a pack of points; idle lanes repeat the last one.
     template <int dim>
     struct PlacesOfPack
     {
@@ -165,7 +165,7 @@ namespace limber
         double volume = -1, edge = 0;
         for (int k = 0; k < Extents<dim>::lanes; ++k)
           {
-            if (half_edge[k] != volume) // most are as large as the others
+            if (half_edge[k] != volume) // usually the same volume as before
               edge = half_edge_of<dim>(volume = half_edge[k]);
             half_edge[k] = edge;
             reach[k]     = reach_of(points, std::min(first + k, end - 1), edge);

@@ -8,10 +8,10 @@
 namespace limber
 {
   /**
-   * Add to the records of the nodes of a cell: lane i of values[k] goes to
-   * slot first + k of node i. A transposition makes one vector addition per
-   * node out of many scalar ones; the lanes beyond the last value add zero.
-   * Always inlined: a call would send all values through memory.
+   * Add to the records of the nodes of a cell: lane i of values[k] goes to slot
+   * first + k of node i. A transposition turns many scalar additions into one
+   * vector addition per node; unused lanes add zero. Always inlined: a call
+   * would pass all values through memory.
    */
   template <int dim, unsigned int first, std::size_t n_values>
   __attribute__((always_inline)) inline void
@@ -19,16 +19,16 @@ namespace limber
                const std::array<Pack<(1 << dim)>, n_values> &values,
                double *const                                 nodes)
   {
-    // Two values alone: the next batch reads velocities that stand next to
-    // re-mapped momenta in the records of the same nodes, and would wait until
-    // what overlaps them has left for the cache. In three dimensions nothing
-    // waits for that.
+    // Two values are added alone: the next batch reads velocities next to
+    // re-mapped momenta in the same records, and an overlapping wider store
+    // would stall its loads (no store forwarding). This costs nothing in three
+    // dimensions.
     constexpr unsigned int n_nodes = 1 << dim;
     constexpr unsigned int width   = n_values == 2 ? 2 : n_nodes;
     static_assert(dim == 2 || n_values <= width, "one transposition in 3d");
     using Lanes = Pack<width>;
 
-    // It has to stay within the record.
+    // Shifted such that it stays within the record
     constexpr unsigned int n_first = n_values < width ? n_values : width;
     constexpr unsigned int shift   = first + width <= NodeLayout<dim>::stride ?
                                        0 :

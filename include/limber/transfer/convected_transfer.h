@@ -8,12 +8,12 @@
 #include <vector>
 
 /**
- * @file The sweeps of points with domains (interpolation/convected.h), each of
- * which has a stencil of its own.
+ * @file Sweeps of points with domains (GIMP, CPDI; interpolation/convected.h),
+ * each of which has a stencil of its own.
  */
 namespace limber
 {
-  /** What points_to_grid() does for them; returns the number of batches. */
+  /** points_to_grid() for them; returns the number of batches. */
   template <int dim>
   std::size_t
   domains_to_grid(const PointView<dim> &points,
@@ -23,8 +23,7 @@ namespace limber
 
 
   /**
-   * What grid_to_points() does for them; where points move their domains
-   * follow.
+   * grid_to_points() for them; if the points move, their domains are convected.
    */
   template <int dim>
   VelocitySummary
@@ -35,8 +34,8 @@ namespace limber
 
 
   /**
-   * What sum_divergence() does for them: with NodalMeanSums of domain_means.h
-   * for means around nodes, with CellMeanSums for means over cells.
+   * sum_divergence() for them: with NodalMeanSums of domain_means.h for means
+   * around nodes, with CellMeanSums for means over cells.
    */
   template <class Sums, int dim>
   void
@@ -47,7 +46,7 @@ namespace limber
 
 
 
-  /** The sums of the pressure that the points store (times J), by cells. */
+  /** Sums over cells for the mean of the stored pressure J p. */
   template <int dim>
   void
   sum_pressure_over_cells(const PointView<dim> &points, double *records);
@@ -55,8 +54,8 @@ namespace limber
 
 
   /**
-   * The cells of the corners of domains that are in several, ascending: their
-   * nodes get mass as well.
+   * The cells of the corners of domains that overlap several cells, ascending:
+   * their nodes get mass as well.
    */
   template <int dim>
   std::vector<std::uint32_t>

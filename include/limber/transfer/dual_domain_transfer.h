@@ -5,14 +5,14 @@
 #include <limber/transfer/points_to_grid.h>
 
 /**
- * @file The sweeps of the dual domain method (interpolation/dual_domain.h) that
- * give to nodes; the grid must have records for it.
+ * @file P2G sweeps of the dual domain method (interpolation/dual_domain.h); the
+ * grid must have records for it.
  */
 namespace limber
 {
   /**
-   * Add to the nodes the forces of the share alpha of the stress that points
-   * have for themselves, and to their tensors what the rest gives,
+   * P2G of internal forces: add to the nodes the forces of the share alpha of
+   * the stress, which acts on grad N_i, and the rest to their tensors,
    *
    *   f_i = - sum alpha V sigma grad N_i,   T_j = sum (1 - alpha) N_j V sigma,
    *
@@ -27,8 +27,8 @@ namespace limber
 
 
   /**
-   * What sum_divergence() does: with NodalMeanSums of domain_means.h for means
-   * around nodes, with CellMeanSums for means over cells.
+   * sum_divergence() for this method: with NodalMeanSums of domain_means.h for
+   * means around nodes, with CellMeanSums for means over cells.
    */
   template <class Sums, int dim>
   void

@@ -8,7 +8,9 @@ namespace limber
 {
   namespace internal
   {
-    /** Of point @p p: values in the outer lanes, slopes in the inner ones. */
+    /**
+     * For point @p p: values in the outer lanes, derivatives in the inner ones.
+     */
     __attribute__((always_inline)) inline Pack<4>
     with_slopes(const Pack<4> &values, const Pack<4> &slopes, const int p)
     {
@@ -20,14 +22,15 @@ namespace limber
 
 
   /**
-   * m N_i, m N_i v and the force - V t grad N_i of a pack of points to the
-   * nodes of a quadratic cell in two dimensions, with what goes by N' along
-   * one direction in the inner lanes of a pack of its own:
+   * P2G for a pack of points in a cell of quadratic splines in 2d: m N_i,
+   * m N_i v and the force - V t grad N_i. Contributions with the derivative N'
+   * along one direction are in the inner lanes of a pack of their own:
    *
    *   lower = (m, f_0x, f_1x, m v_0), times (N, N', N', N)(x) and N(y),
    *   upper = (m v_1, f_0y, f_1y, 0), times N(x) and (N, N', N', N)(y).
    *
-   * So each node takes two products of four lanes, not three of a record.
+   * So each node takes two products of four lanes, instead of three of a whole
+   * record.
    */
   template <class Sums, class Lanes>
   __attribute__((always_inline)) inline void

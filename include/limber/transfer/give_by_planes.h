@@ -8,10 +8,10 @@
 namespace limber
 {
   /**
-   * The factors of the functions of a cell at the points of a pack, in memory,
-   * for each direction and each node along it. Where it @p has_others, the
-   * value along one axis at a time is exchanged for another factor: the slope,
-   * or whatever else there is for each direction.
+   * The one-dimensional factors of the spline functions of a cell at the points
+   * of a pack, in memory, by direction and node along it. If it @p has_others,
+   * also a second factor that replaces the value along one axis at a time: the
+   * derivative, or another one per direction.
    */
   template <class Basis, bool has_others>
   struct AxisFactors
@@ -33,7 +33,7 @@ namespace limber
             if constexpr (has_others)
               store(others[d][i], other[d][i]);
           }
-      // A load spreads a factor over the lanes for nothing (SplineWeights).
+      // Broadcast loads from memory are free (see SplineWeights).
       __asm__("" : "+m"(*this));
     }
 
@@ -44,14 +44,14 @@ namespace limber
 
 
   /**
-   * Add to the records of the nodes what the first @p n_points of a pack give:
-   * N_i @p alike, and for each direction d the product of N_i with its factor
-   * along d exchanged for the other one, times along[d]. If it @p begins the
-   * sums, they need not be zero.
+   * P2G by sum factorisation: add to the records of the nodes, for the first @p
+   * n_points of a pack, N_i @p alike and, for each direction d, along[d] times
+   * N_i with its factor along d replaced by the other one. If it @p begins the
+   * sums, these need not be zero.
    *
-   * What goes to a plane of nodes, to a row of it and to a node is formed one
-   * after the other. The sums of a plane stay in registers from point to point;
-   * where the machine has too few of them, those of a row.
+   * Contributions to a plane of nodes, to a row of it and to a node are formed
+   * in turn. The sums of a plane stay in registers from point to point; if the
+   * machine has too few, those of a row.
    */
   template <class Basis,
             bool has_alike,
@@ -120,7 +120,8 @@ namespace limber
             row[i] += factors.other[0][i][p] * slope;
         }
     };
-    // The sums of some nodes from the first on, while add(kept) adds to them
+    // Keep the sums of some nodes from the first on in registers during
+    // add(kept)
     const auto keep_sums = [&](const auto count, const int first, auto &&add)
       __attribute__((always_inline))
     {

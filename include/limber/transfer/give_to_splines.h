@@ -10,8 +10,8 @@
 namespace limber
 {
   /**
-   * Weights of all nodes of a cell at the points of a pack, in memory, so that
-   * each can be spread over the lanes of a record as it is loaded.
+   * Weights of all nodes of a cell at the points of a pack, stored in memory,
+   * such that each can be broadcast over the lanes of a record as it is loaded.
    */
   template <class Basis, bool slopes>
   struct SplineWeights
@@ -36,8 +36,8 @@ namespace limber
             for (Number &slope : w[d].slope)
               slope *= cell.inverse_edge[d];
         }
-        // Every weight is a product of factors that are exact to the last bits:
-        // small masses of nodes remain positive.
+        // Products of non-negative factors without cancellation: tiny nodal
+        // masses are accurate and remain positive.
 #pragma GCC unroll 27
       for (int i = 0; i < n; ++i)
         {
@@ -59,8 +59,8 @@ namespace limber
               store(y, gradient[1][i]);
             }
         }
-      // Else GCC takes every weight out of a register by shuffles, where a
-      // load spreads it over the lanes for nothing.
+      // Without this GCC extracts every weight from a register by shuffles,
+      // while a broadcast load is free.
       __asm__("" : "+m"(value));
       if constexpr (slopes)
         __asm__("" : "+m"(gradient));
@@ -74,12 +74,12 @@ namespace limber
 
 
   /**
-   * Sums for the records of the nodes of a cell: @p n_slots of them from
-   * @p first on are lanes of one pack for each node. What a point gives is then
-   * one product of a pack and a weight for each node, and what a cell gives
-   * is added to a record at once. The sums of a pack of points are best those
-   * of a local object, so that they stay in registers; those of a batch, which
-   * work that is called apart has to know (for_each_pack), live in memory.
+   * Sums for the records of the nodes of a cell: @p n_slots slots from @p first
+   * on are lanes of one pack per node. So a point adds one product of a pack
+   * and a weight to each node, and a cell adds each record at once. Sums of a
+   * pack of points should be a local object, to stay in registers; those of a
+   * batch live in memory, as out-of-line functions must access them
+   * (for_each_pack).
    */
   template <class Basis, unsigned int first, unsigned int n_slots>
   class SplineSums
@@ -87,7 +87,7 @@ namespace limber
   public:
     static constexpr int dim = Basis::dim;
     using Window             = RecordWindow<dim, first, n_slots>;
-    // In halves: forces lie in the lower lanes, and take most of the work.
+    // As two halves: forces are in the lower lanes and most of the work.
     using Record =
       std::conditional_t<Window::width == 8, SplitPack, typename Window::Lanes>;
     static constexpr unsigned int width = Window::width;
@@ -107,7 +107,7 @@ namespace limber
       return Window::lane_of(slot);
     }
 
-    /** N_i times a record, for all nodes; weights are those of one point. */
+    /** Add N_i times a record for all nodes; weights of one of the points. */
     template <std::size_t n, int points, class What>
     __attribute__((always_inline)) void
     add(const double (&weights)[n][points], const int point, const What &what)
@@ -117,7 +117,7 @@ namespace limber
         sums[i] += weights[i][point] * what;
     }
 
-    /** Add those of a pack, or be them if it is the first of its batch. */
+    /** Add the sums of a pack, or copy them if it is the first of its batch. */
     __attribute__((always_inline)) void
     take(const SplineSums &other, const bool first_pack)
     {
@@ -146,9 +146,9 @@ namespace limber
 
 
   /**
-   * What the points of a pack give to all nodes alike but for N_i, as records:
-   * m and m v, or the second alone where slots of the mass are not among those
-   * summed up.
+   * What the points of a pack give to all nodes apart from the factor N_i, as
+   * records: m and m v, or the latter alone if the slots do not include the
+   * mass.
    */
   template <class Sums, int dim, class Lanes>
   __attribute__((always_inline)) inline auto
@@ -171,7 +171,7 @@ namespace limber
 
 
 
-  /** m C_e, to be given with N_i (x_i - x)_e. */
+  /** m C_e, to be multiplied by N_i (x_i - x)_e (APIC). */
   template <class Sums, int dim, class Lanes>
   __attribute__((always_inline)) inline auto
   affine_records(const PointView<dim> &points,
@@ -192,7 +192,7 @@ namespace limber
 
 
 
-  /** Forces - V t, to be given with the derivatives of N_i along e. */
+  /** Forces - V t, to be multiplied by the derivatives of N_i along e. */
   template <class Sums, int dim>
   __attribute__((always_inline)) inline auto
   force_records(const SmallMatrix<dim, PointPack<dim>> &Vt, const int e)
@@ -210,7 +210,7 @@ namespace limber
 
 
 
-  /** What of a pack of points is given to the nodes. */
+  /** Which contributions give_pack() adds. */
   template <bool give_momentum, bool give_affine, bool give_force>
   struct Given
   {
@@ -221,11 +221,10 @@ namespace limber
 
 
   /**
-   * Add to the sums of a batch what a pack of its points gives: m N_i and
-   * m N_i (v + C (x_i - x)), and with @p Vt (J) the force - V t grad N_i. Sums
-   * of quadratic splines stay in registers while one point after the other adds
-   * to them; what would not, cubic ones and forces in three dimensions, is done
-   * plane by plane.
+   * P2G of a pack: add to the sums of a batch m N_i and m N_i (v + C (x_i -
+   * x)), and with @p Vt (J) the force - V t grad N_i. For quadratic splines the
+   * sums stay in registers while points are added one by one; where they would
+   * not fit (cubic splines, forces in 3d) this is done plane by plane.
    */
   template <class Basis, class What, class Sums, class Lanes>
   __attribute__((always_inline)) inline void

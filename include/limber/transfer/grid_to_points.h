@@ -6,25 +6,24 @@
 
 namespace limber
 {
-  /** What the points of a body take from the nodes in one sweep. */
+  /** Options of G2P for the points of a body. */
   struct TakeFromGrid
   {
-    // Share alpha of the velocity increment (FLIP); the rest is the velocity
+    // FLIP share alpha of the velocity increment; the rest is the velocity
     // itself (PIC): v = alpha (v + sum N dv) + (1 - alpha) sum N v.
     double flip_share = 1;
-    // Points carry a gradient of their velocity: APIC with the share 0, else
-    // AFLIP.
+    // Points store a velocity gradient: APIC with alpha = 0, else AFLIP.
     bool affine = false;
-    // With linear functions: nodes are light (LightNodes) if they have less
-    // than so much per volume of a cell, kg/m^3; 0: none is.
+    // With linear functions: nodes with less mass than this per volume of a
+    // cell, kg/m^3, are light (LightNodes); 0: none
     double light_density = 0;
-    bool   remap         = false; // give the new momentum back to the nodes
-    double move          = 0; // step by which the points move with the grid, s
+    bool   remap         = false; // re-map the new momentum to the nodes (MUSL)
+    double move          = 0;     // step by which points move with the grid, s
   };
 
 
 
-  /** What a sweep learns on its way. */
+  /** Results of a G2P sweep. */
   struct VelocitySummary
   {
     double speed_squared = 0; // the largest, m^2/s^2
@@ -35,10 +34,10 @@ namespace limber
 
 
   /**
-   * Update the velocities of the points from the nodes and, on request, move
-   * the points and give the new momentum back to the nodes with the weights
-   * of the old positions (MUSL). Where the points move and @p sums are given,
-   * those of the new places are gathered.
+   * G2P: update the velocities of the points from the nodes and, on request,
+   * move the points or map the new momentum back to the nodes with the weights
+   * of the old positions (MUSL). If the points move and @p sums are given, the
+   * cell sums at the new positions are gathered.
    */
   template <int dim>
   VelocitySummary
@@ -49,7 +48,7 @@ namespace limber
 
 
 
-  /** Gather the sums of the cells at the present places of the points. */
+  /** Gather the sums of the cells at the present positions of the points. */
   template <int dim>
   void
   gather_cell_sums(const PointView<dim> &points,

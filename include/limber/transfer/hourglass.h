@@ -7,31 +7,31 @@
 #include <vector>
 
 /**
- * @file Viscous resistance to the motions of a cell that averages over it do
- * not see, its hourglass modes: products s_k of two or more of the signs of the
- * directions, with amplitudes q_k = sum over nodes s_k v / 2^dim.
+ * @file Viscous hourglass control: resistance to the zero energy modes of a
+ * cell with averaged strain, the products s_k of two or more of the signs of
+ * the directions, with amplitudes q_k = sum over nodes s_k v / 2^dim.
  *
- * A smooth motion has them too, those with two directions d, e as large as
- * h_d h_e d^2v/dx_d dx_e / 4 and alike in neighbouring cells, while hourglass
- * motion alternates. So what is resisted of these is the scatter of the second
+ * A smooth motion has them too, those with two directions d, e with amplitudes
+ * h_d h_e d^2v/dx_d dx_e / 4 that are alike in neighbouring cells, while
+ * hourglass modes alternate. So these are resisted by the scatter of the second
  * derivatives w = q / (h_d h_e) among the cells around each node. With the
  * resistance k = sum over bodies chi c m_cell / h of a cell, the power
  *
- *   sum over nodes n, cells c around n:  k_c (h_d h_e)^2 (w_c - w_n)^2 / 2^dim,
+ *   sum over nodes n, cells c around n:  k_c (h_d h_e)^2 (w_c - w_n)^2 / 2^dim
  *
- * is taken, w_n being the mean around n with the weights k_c (h_d h_e)^2: its
- * derivatives are the forces
+ * is dissipated, w_n being the mean around n with the weights k_c (h_d h_e)^2;
+ * its derivatives are the forces
  *
  *   f_a = - sum_k s_k(a) k_c (q_c - mean over the nodes of c of h_d h_e w_n).
  *
- * Those of a velocity that is quadratic in place vanish, at surfaces too, where
- * a node has fewer cells. A mode of three directions, of third order in h, is
- * resisted as it is, as are all modes of a cell that has no neighbours (theory:
+ * They vanish for velocities that are quadratic in space, also at surfaces,
+ * where a node has fewer cells. The trilinear mode, of third order in h, is
+ * resisted directly, as are all modes of a cell without neighbours (theory:
  * doc/theory/treatments.md).
  */
 namespace limber
 {
-  /** A body that resists hourglass motion: its masses in the cells, chi c. */
+  /** A body with hourglass control: its masses in the cells, and chi c. */
   template <int dim>
   struct HourglassResistance
   {
@@ -41,12 +41,12 @@ namespace limber
 
 
 
-  /** The hourglass motion of a cell. */
+  /** Hourglass amplitudes of a cell. */
   template <int dim>
   struct CellTwist
   {
     static constexpr unsigned int n_modes = (1 << dim) - 1 - dim;
-    // of two directions, and so with a mean around nodes
+    // modes of two directions, which have a mean around nodes
     static constexpr unsigned int n_pairs = dim == 2 ? 1 : 3;
 
     double                                       resistance = 0; // k, kg/s
@@ -57,10 +57,10 @@ namespace limber
 
 
   /**
-   * The record of a node in which cells meet, at the offsets of the other ones:
-   * their weight k (h_d h_e)^2, kg m^4/s, and the sums of that times w or, once
-   * they are complete and divided by the weight, the means of w, 1/(m s), by
-   * components and pairs of directions.
+   * The nodal record, at the same offsets as NodeLayout: the sum of the weights
+   * k (h_d h_e)^2 of cells, kg m^4/s, and the sums of weight times w or, after
+   * division by the weight, the means of w, 1/(m s), by components and pairs of
+   * directions.
    */
   template <int dim>
   struct TwistLayout
@@ -74,10 +74,10 @@ namespace limber
 
 
   /**
-   * From mass and momentum of the nodes: the twists of these cells, one after
-   * the other, and what they add to the records of the nodes in @p sums. k is
-   * at most half (a quarter in 3d) of the smallest nodal mass over the step,
-   * which keeps it stable.
+   * From mass and momentum of the nodes: the hourglass amplitudes of these
+   * cells, and their contributions to the nodal records in @p sums. k is at
+   * most half (a quarter in 3d) of the smallest nodal mass over the step, for
+   * stability.
    */
   template <int dim>
   void
@@ -89,9 +89,9 @@ namespace limber
               double                                      *sums);
 
   /**
-   * With the means around the nodes, whose weight is zero where there is none:
-   * add the forces to the re-mapped slots of the nodes, which are not in use
-   * then. They add to no force and no moment and only take energy.
+   * Given the means around the nodes (weight zero if there is none), add the
+   * hourglass forces to the re-mapped slots of the nodes, which are unused at
+   * that time. They have no resultant and no moment and only dissipate.
    */
   template <int dim>
   void

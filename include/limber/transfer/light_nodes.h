@@ -12,30 +12,32 @@
 namespace limber
 {
   /**
-   * What the affine velocities of points (APIC) leave out of the increments of
-   * light nodes, with linear functions.
+   * Small-cut stabilisation of APIC with linear functions: what the affine
+   * velocities of points leave out of the increments of light nodes.
    *
    * Nodes beyond a free surface that a point has just reached have next to no
-   * mass m_i, but feel a force like all others. Their increment dv_i has no
-   * bound. The velocity of the point, by N_i, has one; its gradient has none,
-   * and APIC gives it back to the nodes in the next step. So the affine
-   * velocity takes from a node that is lighter than m_c only
+   * mass m_i, but feel a force like all others: their increment dv_i is
+   * unbounded. Weighted by N_i, the velocity of the point remains bounded; its
+   * gradient does not, and APIC maps it back to the nodes in the next step. So
+   * the affine velocity takes from a node that is lighter than m_c only
    *
    *   dv(x) + theta_i (dv_i - dv(x)),   theta_i = min(1, m_i / m_c),
    *
    * which is stable if m_c is no less than C^2/4 of the mass of the points in
    * the cell per direction in which nodes are light, with the Courant number C.
-   * Linear momentum is not touched. doc/theory/transfers.md.
+   * Linear momentum is not affected. doc/theory/transfers.md.
    */
   template <int dim>
   class LightNodes
   {
   public:
-    /** None. */
+    /** No light nodes. */
     LightNodes() = default;
 
-    /** Of a cell, with @p least_mass = m_c (kg). Hanging nodes have been lent
-     * the mass of their lightest master. */
+    /**
+     * The light nodes of a cell, with @p least_mass = m_c (kg). Hanging nodes
+     * have been given the mass of their lightest master.
+     */
     LightNodes(const CellGeometry<dim> &cell,
                const double *const      nodes,
                const double             least_mass)
@@ -67,8 +69,10 @@ namespace limber
       return are_there;
     }
 
-    /** Gradient, over natural coordinates, of (1 - theta_i) (dv_i - dv(x)) in
-     * direction @p d, with dv(x) = @p at_point. */
+    /**
+     * Gradient, in natural coordinates, of (1 - theta_i) (dv_i - dv(x)) in
+     * direction @p d, with dv(x) = @p at_point.
+     */
     template <class Number>
     std::array<Number, dim>
     gradient(const int                      d,

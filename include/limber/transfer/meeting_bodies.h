@@ -8,26 +8,29 @@
 #include <vector>
 
 /**
- * @file What is summed up over the points of bodies that meet at nodes, each in
- * two slots there: one for each of two bodies. Nothing else is met by these
- * sweeps.
+ * @file Contact between bodies: sums over the points of bodies that meet at
+ * nodes, in two slots per meeting, one for each of the two bodies. These sweeps
+ * visit only the cells concerned.
  */
 namespace limber
 {
   /**
-   * A node of a cell at which bodies meet, or one that hangs on such a node and
-   * has a share of its function.
+   * A node of a cell at which bodies meet, or a hanging node with such a node
+   * as master and its share of that function.
    */
   struct MeetingCorner
   {
     std::uint32_t slot; // 2 * number of the meeting, 1 more for the second body
-    std::uint32_t k;    // its number in the cell
+    std::uint32_t k;    // local number of the node in the cell
     double        share = 1;
   };
 
 
 
-  /** Points of a body in a cell with such corners: [first, last) of all. */
+  /**
+   * Points of a body in a cell, with the corners [first, last) where it meets
+   * others.
+   */
   struct MeetingBatch
   {
     CellBatch     batch;
@@ -37,7 +40,7 @@ namespace limber
 
 
 
-  /** Whether a point is one of those next to the surface of its body. */
+  /** Whether a point is adjacent to the surface of its body. */
   template <int dim>
   inline bool
   is_at_surface(const PointView<dim> &points, const std::size_t p)
@@ -48,8 +51,9 @@ namespace limber
 
 
   /**
-   * From a point to where its material ends, m, before it is stretched: at the
-   * surface of the body, otherwise at that of a cube of its volume.
+   * Undeformed distance from a point to the end of its material, m: to the
+   * surface of the body for surface points, else half the edge of a cube of its
+   * volume.
    */
   template <int dim>
   inline double
@@ -62,7 +66,7 @@ namespace limber
 
 
 
-  /** Those of one body side by side. */
+  /** The batches of one body. */
   struct MeetingBatches
   {
     const MeetingBatch  *begin, *end;
@@ -82,7 +86,10 @@ namespace limber
 
 
 
-  /** Add sum_p V_p grad N_i(x_p), m^(dim-1), to dim numbers in each slot. */
+  /**
+   * Add sum_p V_p grad N_i(x_p), m^(dim-1), which gives the normal, to dim
+   * numbers in each slot.
+   */
   template <int dim>
   void
   add_volume_gradients(const PointView<dim> &points,
@@ -92,20 +99,22 @@ namespace limber
 
 
 
-  /** Directions along which two bodies may be apart at a meeting. */
+  /** Number of candidate normals along which two bodies are compared. */
   inline constexpr int n_separations = 3;
 
   /**
-   * Of each of n meetings, from the gradients g_a and g_b in its slots: the
-   * directions of g_a, of -g_b and of the sum of these; zero of zero.
+   * Candidate normals of each of n meetings, from the gradients g_a and g_b in
+   * its slots: the unit vectors of g_a, of -g_b and of their sum; zero for
+   * zero.
    */
   template <int dim>
   void
   find_directions(std::size_t n, const double *gradients, double *directions);
 
   /**
-   * How far points and their material go along these: the second bodies
-   * against them. In each slot, lane by lane; see find_largest().
+   * How far points with their material extend along the candidate normals
+   * (second bodies: along their negatives). In each slot, lane by lane; see
+   * find_largest().
    */
   template <int dim>
   struct Extents
@@ -113,7 +122,7 @@ namespace limber
     static constexpr int lanes = 4;
     static constexpr int n     = n_separations * lanes; // numbers a slot
 
-    std::vector<double> numbers; // -1e300 where nothing is
+    std::vector<double> numbers; // -1e300 if there is no point
 
     void
     clear(std::size_t n_slots);
@@ -123,7 +132,7 @@ namespace limber
         const MeetingBatches &batches,
         const double         *directions); // n_separations * dim a meeting
 
-    /** In the first of the lanes. */
+    /** Reduce the lanes: the result is in the first. */
     void
     find_largest();
   };
@@ -131,8 +140,8 @@ namespace limber
 
 
   /**
-   * Where a body ends, as seen from another at a node: the normal there, out of
-   * the first one, and how far both go along it, the second against it, m.
+   * The surfaces at a meeting: the normal out of the first body, and how far
+   * both bodies extend along it (the second along its negative), m.
    */
   template <int dim>
   struct Faces
@@ -144,9 +153,9 @@ namespace limber
 
 
   /**
-   * List points whose material may end at another body: not further from the
-   * face of that than they could be, along some normal that their cell sees,
-   * with what room it takes that these differ.
+   * List points whose material may touch another body: not further from the
+   * surface of that than is possible, along some normal of the nodes of their
+   * cell, with a margin for the difference of these normals.
    */
   template <int dim>
   void
@@ -156,7 +165,7 @@ namespace limber
                    double                inverse_density,
                    const Faces<dim>     *faces,   // of each meeting
                    double                stretch, // across the surface
-                   double largest_reach, // of points that may be met, m
+                   double largest_reach, // of points of the other body, m
                    std::vector<std::uint32_t> &near);
 } // namespace limber
 

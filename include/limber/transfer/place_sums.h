@@ -7,9 +7,9 @@
 #include <vector>
 
 /**
- * @file Between nodes and places that see some of them with given numbers: sums
- * of what nodes have, and what goes back with the same numbers. Vectors take
- * vector_lanes<dim> doubles each, those beyond dim zero.
+ * @file Sparse interpolation between nodes and positions with given weights,
+ * and its transpose. Vectors take vector_lanes<dim> doubles each, zero beyond
+ * dim.
  */
 namespace limber
 {
@@ -18,6 +18,7 @@ namespace limber
 
 
 
+  /** A weight of a node at a position: an entry of the sparse matrix. */
   struct PlaceShare
   {
     std::uint32_t node;
@@ -26,7 +27,9 @@ namespace limber
 
 
 
-  /** The shares of place p are [begin[p], begin[p + 1]); there may be room. */
+  /**
+   * Rows of the matrix: [begin[p], begin[p + 1]) of all, which may be larger.
+   */
   struct PlaceShares
   {
     std::vector<std::size_t> begin{0};
@@ -41,7 +44,7 @@ namespace limber
 
 
 
-  /** sums_p = sum_i a_pi values_i where @p wanted, zero elsewhere. */
+  /** Interpolate: sums_p = sum_i a_pi values_i if @p wanted, else zero. */
   template <int dim>
   void
   sum_at_places(const PlaceShares       &shares,
@@ -49,7 +52,7 @@ namespace limber
                 const double            *values,
                 double                  *sums);
 
-  /** values_i += sum_p a_pi given_p, of the places that give. */
+  /** Transpose: values_i += sum_p a_pi given_p, for positions that give. */
   template <int dim>
   void
   give_to_nodes(const PlaceShares       &shares,
@@ -57,7 +60,7 @@ namespace limber
                 const double            *given,
                 double                  *values);
 
-  /** values_i += given_i / m_i, and given_i = 0, of n nodes. */
+  /** values_i += given_i / m_i, and given_i = 0, for n nodes. */
   template <int dim>
   void
   take_given(std::size_t   n,

@@ -6,8 +6,10 @@
 
 namespace limber
 {
-  /** What rows of the statistics, of which every step may write one, want of
-   * the points of a body. */
+  /**
+   * Sums over the points of a body for the statistics, which may be written in
+   * every step.
+   */
   template <int dim>
   struct MotionSums
   {

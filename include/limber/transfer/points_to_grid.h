@@ -7,19 +7,19 @@
 
 namespace limber
 {
-  /** What the points of a body give to the nodes in one sweep. */
+  /** Options of P2G for the points of a body. */
   struct GiveToGrid
   {
     bool            momentum        = true;  // mass and momentum
     bool            force           = true;  // internal force
-    bool            pressure        = true;  // its part of the force
-    bool            affine          = false; // momentum with the affine part
+    bool            pressure        = true;  // pressure part of the force
+    bool            affine          = false; // momentum with C (APIC)
     double          inverse_density = 0;     // 1 / rho_0, m^3/kg
-    StrainTreatment treatment; // of the strain that the force works with
-    // The pressure projected on nodes, or of domains averaged over cells
-    // (nodal_means.h, domain_means.h), where that is asked
+    StrainTreatment treatment;               // of the force
+    // Pressure projected on nodes (nodal_means.h) or, for domains, averaged
+    // (domain_means.h), if the treatment needs it
     const double *projected_pressure = nullptr;
-    // By cell, with Treatment::cell: the factor of the pressures of a liquid
+    // By cell, with Treatment::cell: factor of the pressure of a liquid
     // (LiquidMeans); null: one
     const double *volume_shares = nullptr;
   };
@@ -27,16 +27,16 @@ namespace limber
 
 
   /**
-   * Add to the nodes, with N_i at the points and B the strain operator of the
-   * body's treatment (strain_operator.h),
+   * P2G: add to the nodes, with N_i at the points and B the strain operator of
+   * the body's treatment (strain_operator.h),
    *
    *   m_i = sum m N_i,  p_i = sum m N_i (v + C (x_i - x)),
    *   f_i = - sum (m/rho_0) B_i^T (J sigma)
    *
-   * (Mast et al. 2012, mass-specific form); forces in the initial frame come
-   * from the StressUpdate of the body. @p sums may be null where nothing is
-   * projected; forces without the pressure are for Treatment::cell. Returns
-   * the number of batches.
+   * (Mast et al. 2012, mass-specific form); in the initial frame the forces
+   * come from the StressUpdate. @p sums may be null if nothing is averaged;
+   * forces without the pressure are for Treatment::cell. Returns the number of
+   * batches.
    */
   template <int dim>
   std::size_t

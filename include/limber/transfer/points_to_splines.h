@@ -7,8 +7,8 @@
 namespace limber
 {
   /**
-   * What points_to_grid() does where the functions are splines, those of
-   * @p Basis; each degree in a translation unit of its own.
+   * points_to_grid() with splines, those of @p Basis; each degree in its own
+   * translation unit.
    */
   template <class Basis>
   std::size_t

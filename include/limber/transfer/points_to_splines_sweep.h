@@ -13,7 +13,7 @@ namespace limber
 {
   namespace internal
   {
-    /** A body gives no forces. */
+    /** P2G without forces. */
     struct NoForce
     {
       static constexpr bool any = false;
@@ -27,12 +27,12 @@ namespace limber
 
 
     /**
-     * Stress at the points of a body for forces on nodes: B^T of the
-     * treatment (strain_operator.h). What a treatment @p averages over a cell
-     * acts on the means of the gradients, and is summed up over a batch first.
-     * What that is is asked once per pack, which is nothing beside the
-     * functions of so many nodes: the sweeps, long to compile, are there once
-     * for all treatments.
+     * Stress of the points of a body for internal forces: B^T of the treatment
+     * (strain_operator.h). Stress that the treatment @p averages over a cell
+     * acts on the mean gradients, and is summed up over a batch first. The
+     * treatment is a run-time choice, once per pack, which is negligible with
+     * so many nodes: the sweeps, slow to compile, exist once for all
+     * treatments.
      */
     template <bool averages>
     struct StressForce
@@ -48,7 +48,10 @@ namespace limber
         , around_nodes(averages_around_nodes(kind))
       {}
 
-      /** V times stress of a pack, J: what acts at points, and on means. */
+      /**
+       * V times stress of a pack, J: returns what acts at points, adds what
+       * acts on means.
+       */
       template <int dim, class Lanes>
       __attribute__((always_inline)) SmallMatrix<dim, PointPack<dim>>
       at_points(const PointView<dim>                  &points,
@@ -95,7 +98,7 @@ namespace limber
 
 
 
-    /** Stress that acts on the means of gradients over a cell. */
+    /** Add the forces of stress that acts on the mean gradients over a cell. */
     template <class Basis, class Sums>
     __attribute__((always_inline)) inline void
     add_means(const CellGeometry<Basis::dim> &cell,

@@ -7,9 +7,9 @@
 namespace limber
 {
   /**
-   * The sums over the points of a body, in the records of NodalMeanLayout,
-   * from which its projection on nodes follows (nodal_means.h): of the
-   * divergence of the re-mapped, or else the new, velocity of the nodes.
+   * Nodal sums (NodalMeanLayout) over the points of a body for the lumped
+   * projection (nodal_means.h) of the divergence of the re-mapped or else the
+   * new nodal velocity.
    */
   template <int dim>
   void
@@ -18,7 +18,7 @@ namespace limber
                  bool                  remapped,
                  double               *records);
 
-  /** The same of the pressure that the points store (times J). */
+  /** The same for the stored pressure J p. */
   template <int dim>
   void
   sum_pressure(const PointView<dim> &points,
@@ -26,8 +26,8 @@ namespace limber
                double               *records);
 
   /**
-   * The same of a quantity @p value with the weights m times @p ratio; both
-   * arrays have a number for each point.
+   * The same for a quantity @p value with the weights m times @p ratio, both
+   * given by point.
    */
   template <int dim>
   void

@@ -9,8 +9,8 @@
 namespace limber
 {
   /**
-   * The forces f_i = - sum V P grad_X N_i that the points of a batch give to
-   * the nodes of their cell, a pack of points at a time.
+   * Total Lagrangian P2G of forces f_i = - sum V P grad_X N_i for the points of
+   * a batch, a pack at a time.
    */
   template <class Basis>
   class PulledBackForce;
@@ -28,7 +28,7 @@ namespace limber
       , stress(this->cell)
     {}
 
-    /** V P (J, zero in idle lanes) at natural places xi. */
+    /** Add V P (J, zero in idle lanes) at natural coordinates xi. */
     template <class Lanes>
     __attribute__((always_inline)) void
     add(const SmallMatrix<dim, PointPack<dim>> &VP,
@@ -75,7 +75,7 @@ namespace limber
         const std::array<PointPack<dim>, dim>  &xi,
         const Lanes                            &lanes)
     {
-      // nothing is asked of the points but their stress
+      // only their stress is used
       give_pack<Basis, Given<false, false, true>>(
         PointView<dim>(), cell, nodes, lanes, xi, 0, VP, false, of_batch);
     }

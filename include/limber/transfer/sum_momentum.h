@@ -11,9 +11,9 @@
 namespace limber
 {
   /**
-   * Add m N_i and m N_i (v + C (x_i - x)) of the points of a batch, one lane
-   * per node of their cell; C only if @p affine. Products of weights keep
-   * small nodal masses exact.
+   * P2G of mass and momentum: add m N_i and m N_i (v + C (x_i - x)) for the
+   * points of a batch, one lane per node of their cell; C only if @p affine. As
+   * products of weights without cancellation, tiny nodal masses are accurate.
    */
   template <int dim, bool affine>
   __attribute__((always_inline)) inline void
@@ -54,7 +54,7 @@ namespace limber
               {
                 Nodes velocity = broadcast<Nodes>(points.velocity[d][p]);
                 if constexpr (affine)
-                  // x_i - x: one weight of the other end, signed
+                  // x_i - x: plus or minus the weight of the opposite end
                   for (int e = 0; e < dim; ++e)
                     velocity += points.affine[d * dim + e][p] /
                                 cell.inverse_edge[e] *
