@@ -26,13 +26,13 @@ namespace limber
 {
   namespace
   {
-    // Of places against the edges of cells, of their length
+    // Tolerance of coordinates relative to cell edges
     constexpr double tolerance = 1e-6;
   } // namespace
 
 
 
-  /** deal.II's numbers of nodes and cells, from which the tables are made. */
+  /** deal.II's degrees of freedom, from which the tables are built. */
   template <int dim>
   struct BackgroundGrid<dim>::Numbering
   {
@@ -51,7 +51,7 @@ namespace limber
       constraints.reinit(relevant_nodes);
       dealii::DoFTools::make_hanging_node_constraints(nodes, constraints);
       constraints.close();
-      // Masters of relevant nodes may lie beyond the ghost layer.
+      // Masters of relevant nodes may be outside of the ghost layer.
       for (const auto &line : constraints.get_lines())
         for (const auto &[master, weight] : line.entries)
           relevant_nodes.add_index(master);
@@ -81,8 +81,8 @@ namespace limber
     , triangulation(
         communicator,
         dealii::Triangulation<dim>::limit_level_difference_at_vertices,
-        // Where cells are divided with points in them, these stay where they
-        // are until balance() moves them.
+        // Cells that are refined with points in them stay on their rank until
+        // balance() repartitions.
         has_levels() ? Mesh::no_automatic_repartitioning :
                        Mesh::default_setting)
   {
@@ -106,8 +106,8 @@ namespace limber
     if (has_levels())
       triangulation.repartition();
     rebuild();
-    // Refinement and numbering need for a while twice what stays. What adapts
-    // needs it again.
+    // Refinement and numbering need temporarily twice the memory that remains.
+    // Adaptive meshes need it again.
     malloc_trim(0);
   }
 
@@ -217,8 +217,8 @@ namespace limber
 
 
 
-  // Bins are the cells of the scene's lattice, over the box around the cells of
-  // this rank; those that are divided have a block each.
+  // Bins are the cells of the lattice of the scene, in the bounding box of the
+  // cells of this rank; refined ones have a block each.
   template <int dim>
   void
   BackgroundGrid<dim>::build_bins()
@@ -286,7 +286,7 @@ namespace limber
   BackgroundGrid<dim>::put_into_bins(const std::uint32_t cell)
   {
     std::size_t             bin = 0;
-    std::array<double, dim> begin; // in places of a block
+    std::array<double, dim> begin; // in sub-bins of a block
     for (int d = dim - 1; d >= 0; --d)
       {
         const double at =
@@ -360,7 +360,7 @@ namespace limber
 
 
 
-  // A parent belongs to the mesh where any of its children does.
+  // A cell is divided if it has any owned child on any rank.
   template <int dim>
   RefinedCells<dim>
   BackgroundGrid<dim>::divided_cells() const
@@ -403,7 +403,7 @@ namespace limber
 
 
 
-  // All siblings of a cell meet it in a node, so they are known.
+  // Siblings share a node, so they are known as ghosts at least.
   template <int dim>
   bool
   BackgroundGrid<dim>::has_parted_siblings() const
@@ -451,7 +451,7 @@ namespace limber
   void
   BackgroundGrid<dim>::build_ghost_cells(const Numbering &numbering)
   {
-    // A rank's cells are numbered consecutively over all ranks.
+    // Owned cells are numbered consecutively over the ranks.
     const auto &cells = numbering.cell_records;
     std::vector first = {cells.local_range().first};
     unite(first, communicator);
@@ -464,12 +464,12 @@ namespace limber
 
 
 
-  // No cell around a master beyond the ghost layer is known here; its owner
-  // tells on which sides it lies, and where; nor the hanging nodes of a master
-  // on the far side of a ghost cell. And a ghost cell could have a hanging node
-  // on its far side that only its owner sees to be one; in a mesh that
-  // RefinedCells::grade() has made this cannot be, where siblings are on one
-  // rank.
+  // This rank does not know the cells around a master outside of the ghost
+  // layer; its owner tells on which sides the master lies, and its position,
+  // and whether it is the master of hanging nodes behind a ghost cell. A ghost
+  // cell could have a hanging node on its far side that only its owner
+  // recognises; this cannot occur in a mesh of RefinedCells::grade() with
+  // siblings on one rank.
   template <int dim>
   void
   BackgroundGrid<dim>::complete_boundary()

@@ -9,7 +9,7 @@ namespace limber
 {
   namespace
   {
-    /** The sign of a velocity through the side. */
+    /** Sign of the outward normal of the side. */
     double
     outward(const unsigned int side)
     {
@@ -49,7 +49,7 @@ namespace limber
 
 
 
-  // work(node, first, last) on the constraints of each node that has mass.
+  // Calls work(node, first, last) for the constraints of each node with mass.
   template <int dim>
   template <class Work>
   void
@@ -71,8 +71,8 @@ namespace limber
 
 
 
-  // A one-sided constraint brings what moves outward to rest, and stops as much
-  // of the motion along the side as friction bears.
+  // A one-sided constraint stops outward motion; Coulomb friction reduces the
+  // tangential velocity by at most friction times the normal impulse.
   template <int dim>
   void
   BoundaryConditions<dim>::act(const Constraint &constraint,
@@ -96,8 +96,8 @@ namespace limber
 
 
 
-  // A node that the side has stopped has no new normal velocity; one that
-  // sticks has none at all.
+  // A node stopped by the side has zero new normal velocity; a sticking one has
+  // zero velocity.
   template <int dim>
   void
   BoundaryConditions<dim>::act_trial(const Constraint &constraint,
@@ -121,13 +121,14 @@ namespace limber
 
 
 
-  // An impulse does work with the velocity of the side, at rest none. What the
-  // points bring against that is lost, as in an impact. With points that it
-  // keeps, the stress works with the mean velocity of the step, and so does the
-  // side; where it accelerates, its points do so from a velocity of their own.
-  // Friction works with the mean velocity where the node goes on sliding; what
-  // it brings to rest is lost, as in an impact. Where several sides hold a
-  // component, the last one bears the loss.
+  // Energy balance. An impulse does work with the velocity of the side (none at
+  // rest). The velocity of points against it is lost, as in an impact. For
+  // points that are kept (keeps_points), the stress works with the mean
+  // velocity of the step, and so does the side; if it accelerates, its points
+  // start from a velocity of their own. Friction dissipates with the mean
+  // velocity if the node slides; if it sticks, its motion is lost, as in an
+  // impact. If several sides hold a component, the loss is attributed to the
+  // last one.
   template <int dim>
   typename BoundaryConditions<dim>::Action
   BoundaryConditions<dim>::action(const unsigned int side,
@@ -166,7 +167,7 @@ namespace limber
 
 
 
-  // Of the components along the side that it has not brought to rest.
+  // Record the tangential impulse in components that still slide.
   template <int dim>
   void
   BoundaryConditions<dim>::note_rubbing(const unsigned int  side,
@@ -299,12 +300,12 @@ namespace limber
 
 
 
-  // FLIP points gain (J + dt f) (v- + v*) / 2 at a node that has been given v-
-  // and gives back v*; strained by the velocity w of the side they lose dt f w.
-  // With J + dt f = m dv and v- = w - dv the side has done J w - m dv^2 / 2,
-  // which is accounted for, and m dv (v* - w) / 2. Where a node slides, v*
-  // takes the place of the new velocity, which may be that of a node of hardly
-  // any mass that no point takes over.
+  // FLIP points gain (J + dt f) (v- + v*) / 2 at a node that got v- from them
+  // and maps v* back; strained with the velocity w of the side they lose dt f
+  // w. With J + dt f = m dv and v- = w - dv the side has done J w - m dv^2 / 2,
+  // which is accounted for, and m dv (v* - w) / 2, which is added here. For
+  // sliding nodes v* replaces the new velocity, which may be that of a node of
+  // tiny mass that no point takes over.
   template <int dim>
   typename BoundaryConditions<dim>::Action
   BoundaryConditions<dim>::action_on_remapped(const NodalFields<dim> &nodes,

@@ -42,7 +42,7 @@ namespace limber
   void
   CellFields<dim>::start_completion(const ExchangePlan &plan)
   {
-    // Ranks add to each other's sums whether they have gathered any or not.
+    // Receivers add to these sums even if this rank has gathered none.
     const CellSums<dim> sums = view();
     for (const auto &neighbour : plan.neighbours)
       for (const auto *const cells : {&neighbour.send, &neighbour.receive})

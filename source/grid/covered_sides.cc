@@ -37,7 +37,7 @@ namespace limber
   CoveredSides<dim>::uncovered(std::uint8_t              set,
                                const dealii::Point<dim> &place) const
   {
-    constexpr double alike = 0.7; // less than 45 degrees apart
+    constexpr double alike = 0.7; // normals less than 45 degrees apart
     for (const ObstaclePlace<dim> &obstacle : places)
       if (const auto distance = obstacle.distance(place); is_in(distance))
         for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -54,13 +54,13 @@ namespace limber
   bool
   CoveredSides<dim>::is_in(const SignedDistance<dim> &distance) const
   {
-    constexpr double round_off = 1e-6; // of an edge
+    constexpr double round_off = 1e-6; // relative to an edge
     return distance.value <= round_off * grid.edge(0);
   }
 
 
 
-  // By the nodes next to this one in the side.
+  // Checked at the neighbours of this node in the side.
   template <int dim>
   bool
   CoveredSides<dim>::covers_faces_at(const ObstaclePlace<dim> &obstacle,

@@ -64,7 +64,7 @@ namespace limber
     nodes_to_share = ExchangePlan(table.shared);
     cells_to_share = ExchangePlan(grid.shared_cells);
     find_roles();
-    // What was active belongs to the numbers of the former mesh.
+    // Lists refer to node numbers of the former mesh.
     with_own_points.clear();
     occupied_owned.clear();
     occupied_ghost.clear();
@@ -97,7 +97,7 @@ namespace limber
       for_each_node(cell, [&](const std::uint32_t node) {
         roles[node] |= is_of_owned_cell;
       });
-    // What is done to a hanging node is done to its masters.
+    // A hanging node passes contributions on to its masters.
     for (const HangingNode &hanging : table.hanging)
       for (const auto &[master, weight] : hanging.masters)
         {
@@ -138,7 +138,7 @@ namespace limber
     const bool anew = !is_noted;
     if (!notes_fields())
       return anew;
-    // What other ranks add to them, this one does not know.
+    // Shared nodes are in all fields: other ranks may contribute.
     if (anew || noted_version != version)
       for (const auto &neighbour : nodes_to_share.neighbours)
         for (const auto *const shared : {&neighbour.send, &neighbour.receive})
@@ -247,8 +247,8 @@ namespace limber
   NodalFields<dim>::set_occupied(std::vector<std::uint32_t> &&cells,
                                  const bool                   agree)
   {
-    // Nodes that are given up keep zero records: whoever looks at a node
-    // without mass finds nothing there.
+    // Records of deactivated nodes are zeroed, so that a node without mass is
+    // empty.
     clear();
     for (const auto *const former : {&with_own_points, &entered})
       for (const std::uint32_t cell : *former)
@@ -353,7 +353,7 @@ namespace limber
     if (table.shared.neighbours.empty())
       return;
 
-    // The owner adds the mean pressure of a cell, whoever holds its points.
+    // The owner needs the sums of a cell even if only others have its points.
     cells_to_share = ExchangePlan(
       grid.shared_cells,
       [&](const auto cell) { return has_own_points[cell] != 0; },
@@ -390,8 +390,8 @@ namespace limber
 
 
 
-  // Others may add to these without this rank knowing, or expect its share,
-  // which then has to be zero if no point is there any more.
+  // Other ranks may contribute to these without this rank knowing, or expect
+  // its contribution, which must be zero if it has no points there any more.
   template <int dim>
   void
   NodalFields<dim>::activate_agreed()
@@ -438,7 +438,7 @@ namespace limber
 
 
 
-  // Masters of hanging nodes may belong to no occupied cell.
+  // Masters of hanging nodes may be outside of all occupied cells.
   template <int dim>
   void
   NodalFields<dim>::activate_masters()
@@ -468,8 +468,8 @@ namespace limber
   void
   NodalFields<dim>::start_sum(const unsigned int first, const unsigned int last)
   {
-    // Linear, so every rank condenses its own contributions. Most hanging nodes
-    // lie in room without points, and have none.
+    // The condensation is linear, so every rank condenses its own
+    // contributions. Most hanging nodes are in empty cells and inactive.
     for (const HangingNode &hanging : table.hanging)
       if (is_active[hanging.node])
         {

@@ -45,8 +45,8 @@ namespace limber
 
 
 
-  // A mean lies between the values that it is formed of, however small the
-  // mass is; without mass no point looks at the node.
+  // Sums of positive terms: the mean is accurate for any tiny mass; no point
+  // uses a node without mass.
   template <int dim>
   void
   NodalProjection<dim>::finish_completion(

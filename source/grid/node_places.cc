@@ -9,7 +9,7 @@ namespace limber
 {
   namespace
   {
-    /** Along an axis, in halves of the finest cells. */
+    /** Along an axis, in half edges of the finest cells. */
     struct Interval
     {
       std::int64_t begin, length;
@@ -17,7 +17,7 @@ namespace limber
 
 
 
-    /** Of the cell along each axis. */
+    /** The interval of a cell along each axis. */
     template <int dim>
     std::array<Interval, dim>
     extent_of(const BackgroundGrid<dim> &grid, const std::uint32_t cell)
@@ -44,8 +44,8 @@ namespace limber
     const GridDescription<dim> &box = grid.description;
     std::vector<std::uint64_t>  result(grid.nodes().n(), no_place);
 
-    // n functions along an axis; the first node of theirs lies so many halves
-    // of the cell behind its begin, and not beyond a side of the box.
+    // Register nodes: n functions along an axis, the first at `first` half
+    // cells from the beginning of the cell, clamped to the box.
     const auto note = [&](const std::uint32_t cell,
                           const auto         &nodes,
                           const int           n,

@@ -20,7 +20,7 @@ namespace limber
 
 
 
-    /** Rows one after the other, each with the columns of its entries. */
+    /** A graph in compressed row storage. */
     class Graph
     {
     public:
@@ -61,7 +61,9 @@ namespace limber
 
 
 
-    /** Cuts a graph into groups of neighbours, one beside the other. */
+    /**
+     * Partitions a graph into groups of neighbours, advancing along the rim.
+     */
     class Grouping
     {
     public:
@@ -78,7 +80,7 @@ namespace limber
             while (!rim.empty())
               {
                 const Row row = std::get<2>(rim.top());
-                // Entries that rows have left behind count no more.
+                // Skip outdated entries of rows.
                 const bool counts =
                   group_of[row] == no_group &&
                   std::get<0>(rim.top()) == free_neighbours[row];
@@ -89,7 +91,7 @@ namespace limber
           }
       }
 
-      /** Which groups touch each other. */
+      /** The graph of adjacent groups. */
       dealii::DynamicSparsityPattern
       connections() const
       {
@@ -104,8 +106,8 @@ namespace limber
       std::vector<std::vector<Row>> groups;
 
     private:
-      // Fewest free neighbours first, of these the one with most neighbours,
-      // of these the first.
+      // Priority: fewest free neighbours, then most neighbours, then lowest
+      // number.
       using RimEntry = std::tuple<Row, Row, Row>;
 
       void
@@ -116,7 +118,7 @@ namespace limber
                     row);
       }
 
-      /** The first of the rows with fewest neighbours in no group. */
+      /** The first of the free rows with fewest neighbours. */
       Row
       next_start() const
       {

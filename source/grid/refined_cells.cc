@@ -143,8 +143,8 @@ namespace limber
   RefinedCells<dim>::with_neighbours(const unsigned int level,
                                      const Cells       &given) const
   {
-    // One direction after the other: a few more cells to be sorted each time
-    // instead of 3^dim times as many at once.
+    // Dilation by one direction after the other: fewer cells to be sorted each
+    // time than 3^dim times as many at once.
     Cells result = given;
     for (int d = 0; d < dim; ++d)
       {
@@ -153,7 +153,7 @@ namespace limber
         for (const std::uint64_t cell : result)
           {
             Place other = place(level, cell);
-            --other[d]; // below zero: beyond the last, too
+            --other[d]; // unsigned underflow: is_inside() is false then
             for (unsigned int k = 0; k < 3; ++k, ++other[d])
               if (is_inside(level, other))
                 wider.push_back(number(level, other));
@@ -166,8 +166,8 @@ namespace limber
 
 
 
-  // From the finest level to the coarsest: what a level needs around its
-  // divided cells are cells that those of the next coarser one have to make.
+  // From the finest level to the coarsest: the neighbours that a level needs
+  // exist if their parents on the next coarser level are divided.
   template <int dim>
   void
   RefinedCells<dim>::grade(const unsigned int buffer)
@@ -248,7 +248,7 @@ namespace limber
         if (!std::is_sorted(own.begin(), own.end(), std::less_equal<>()) ||
             (!own.empty() && own.back() >= n_places))
           refuse();
-        // A divided cell is one that there is.
+        // The parent of a divided cell must be divided.
         for (const std::uint64_t cell : own)
           if (level > 0)
             {

@@ -18,7 +18,7 @@ namespace limber
 
 
 
-    /** The other ranks that hold an owned record, by local number. */
+    /** Which other ranks hold an owned record, by local number. */
     std::map<std::uint32_t, std::vector<unsigned int>>
     find_holders(const dealii::Utilities::MPI::Partitioner &records)
     {
@@ -183,7 +183,7 @@ namespace limber
 
   namespace
   {
-    /** Slots [first, last) of the given records, side by side. */
+    /** Copy slots [first, last) of the given records to a buffer. */
     void
     pack(const std::vector<std::uint32_t> &records,
          const double *const               values,
@@ -265,8 +265,8 @@ namespace limber
   void
   RecordExchange::finish(double *const values)
   {
-    // Two shares may be added either way. Of more, this one's comes after
-    // those of lower ranks.
+    // For a bitwise equal sum: two contributions commute; with more, this
+    // rank's has to be added in the order of ranks.
     pack(plan->contested, values, stride, first, last, own);
     for (const std::uint32_t record : plan->contested)
       std::fill_n(values + std::size_t(record) * stride + first,

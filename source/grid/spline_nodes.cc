@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    /** 3^d: from a node of a cell to the next along d. */
+    /** 3^d: index distance of neighbouring nodes of a cell along d. */
     constexpr int
     stride(const int d)
     {
@@ -17,7 +17,7 @@ namespace limber
 
 
 
-    /** Which of the three along d a node of a cell is, or a place in it. */
+    /** Digit (base 3) of node i of a cell, or of a place in it, along d. */
     constexpr int
     digit(const int i, const int d)
     {
@@ -44,10 +44,10 @@ namespace limber
 
 
     /**
-     * Numbers the nodes. A node is known by a cell and where it lies in that:
-     * in the middle, or in a face, an edge, a corner in the sides of the grid.
-     * Such a place has the digits 0, 1, 2 in base three, one for each
-     * direction: lower side, between, upper side.
+     * Numbers the nodes. A node is identified by a cell and its place in the
+     * cell: the middle or, at sides of the grid, a face, an edge or a corner.
+     * The place has digits 0, 1, 2 in base three, one per direction: lower
+     * side, middle, upper side.
      */
     template <int dim>
     class Numbers
@@ -124,7 +124,9 @@ namespace limber
         return result;
       }
 
-      /** Node i of a cell: of a neighbour, or in a side of the grid. */
+      /**
+       * Node i of a cell: that of a neighbour, or one in a side of the grid.
+       */
       std::uint32_t
       node_at(const std::uint32_t cell, const int i) const
       {
@@ -178,7 +180,7 @@ namespace limber
           }
       }
 
-      // Ranks that share a cell share its nodes, and list them alike.
+      // Ranks that share a cell share its nodes, listed in the same order.
       void
       share()
       {
@@ -217,7 +219,7 @@ namespace limber
 
 
 
-  // A node beyond the vertices of the cell is one of a neighbour's.
+  // Nodes other than vertices of the cell are vertices of a neighbour.
   template <int dim>
   std::vector<SplineCell<dim, 3>>
   find_cubic_cells(const BackgroundGrid<dim> &grid)
@@ -260,8 +262,9 @@ namespace limber
   void
   set_inward_vertices(const BackgroundGrid<dim> &grid, NodeTable<dim> &vertices)
   {
-    // Of the mass of a node in a held side, 7/12 of that of one inside, 1/12 is
-    // what mirrored material would give to the node inward, for each direction.
+    // The mass of a node in a held side is 7/12 of that of an inner one; 1/12
+    // is what mirrored material would contribute to the inward node, per
+    // direction.
     vertices.inward_share = 1. / 7;
     vertices.inward.clear();
     const auto number = [](const std::uint32_t offset) {

@@ -98,9 +98,10 @@ namespace limber
       Set
       around(const std::uint32_t cell)
       {
-        const CellGeometry<dim>   &geometry = grid.geometry[cell];
-        std::vector<std::uint32_t> seen; // skip larger cells seen before
-        Set                        result;
+        const CellGeometry<dim> &geometry = grid.geometry[cell];
+        std::vector<std::uint32_t>
+            seen; // a larger one is in several directions
+        Set result;
         for (unsigned int n = 0; n < (dim == 2 ? 9 : 27); ++n)
           {
             std::array<double, dim> x;

@@ -17,14 +17,13 @@
 namespace limber
 {
   /**
-   * The background grid: a distributed mesh of rectangular cells, those of the
-   * scene's lattice or finer ones made of them, one scalar
-   * Q1 space for everything on vertices and one DGQ0 space for everything in
-   * cells, which also numbers quadratic splines. A vertex's or a
-   * cell's local number is that of its degree of freedom on this rank: owned
-   * ones first, then ghosts. From these the plain tables
-   * of the sweeps are built, anew after each change of the mesh; the degrees
-   * of freedom themselves are not kept.
+   * The background grid: a distributed mesh of rectangular cells (the lattice
+   * of the scene, possibly refined), with one scalar Q1 space for nodal data at
+   * vertices and one DGQ0 space for data in cells, which also numbers quadratic
+   * splines. The local number of a vertex or cell is its degree of freedom on
+   * this rank: owned ones first, then ghosts. The plain tables of the sweeps
+   * are built from these after each change of the mesh; the degrees of freedom
+   * themselves are not kept.
    */
   template <int dim>
   class BackgroundGrid
@@ -33,35 +32,39 @@ namespace limber
     using Mesh = dealii::parallel::distributed::Triangulation<dim>;
 
     /**
-     * Build the lattice of the scene. Cell counts are split into few coarse
-     * cells and as many global refinements as the counts have factors of two
-     * in common, since every rank stores all coarse cells. Where the scene has
-     * levels, none of its cells is divided yet.
+     * Build the lattice of the scene. As every rank stores all coarse cells,
+     * the cell counts are split into few coarse cells and as many global
+     * refinements as common factors of two permit. Adaptive refinement comes
+     * later.
      */
     BackgroundGrid(const GridDescription<dim> &description,
                    MPI_Comm                    communicator);
 
-    /** Renumber and rebuild all tables; to be called after mesh changes. */
+    /**
+     * Renumber and rebuild all tables; required after each change of the mesh.
+     */
     void
     rebuild();
 
     /**
-     * The first part of that: what points need to find their cells and to go
-     * with them to other ranks. For a mesh on its way to the wanted one, which
-     * need not be graded.
+     * First part of rebuild(): what points need to find their cells and to
+     * migrate to other ranks. Suffices for intermediate meshes, which need not
+     * be graded.
      */
     void
     rebuild_cells();
 
-    /** The second part: what a step needs. The mesh has to be graded, and no
-     * siblings parted. */
+    /**
+     * Second part: what a step needs. The mesh must be graded (2:1), without
+     * parted siblings.
+     */
     void
     complete();
 
     /**
-     * Whether any cells that make up a larger one are on several ranks: the
-     * mesh has become coarser there since it was last given to ranks, which
-     * keeps such cells together. Collective.
+     * Whether siblings (children of one cell) are on several ranks, which
+     * happens when the mesh is coarsened; repartitioning brings them together
+     * again. Collective.
      */
     bool
     has_parted_siblings() const;
@@ -76,66 +79,68 @@ namespace limber
 
     using Cell = typename dealii::Triangulation<dim>::cell_iterator;
 
-    /** How often a cell of the scene has been halved to make this one. */
+    /** The refinement level of a cell; zero for those of the lattice. */
     unsigned int
     level_of(const Cell &cell) const
     {
       return cell->level() - global_refinements;
     }
 
-    /** The same of a cell by its local number. */
+    /** The same by the local number of a cell. */
     unsigned int
     level_of(const std::uint32_t cell) const
     {
       return has_levels() ? levels[cell] : 0;
     }
 
-    /** Its place in the lattice of its level. */
+    /** Its index in the lattice of its level. */
     typename RefinedCells<dim>::Place
     place_of(const Cell &cell) const;
 
-    /** The cell of this level, if it were there, that holds a place. */
+    /**
+     * Index of the (possibly non-existing) cell of this level at a position.
+     */
     typename RefinedCells<dim>::Place
     place_at(const std::array<double, dim> &x, unsigned int level) const;
 
-    /** Whether cells may differ in size. */
+    /** Whether the mesh is adaptive. */
     bool
     has_levels() const
     {
       return description.levels > 0;
     }
 
-    /** No wishes yet; see RefinedCells. */
+    /** An empty set of refinement requests; see RefinedCells. */
     RefinedCells<dim>
     no_divided_cells() const
     {
       return {description.cells, description.levels};
     }
 
-    /** The mesh as it is; collective. */
+    /** The present mesh as a set of divided cells; collective. */
     RefinedCells<dim>
     divided_cells() const;
 
     /**
-     * Mark the owned cells that have to be divided, or joined with their
-     * siblings, to come one level closer to a graded mesh. Returns whether
-     * there are any on any rank; collective.
+     * Set the refine and coarsen flags of owned cells that bring the mesh one
+     * level closer to a graded one. Returns whether any rank has set any;
+     * collective.
      */
     bool
     mark_towards(const RefinedCells<dim> &mesh);
 
-    /** Take back what it has marked. */
+    /** Clear these flags. */
     void
     clear_marks();
 
-    /** The nodes whose functions interpolate: vertices, or of splines. */
+    /** The nodes of the kernel: vertices, or those of quadratic splines. */
     const NodeTable<dim> &
     nodes() const
     {
       return has_own_nodes() ? quadratic_nodes : vertices;
     }
 
-    /** Whether these are others than the vertices, which cubic splines have. */
+    /** Whether these are not the vertices (which cubic splines use as well). */
     bool
     has_own_nodes() const
     {
@@ -143,8 +148,8 @@ namespace limber
     }
 
     /**
-     * Whether points see nodes beyond those of their cells; a rank knows these
-     * of its own cells alone.
+     * Whether the stencil of points is larger than the nodes of their cells; a
+     * rank knows such nodes for its owned cells only.
      */
     bool
     reaches_beyond_cells() const
@@ -152,7 +157,7 @@ namespace limber
       return description.kernel != KernelKind::linear;
     }
 
-    /** For sweeps that need no records of nodes. */
+    /** A view without nodal records. */
     GridView<dim>
     view() const;
 
@@ -168,7 +173,7 @@ namespace limber
       return geometry.size();
     }
 
-    /** The rank that owns a ghost cell, and the cell's local number there. */
+    /** The owner of a ghost cell, and the local number of the cell there. */
     struct CellElsewhere
     {
       unsigned int  owner;
@@ -191,10 +196,10 @@ namespace limber
     std::vector<std::uint32_t>     bin_table, bin_blocks, bin_nodes;
     BinView<dim>                   bins;
     double                         smallest_edge = 0; // m, over all ranks
-    // Cells that other ranks hold as well
+    // Cells that are known to several ranks
     SharedRecords  shared_cells;
     NodeTable<dim> vertices; // of cells
-    // Only where the kernel is quadratic, or cubic; by cell
+    // Only for quadratic or cubic kernels; by cell
     NodeTable<dim>                  quadratic_nodes;
     std::vector<SplineCell<dim, 2>> quadratics;
     std::vector<SplineCell<dim, 3>> cubics;
@@ -219,7 +224,7 @@ namespace limber
 
     unsigned int               global_refinements = 0; // to the lattice
     unsigned int               cells_owned        = 0;
-    std::vector<std::uint8_t>  levels; // by local number, where there are any
+    std::vector<std::uint8_t>  levels;       // by local number, if adaptive
     std::vector<std::uint32_t> cell_numbers; // by active cell index
     std::vector<CellElsewhere> ghost_cells;
   };

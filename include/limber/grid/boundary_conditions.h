@@ -10,46 +10,46 @@
 namespace limber
 {
   /**
-   * What the constraints of the sides (SideConstraints) do to nodes that an
-   * explicit step has moved: one after another they change a velocity, and the
-   * impulses that this takes are those of the sides.
+   * Applies the constraints of the sides (SideConstraints) to the nodes after
+   * an explicit step: one after another they change the velocity, and the
+   * impulses of these changes are those of the sides.
    *
-   * A one-sided constraint holds a node that would move outward with its new
-   * velocity, and lets all others go; where it holds, it bears friction. The
-   * same nodes are held or let go in every other velocity of the step. Were a
-   * velocity that strains points only kept from going outward, noise about
-   * zero would press them together and create energy.
+   * A one-sided constraint holds a node whose new velocity is outward, and lets
+   * all others go; where it holds, friction acts. The same nodes are held in
+   * every other velocity of the step: if velocities that strain points were
+   * merely clipped to be not outward, noise about zero would be rectified,
+   * compress the points and create energy.
    */
   template <int dim>
   class BoundaryConditions
   {
   public:
-    /** What a side does to a node. */
+    /** Impulse and energy balance of a side at a node. */
     struct Action
     {
       dealii::Tensor<1, dim> impulse;           // on the points, kg m/s
-      double                 work          = 0; // J, as if they were FLIP's
-      double                 transfer_work = 0; // J, what it does beyond that
+      double                 work          = 0; // J, for FLIP points
+      double                 transfer_work = 0; // J, more, for the PIC share
       double                 friction      = 0; // J, heat, not in work
-      double                 loss          = 0; // J, of what lands on it
+      double                 loss          = 0; // J, in impact on the side
     };
 
     using Account = std::function<void(unsigned int side, const Action &)>;
 
-    /** What sides have to know of a step. */
+    /** What sides need to know of a step. */
     struct Step
     {
       double begin, end; // time, s
-      // Of the change of velocity that points take; the rest is new velocity
+      // FLIP share; the rest of the velocity of points is PIC
       double flip_share = 1;
-      // Whether points stay with the sides that always hold them: see apply()
+      // Whether points move with the sides that hold them; see apply()
       bool keeps_points = false;
     };
 
     /**
-     * On the nodes of fields for which @p by_surface is true, those sides do
-     * not act that meet surfaces (Side), by number of the field; none by
-     * default. Nor do those that are @p covered, which may be null.
+     * On the nodes of fields (by number) for which @p by_surface is true, sides
+     * that act at the surface of solids (Side) do not act; none by default. Nor
+     * do sides that are @p covered by obstacles; this may be null.
      */
     explicit BoundaryConditions(const Sides<dim>        &sides,
                                 const std::vector<bool> &by_surface = {},
@@ -60,31 +60,32 @@ namespace limber
     operator=(const BoundaryConditions &) = delete;
 
     /**
-     * Change the new velocity of the nodes, and their increment with it, so
-     * that points near a side receive its impulse. Owned nodes are accounted
-     * for.
+     * Apply the constraints to the new velocity of the nodes, and to their
+     * increment as well, so that points near a side get its impulse. Calls @p
+     * account for owned nodes.
      *
-     * What points bring to the node against a side is taken from them, as in an
-     * impact. In every step that costs energy, as the nodes next to it bring it
-     * anew. Points that a side keeps, since they stay with it, are let alone:
-     * their increment is that of the velocity of the side.
+     * The velocity that points bring to a node against a side is taken from
+     * them, as in an impact; this costs energy in every step, as points of
+     * neighbouring nodes bring it anew. Not so for points that are kept by a
+     * side that they move with: their increment is that of the velocity of the
+     * side.
      */
     void
     apply(NodalFields<dim> &nodes, const Step &step, const Account &account);
 
-    /** What a velocity is for that apply() does not know. */
+    /** The use of a velocity other than the new one of apply(). */
     enum class Trial
     {
-      strain_before, // of points, by what they bring; there is no new one yet
-      strain_after,  // of points, once there is
-      motion         // of points; nothing may go through a side
+      strain_before, // strain before the step; no new velocity yet
+      strain_after,  // strain, once there is one
+      motion         // motion of points; must not penetrate a side
     };
 
     /**
-     * Hold the velocity that begins at @p slot of the records as apply() has
-     * held, or at the beginning of a @p step (s) is going to hold, the new one:
-     * of (p + dt f) / m, with the force f in the records. Its impulses do not
-     * reach the points.
+     * Constrain the velocity that begins at @p slot of the records at the same
+     * nodes as apply() has held or, before a @p step (s), is going to hold for
+     * the new velocity (p + dt f) / m, with the force f in the records. Points
+     * do not get these impulses.
      */
     void
     apply_trial(NodalFields<dim> &nodes,
@@ -94,15 +95,15 @@ namespace limber
                 double            step = 0);
 
     /**
-     * Losses and heat of friction, J, beyond what apply() has accounted for,
-     * where points have given back the velocity that begins at @p slot, before
-     * sides are applied to it: held nodes of this rank do not strain with it.
-     * To be counted by the share of FLIP.
+     * Additional losses and heat of friction, J, beyond those accounted for by
+     * apply(), if points have re-mapped the velocity that begins at @p slot
+     * (before sides are applied to it), as owned held nodes do not strain with
+     * it. To be multiplied by the FLIP share.
      */
     Action
     action_on_remapped(const NodalFields<dim> &nodes, unsigned int slot) const;
 
-    /** Whether any side lets nodes go that it acts on. */
+    /** Whether any side is one-sided. */
     bool
     any_one_sided() const
     {
@@ -113,9 +114,10 @@ namespace limber
       void(std::uint32_t node, unsigned int component, double value)>;
 
     /**
-     * The components of new velocities that sides hold at @p time, and the
-     * velocities of the sides, m/s; of several for a component the last one
-     * counts. One-sided constraints hold what does not leave the side.
+     * Call @p hold for the components of new velocities that sides hold at @p
+     * time, with the velocities of the sides, m/s; if several hold a component
+     * the last one counts. One-sided constraints hold unless the node leaves
+     * the side.
      */
     void
     for_each_held(const NodalFields<dim> &nodes, double time, const Hold &hold);
@@ -124,33 +126,35 @@ namespace limber
                                      const Constraint *first,
                                      const Constraint *last)>;
 
-    /** Nodes with mass and their constraints at @p time, in the order in which
-     * these act. */
+    /**
+     * Visit nodes with mass and their constraints at @p time, in the order in
+     * which these act.
+     */
     void
     for_each_constrained(const NodalFields<dim> &nodes,
                          double                  time,
                          const Visit            &visit);
 
-    /** What constraints of a node make of its new velocity, m/s. */
+    /** The new velocity of a node after its constraints, m/s. */
     dealii::Tensor<1, dim>
     constrained(const Constraint      *first,
                 const Constraint      *last,
                 dealii::Tensor<1, dim> velocity) const;
 
     /**
-     * For each component of the new velocity of a node the directions (bits)
-     * in which a side holds it, so that nothing may change it. Sides with
-     * friction hold what they have brought to rest.
+     * For each component of the new velocity of a node the directions (bits) in
+     * which a side holds it, so that it must not be changed. Sides with
+     * friction hold nodes that stick.
      */
     std::array<unsigned int, dim>
     held(const NodalFields<dim> &nodes, std::uint32_t node) const;
 
   private:
     using Velocity = dealii::Tensor<1, dim>;
-    // That changed each component of the velocity of a node
+    // The last side that changed each component of the velocity of a node
     using LastSides = std::array<unsigned int, dim>;
 
-    /** Which of the constraints act on the selected field. */
+    /** Index of the constraints that act on the selected field. */
     unsigned int
     of_field(const NodalFields<dim> &nodes) const
     {
@@ -185,20 +189,20 @@ namespace limber
            double           mass,
            double           flip_share) const;
 
-    /** The impulse of friction on an owned node that goes on sliding. */
+    /** Friction impulse on an owned node that slides. */
     struct Rubbing
     {
       std::uint32_t node;
-      const double *record; // of the field that it is of
+      const double *record; // record in its field
       Velocity      impulse;
     };
 
-    const Sides<dim>       &sides;
-    const Sides<dim>        others; // those that meet surfaces are free
-    const std::vector<bool> by_surface;
-    std::array<SideConstraints<dim>, 2> constraints; // of all, of others
-    std::vector<Rubbing>                rubbing;     // of the present step
-    const bool one_sided; // any side, of the nodes of any field
+    const Sides<dim>                   &sides;
+    const Sides<dim>                    others; // without those by surface
+    const std::vector<bool>             by_surface;
+    std::array<SideConstraints<dim>, 2> constraints; // of sides, of others
+    std::vector<Rubbing>                rubbing;     // of this step
+    const bool                          one_sided;   // for nodes of any field
   };
 } // namespace limber
 

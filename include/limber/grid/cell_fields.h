@@ -8,15 +8,15 @@
 namespace limber
 {
   /**
-   * The sums of one body in each cell (CellSums), owned or ghost: those of the
-   * present places of the points, complete where points of this rank are and
-   * on the owner, and those of the next places, which sweeps gather.
+   * Storage of the cell sums of one body (CellSums), owned and ghost: those at
+   * the present positions of the points, complete on the owner and where this
+   * rank has points, and the next ones, which sweeps gather.
    */
   template <int dim>
   class CellFields
   {
   public:
-    /** With so many sums in a cell; see CellSums. */
+    /** With @p stride sums per cell; see CellSums. */
     explicit CellFields(const BackgroundGrid<dim> &grid,
                         unsigned int               stride = 1 << dim);
 
@@ -26,7 +26,7 @@ namespace limber
     CellSums<dim>
     view();
 
-    /** The mass in a cell, before next sums are gathered, kg. */
+    /** The present mass in a cell, kg; only before next sums are gathered. */
     double
     present_mass(const std::uint32_t cell) const
     {
@@ -40,14 +40,14 @@ namespace limber
       return record(cell)[stride - 1];
     }
 
-    /** The sums of the present places. */
+    /** The sums at the present positions. */
     const double *
     record(const std::uint32_t cell) const
     {
       return now.data() + std::size_t(cell) * stride;
     }
 
-    /** The same, for bodies that take what they have in common. */
+    /** The same, writable, for bodies that share sums. */
     double *
     record(const std::uint32_t cell)
     {
@@ -55,9 +55,9 @@ namespace limber
     }
 
     /**
-     * Complete the sums gathered since the last time with those of other
-     * ranks and make them the present ones; what was gathered before is
-     * forgotten. Between start and finish nothing must be gathered.
+     * Complete the gathered sums over the ranks, and make them the present
+     * ones; the former present ones are discarded. No gathering between start
+     * and finish.
      */
     void
     start_completion(const ExchangePlan &plan);

@@ -10,10 +10,10 @@
 namespace limber
 {
   /**
-   * The records of all nodes (NodeLayout), owned and ghost, and the cells and
-   * nodes that take part in a step. Sweeps reach both through view();
-   * communication and hanging nodes are dealt with here. What is done to an
-   * active node every rank that holds it does alike, from the same sums.
+   * The records of all nodes (NodeLayout), owned and ghost, and the active
+   * cells and nodes of a step. Sweeps access both through view(); communication
+   * and hanging nodes are dealt with here. Every rank that holds an active node
+   * does the same operations on it, from the same sums.
    */
   template <int dim>
   class NodalFields
@@ -25,8 +25,8 @@ namespace limber
     explicit NodalFields(const BackgroundGrid<dim> &grid);
 
     /**
-     * Have @p n records for each node, one for each group of bodies that may
-     * part from the others: fields. All of them have the same active nodes.
+     * Have @p n nodal fields, one for each group of bodies that may separate
+     * (contact): @p n records per node. All fields have the same active nodes.
      */
     void
     set_n_fields(unsigned int n);
@@ -36,7 +36,7 @@ namespace limber
       return parked.size();
     }
 
-    /** Let view(), record() and sums speak of a field, until told otherwise. */
+    /** Select the field that view(), record() and sums refer to. */
     void
     select(unsigned int field);
     unsigned int
@@ -45,7 +45,7 @@ namespace limber
       return selected;
     }
 
-    /** Call work() with each field selected; the first remains it. */
+    /** Call work() with each field selected, from the last to the first. */
     template <class Work>
     void
     for_each_field(const Work &work)
@@ -64,33 +64,33 @@ namespace limber
     GridView<dim>
     view();
 
-    /** The same of a field, whichever is selected. */
+    /** The same for a given field. */
     GridView<dim>
     view(unsigned int field);
 
     /**
-     * Make these cells the occupied ones (local numbers, sorted), and those
-     * that ranks have agreed on, whether they still hold points or not. With
-     * @p agree, collective, they agree first.
+     * Set the occupied cells (local numbers, sorted), plus those that ranks
+     * have agreed on, which may be empty. With @p agree, collective, they agree
+     * first.
      */
     void
     set_occupied(std::vector<std::uint32_t> &&cells, bool agree = false);
 
-    /** Let cells that points have entered since take part. */
+    /** Activate the cells that points have entered since. */
     void
     add_entered();
 
     /**
-     * Let ranks agree on the nodes and cells that they have to sum up for
-     * each other while their points are in the cells that are occupied now;
-     * collective. Without it they sum up all that they share.
+     * Reduce communication: ranks agree on the nodes and cells that they have
+     * to sum up for each other as long as points stay in the cells occupied
+     * now; collective. Otherwise all shared ones are summed up.
      */
     void
     agree_on_sums();
 
     /**
-     * The vertices of the same cells, for means around them and for what else
-     * is linear in a cell: the object itself where the kernel is linear.
+     * The vertices of the same cells, for projections on nodes and other Q1
+     * data; this object itself if the kernel is linear.
      */
     NodalFields &
     vertices()
@@ -110,25 +110,25 @@ namespace limber
       return in_ghosts;
     }
 
-    /** Whether points have entered cells that such an agreement lacks. */
+    /** Whether points have entered cells that the agreement does not cover. */
     bool
     has_entered_shared() const;
 
-    /** Owned cells that may hold points of this rank or of others. */
+    /** Owned cells that may contain points of any rank. */
     const std::vector<std::uint32_t> &
     owned_occupied_cells() const
     {
       return occupied_owned;
     }
 
-    /** Ghost cells that may. */
+    /** Ghost cells that may contain points of any rank. */
     const std::vector<std::uint32_t> &
     ghost_occupied_cells() const
     {
       return occupied_ghost;
     }
 
-    /** What travels between ranks when nodes, or cells, are summed up. */
+    /** What ranks exchange when nodes, or cells, are summed up. */
     const ExchangePlan &
     node_plan() const
     {
@@ -152,22 +152,23 @@ namespace limber
     clear();
 
     /**
-     * Complete the sums over points in slots [first, last) of the records:
-     * hand those of hanging nodes to their masters, send to other ranks, and
-     * add what they send. Between start and finish these slots must not
-     * change.
+     * Complete the P2G sums in slots [first, last): add hanging nodes to their
+     * masters, and sum up over ranks. These slots must not change between start
+     * and finish.
      */
     void
     start_sum(unsigned int first = 0, unsigned int last = Layout::stride);
     void
     finish_sum();
 
-    /** Give hanging nodes the values that follow from their masters. */
+    /** Set the values of hanging nodes from those of their masters. */
     void
     interpolate_hanging();
 
-    /** Let hanging nodes show the mass of their lightest master, as what is
-     * light moves as it likes, until it is taken from them again. */
+    /**
+     * Give hanging nodes temporarily the mass of their lightest master, for
+     * what depends on whether nodes are light.
+     */
     void
     lend_mass_to_hanging();
     void
@@ -180,7 +181,7 @@ namespace limber
       return active;
     }
 
-    /** Those of them that lie on a side of the box. */
+    /** Active nodes on a side of the box. */
     const std::vector<std::uint32_t> &
     active_boundary_nodes() const
     {
@@ -188,11 +189,10 @@ namespace limber
     }
 
     /**
-     * Where there are several fields: tell which cells hold points of which.
-     * Call begin_noting() after points have given to the nodes, then
-     * note_cell() for each cell with points of a field; what is known already
-     * need not be told again unless begin_noting() returns true. Hanging nodes
-     * get what others have: with cells of several sizes nothing is noted.
+     * With several fields: register which cells contain points of which. Call
+     * begin_noting() after P2G, then note_cell() for each cell with points of a
+     * field; known cells need not be repeated unless begin_noting() returns
+     * true. Not used with hanging nodes.
      */
     bool
     begin_noting();
@@ -204,8 +204,8 @@ namespace limber
     }
 
     /**
-     * Those active nodes that may have anything in the selected field. Of other
-     * nodes the records of the field are zero.
+     * Active nodes that may have mass in the selected field; at others its
+     * records are zero.
      */
     const std::vector<std::uint32_t> &
     active_nodes_of_field() const
@@ -213,21 +213,23 @@ namespace limber
       return is_noted ? of_fields[selected].nodes : active;
     }
 
-    /** Those that may have mass in two fields. */
+    /** Active nodes that may have mass in two fields (contact). */
     const std::vector<std::uint32_t> &
     nodes_of_two_fields() const
     {
       return is_noted ? of_two_fields : active;
     }
 
-    /** Another number whenever these lists have changed. */
+    /** Changes whenever these lists change. */
     std::uint64_t
     version_of_active() const
     {
       return version;
     }
 
-    /** Sums over the nodes of all ranks meet each node once, where this is. */
+    /**
+     * Whether this rank owns the node; sums over all ranks count owned nodes.
+     */
     bool
     owns(const std::uint32_t node) const
     {
@@ -246,7 +248,7 @@ namespace limber
       return values.data() + std::size_t(node) * Layout::stride;
     }
 
-    /** Of a node, of all fields, kg. */
+    /** Mass of a node in all fields, kg. */
     double
     mass(const std::uint32_t node) const
     {
@@ -256,7 +258,7 @@ namespace limber
       return result;
     }
 
-    /** Of a field, whichever is selected. */
+    /** The record in a given field. */
     double *
     record(const unsigned int field, const std::uint32_t node)
     {
@@ -274,7 +276,7 @@ namespace limber
     const NodeTable<dim>      &table;
 
   private:
-    /** Where points of the bodies of a field are, or have been. */
+    /** Cells and nodes that points of a field occupy or have occupied. */
     struct FieldPlaces
     {
       std::vector<std::uint32_t> cells, nodes;
@@ -323,30 +325,30 @@ namespace limber
     void
     find_roles();
 
-    // What a node has to do with other ranks, directly or through masters
+    // How other ranks may contribute to a node, directly or via hanging nodes
     static constexpr std::uint8_t is_shared        = 1;
     static constexpr std::uint8_t is_of_owned_cell = 2;
-    static constexpr std::uint8_t may_be_added_to  = 4; // as agreed
+    static constexpr std::uint8_t may_be_added_to  = 4; // as agreed on
 
     LazyArray<double>              values; // of the selected field
     std::vector<LazyArray<double>> parked =
-      std::vector<LazyArray<double>>(1); // of the others
+      std::vector<LazyArray<double>>(1); // of the other fields
     unsigned int               selected = 0;
     LazyArray<std::uint8_t>    roles; // of nodes
     RecordExchange             exchange{Layout::stride};
     ExchangePlan               nodes_to_share, cells_to_share;
-    std::vector<std::uint32_t> border_cells; // with a node that is shared
+    std::vector<std::uint32_t> border_cells; // with a shared node
     std::vector<std::uint32_t> with_own_points, occupied_owned, occupied_ghost;
     std::vector<std::uint32_t> entered, active, active_boundary;
     std::uint64_t              version = 0; // of the active nodes
-    std::vector<FieldPlaces>   of_fields;   // where there are several
+    std::vector<FieldPlaces>   of_fields;   // if there are several
     std::vector<std::uint32_t> of_two_fields;
-    std::uint64_t              noted_version = 0; // when shared nodes were
+    std::uint64_t              noted_version = 0; // at the last begin_noting()
     bool                       is_noted      = false;
     LazyArray<std::uint8_t>    has_own_points, is_occupied, is_active;
     bool                       left = false, in_ghosts = false;
 
-    std::unique_ptr<NodalFields> of_vertices; // where these are others
+    std::unique_ptr<NodalFields> of_vertices; // unless the kernel is linear
   };
 } // namespace limber
 

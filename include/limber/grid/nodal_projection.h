@@ -9,10 +9,10 @@
 namespace limber
 {
   /**
-   * The projection on nodes of a quantity of one body: its records
-   * (NodalMeanLayout), owned and ghost, to which sweeps add and of which they
-   * read the means (interpolation/nodal_means.h). All ranks that hold a node
-   * get the same mean; that of a hanging node follows from its masters.
+   * Storage of the lumped projection on nodes of a quantity of one body:
+   * records (NodalMeanLayout), owned and ghost, to which sweeps add and from
+   * which they read the means (interpolation/nodal_means.h). All ranks that
+   * hold a node get the same mean; hanging nodes get theirs from their masters.
    */
   template <int dim>
   class NodalProjection
@@ -48,9 +48,9 @@ namespace limber
     clear(const std::vector<std::uint32_t> &nodes);
 
     /**
-     * Complete the sums with those of other ranks, and put the means of the
-     * given nodes, all that have any sums, into their places. Between start
-     * and finish nothing must be added.
+     * Complete the sums over ranks, and replace them by means at the given
+     * nodes, which must be all with nonzero sums. No additions between start
+     * and finish.
      */
     void
     start_completion(const ExchangePlan &plan);

@@ -7,10 +7,10 @@
 namespace limber
 {
   /**
-   * The place of each node of the grid's kernel, by local number, in a lattice
-   * twice as fine as the finest cells, x fastest: a name of the node that
-   * ranks and meshes have in common. A rank of several may not know all nodes
-   * that it meets with splines: those have `no_place`.
+   * A global key of each node of the kernel, by local number, independent of
+   * ranks and mesh: its index in a lattice twice as fine as the finest cells, x
+   * fastest. With splines and several ranks some ghost nodes may be unknown:
+   * these have `no_place`.
    */
   template <int dim>
   std::vector<std::uint64_t>

@@ -12,7 +12,7 @@
 
 namespace limber
 {
-  /** A node that the mesh constrains to others: u = sum weight u_master. */
+  /** A hanging node, constrained by its masters: u = sum weight u_master. */
   struct HangingNode
   {
     std::uint32_t                                 node; // local number
@@ -22,8 +22,8 @@ namespace limber
 
 
   /**
-   * What is known of a set of nodes on this rank, by local numbers: those that
-   * it owns first, then ghosts.
+   * Topology of a set of nodes on this rank, by local numbers: owned ones
+   * first, then ghosts.
    */
   template <int dim>
   struct NodeTable
@@ -36,8 +36,8 @@ namespace limber
     }
 
     /**
-     * Slots [first, last) of records of nodes: hanging nodes hand what has
-     * been added to them on to their masters, and are left with zero.
+     * Condense: add slots [first, last) of the records of hanging nodes to
+     * their masters, and set them to zero (transpose of the interpolation).
      */
     void
     give_to_masters(double      *records,
@@ -45,7 +45,7 @@ namespace limber
                     unsigned int first,
                     unsigned int last) const;
 
-    /** The same: hanging nodes get the values that follow from masters. */
+    /** Interpolate: set these slots of hanging nodes from their masters. */
     void
     take_from_masters(double      *records,
                       unsigned int stride,
@@ -54,21 +54,20 @@ namespace limber
 
     unsigned int             n_owned = 0;
     std::vector<HangingNode> hanging;
-    // Their masters, ascending, also of hanging nodes that only others know
+    // Their masters, ascending; also those of hanging nodes of other ranks
     std::vector<std::uint32_t> masters;
     // Bit s is set for nodes on side s of the box.
     std::vector<std::uint8_t> sides;
-    // Places of these nodes only
+    // Positions of the nodes on sides only
     std::unordered_map<std::uint32_t, dealii::Point<dim>> places;
-    // Those that other ranks hold as well
+    // Nodes that are known to several ranks
     SharedRecords shared;
-    // Of splines: for a node in sides, and a set of directions (bits), the node
-    // that is reached by steps inward in those of them in which it lies at a
-    // side
+    // Of splines: for a node on sides, and a set of directions (bits), the node
+    // reached by one step inward in those directions in which it is on a side
     std::unordered_map<std::uint32_t, std::array<std::uint32_t, 1 << dim>>
       inward;
-    // The part of the mass of a node in a held side that joins the lumped mass
-    // of its neighbour inward in full_mass_filter.h, for each direction
+    // Share of the mass of a node on a held side that is added to the lumped
+    // mass of its inward neighbour in full_mass_filter.h, per direction
     double inward_share = 0;
   };
 } // namespace limber

@@ -6,7 +6,7 @@
 
 namespace limber
 {
-  /** The vector in dim slots of a record, as that of a node. */
+  /** The vector in dim slots of a nodal record. */
   template <int dim>
   inline dealii::Tensor<1, dim>
   vector_in(const double *const slots)
@@ -19,7 +19,7 @@ namespace limber
 
 
 
-  /** Put a vector into dim slots of a record. */
+  /** Write a vector to dim slots of a nodal record. */
   template <int dim>
   inline void
   store_vector(const dealii::Tensor<1, dim> &vector, double *const slots)

@@ -10,9 +10,9 @@
 namespace limber
 {
   /**
-   * The pack through which @p n_slots slots of nodal records from @p first on
-   * are read or written at once. Lanes beyond the wanted slots hold others, but
-   * never reach beyond the record.
+   * The pack with which @p n_slots slots of nodal records from @p first on are
+   * loaded and stored at once. Lanes beyond these hold other slots, but never
+   * exceed the record.
    */
   template <int dim, unsigned int first, unsigned int n_slots>
   struct RecordWindow
@@ -39,8 +39,7 @@ namespace limber
 
 
   /**
-   * From values of the points of a pack, by slot of a record, to one record
-   * for each point.
+   * Transposition: from slots, each a pack of points, to one record per point.
    */
   template <class Record, class Number>
   __attribute__((always_inline)) inline std::array<Record, pack_width<Number>>
@@ -49,7 +48,7 @@ namespace limber
     constexpr int n_points = pack_width<Number>, n = pack_width<Record>;
     std::array<Record, n_points> result;
     std::array<Pack<4>, 4>       block;
-    // Blocks of four points and, but for the shortest records, four slots
+    // Blocks of four points and (except for the shortest records) four slots
     for (int first = 0; first < n_points; first += 4)
       for (int slot = 0; slot < n; slot += 4)
         {
@@ -73,9 +72,9 @@ namespace limber
 
 
   /**
-   * Add the sums over the points of a pack of what each gives, by slots of a
-   * window, to a record, from the first slot of the window on. What is beyond
-   * @p n_used may be left out.
+   * Add the sum over the points of a pack, by slots of a window, to a record,
+   * from the first slot of the window on. Slots beyond @p n_used may be
+   * skipped.
    */
   template <std::size_t n_used, class Number, std::size_t width>
   __attribute__((always_inline)) inline void

@@ -10,53 +10,51 @@
 namespace limber
 {
   /**
-   * Which cells of a scene's lattice are divided, and which of their children,
-   * level by level: a whole mesh as a list of numbers, the same on all ranks.
-   * A cell of level l is known by its place in the lattice that has 2^l times
-   * as many cells along each edge as that of the scene, x fastest. Eight bytes
-   * for each divided cell.
+   * The set of divided cells, level by level: a whole adaptive mesh as a list
+   * of numbers, the same on all ranks. A cell of level l is identified by its
+   * index in the lattice with 2^l times as many cells along each edge as that
+   * of the scene, x fastest. Eight bytes per divided cell.
    */
   template <int dim>
   class RefinedCells
   {
   public:
-    /** A cell of a level, by its steps along each axis. */
+    /** A cell of a level, by its index along each axis. */
     using Place = std::array<std::uint32_t, dim>;
 
-    /** None, in the lattice of the scene and @p levels finer ones. */
+    /** Empty, for the lattice of the scene and @p levels finer ones. */
     RefinedCells(const std::array<unsigned int, dim> &cells,
                  unsigned int                         levels);
 
-    /** Wish that a cell of this level be divided, and those that hold it. */
+    /** Request that a cell of this level and its ancestors be divided. */
     void
     divide(unsigned int level, const Place &place);
 
-    /** What the other divides as well, which is in order. */
+    /** Add the divided cells of another, sorted set. */
     void
     join(const RefinedCells &other);
 
-    /** Join the wishes of all ranks; collective. */
+    /** Unite the requests of all ranks; collective. */
     void
     sum_over_ranks(MPI_Comm communicator);
 
     /**
-     * Add @p buffer cells around those that are divided, on each level, and
-     * what a graded mesh needs: around a divided cell, and across corners,
-     * all cells of its size are there. So two jumps in size are at least two
-     * cells apart.
+     * Add @p buffer cells around the divided ones on each level, and what 2:1
+     * balance needs: around a divided cell, also across corners, all cells of
+     * its size exist. So two jumps in size are at least two cells apart.
      */
     void
     grade(unsigned int buffer);
 
-    /** Whether the cell is divided; wishes have been summed or graded. */
+    /** Whether a cell is divided; only after summation or grading. */
     bool
     is_divided(unsigned int level, const Place &place) const;
 
-    /** As numbers, level after level: how many cells, then their places. */
+    /** Serialise, level by level: number of cells, then their indices. */
     std::vector<std::uint64_t>
     numbers() const;
 
-    /** And back; throws std::invalid_argument where they are none. */
+    /** The inverse; throws std::invalid_argument for invalid input. */
     void
     set(const std::vector<std::uint64_t> &numbers);
 
@@ -72,7 +70,9 @@ namespace limber
       return of_level.size();
     }
 
-    /** That of the smallest cells: how many levels hold divided ones. */
+    /**
+     * Level of the smallest cells, i.e. the number of levels with divided ones.
+     */
     unsigned int
     finest_level() const
     {
@@ -82,22 +82,22 @@ namespace limber
       return result;
     }
 
-    /** Give up what the other does not divide as well; both are in order. */
+    /** Intersect with the divided cells of another; both are sorted. */
     void
     keep_common(const RefinedCells &other);
 
-    /** The number of a place, and back. */
+    /** The linear index of a cell, and back. */
     std::uint64_t
     number(unsigned int level, const Place &place) const;
     Place
     place(unsigned int level, std::uint64_t number) const;
 
-    /** Whether there is such a place in the box. */
+    /** Whether the index is inside the box. */
     bool
     is_inside(unsigned int level, const Place &place) const;
 
   private:
-    using Cells = std::vector<std::uint64_t>; // ascending, when in order
+    using Cells = std::vector<std::uint64_t>; // ascending, once sorted
 
     Cells
     with_neighbours(unsigned int level, const Cells &cells) const;

@@ -9,11 +9,11 @@
 #include <vector>
 
 /**
- * @file Sums, or largest values, over ranks of the records of nodes and cells.
- * Every rank that holds a record, as its owner or as a ghost, sends what it has
- * summed up to every other that holds it too, and all add the same numbers in
- * the order of ranks. So one exchange leaves the same complete sum, to the last
- * bit, with all of them, and nothing has to be sent back by the owner.
+ * @file Sums, or maxima, over ranks of nodal and cell records. Every rank that
+ * holds a record, as its owner or as a ghost, sends its own contribution to
+ * every other holder, and all add the same numbers in the order of ranks. So a
+ * single exchange yields the same sum, bit by bit, on all of them, and owners
+ * need not send results back.
  */
 namespace limber
 {
@@ -23,13 +23,13 @@ namespace limber
     struct Neighbour
     {
       unsigned int rank;
-      // Local numbers; here and there they stand for the same records.
+      // Local numbers, in the same order on both ranks.
       std::vector<std::uint32_t> records;
     };
 
     SharedRecords() = default;
 
-    /** Collective: owners tell those who hold a ghost about each other. */
+    /** Collective: owners tell the holders of a ghost about each other. */
     explicit SharedRecords(const dealii::Utilities::MPI::Partitioner &records);
 
     MPI_Comm               communicator = MPI_COMM_SELF;
@@ -38,7 +38,9 @@ namespace limber
 
 
 
-  /** Which of the shared records travel, as neighbours have agreed. */
+  /**
+   * The shared records that are really exchanged, as agreed with neighbours.
+   */
   struct ExchangePlan
   {
     struct Neighbour
@@ -47,18 +49,18 @@ namespace limber
       std::vector<std::uint32_t> send, receive;
     };
 
-    /** All of them, both ways. */
+    /** All shared records, in both directions. */
     explicit ExchangePlan(const SharedRecords &shared);
 
     /**
-     * Those to which the sender may add and which the receiver wants to know;
-     * collective. Both are asked for local numbers of shared records.
+     * Only records to which the sender may contribute and which the receiver
+     * needs; collective. Both functions get local numbers of shared records.
      */
     ExchangePlan(const SharedRecords                      &shared,
                  const std::function<bool(std::uint32_t)> &may_add,
                  const std::function<bool(std::uint32_t)> &wants);
 
-    /** More records to send and to receive, which neighbours have agreed on. */
+    /** Add further records to send and receive, as agreed with neighbours. */
     void
     add(const std::vector<Neighbour> &more);
 
@@ -66,7 +68,7 @@ namespace limber
     unsigned int               rank; // this one
     std::vector<Neighbour>     neighbours;
     std::vector<std::uint32_t> received;  // each once, ascending
-    std::vector<std::uint32_t> contested; // those from several neighbours
+    std::vector<std::uint32_t> contested; // received from several neighbours
 
   private:
     void
@@ -76,9 +78,9 @@ namespace limber
 
 
   /**
-   * One exchange after the other of `stride` numbers per record. What ranks
-   * send at the same time is told apart by the order in which it is started;
-   * that has to be the same everywhere.
+   * Exchanges of `stride` numbers per record, one at a time. Concurrent
+   * exchanges of different objects are matched by the order in which they are
+   * started, which must be the same on all ranks.
    */
   class RecordExchange
   {
@@ -87,18 +89,18 @@ namespace limber
       : stride(stride)
     {}
 
-    /** Send slots [first, last) of the records at @p values. */
+    /** Send slots [first, last) of the records in @p values. */
     void
     start(const ExchangePlan &plan,
           const double       *values,
           unsigned int        first,
           unsigned int        last);
 
-    /** Add what others have sent to the same slots. */
+    /** Add what others have sent for the same slots. */
     void
     finish(double *values);
 
-    /** Instead of finish(): keep the largest of all, the same everywhere. */
+    /** Instead of finish(): the maximum over ranks. */
     void
     finish_largest(double *values);
 
@@ -110,7 +112,7 @@ namespace limber
 
     const unsigned int stride;
 
-    // Of the exchange under way; the buffers stay.
+    // Of the exchange in progress; buffers are reused.
     const ExchangePlan              *plan  = nullptr;
     unsigned int                     first = 0, last = 0;
     std::vector<std::vector<double>> sent, received; // per neighbour

@@ -10,29 +10,29 @@
 
 namespace limber
 {
-  /** A component of the velocity of a node that a side of the box holds. */
+  /** A velocity component of a node that a side of the box prescribes. */
   struct Constraint
   {
     std::uint32_t node; // local number
     std::uint8_t  component, side;
-    bool          one_sided; // only against motion outward, see Side
+    bool          one_sided; // only against outward motion, see Side
     double        value;     // m/s
   };
 
 
 
   /**
-   * The constraints that the sides of the box lay on the active nodes, as a
-   * list: those of a node follow each other in the order in which its sides
-   * act, so that of several for one component the last counts. The list is
-   * made anew only when nodes have become active or inactive or obstacles have
-   * moved that cover sides, and its values only at another time.
+   * The constraints of the sides of the box on the active nodes, as a list:
+   * those of a node are consecutive, in the order in which its sides act, so
+   * that the last one for a component counts. The list is rebuilt only when
+   * active nodes change or obstacles that cover sides have moved, its values
+   * when the time changes.
    */
   template <int dim>
   class SideConstraints
   {
   public:
-    /** @p covered outlives this object; null: no side can be. */
+    /** @p covered must outlive this object; null: no side can be covered. */
     explicit SideConstraints(const Sides<dim>        &sides,
                              const CoveredSides<dim> *covered = nullptr);
 
@@ -40,14 +40,14 @@ namespace limber
     const std::vector<Constraint> &
     at(const NodalFields<dim> &nodes, double time);
 
-    /** What the sides that a node lies in hold, in the same order. */
+    /** The components held by a set of sides, in the same order. */
     const std::vector<HeldComponent> &
     of_sides(const std::uint8_t set) const
     {
       return held[set];
     }
 
-    /** The same of a node, less what obstacles have covered. */
+    /** The same for a node, without sides covered by obstacles. */
     const std::vector<HeldComponent> &
     of_node(const NodalFields<dim> &nodes, std::uint32_t node) const;
 
@@ -59,10 +59,10 @@ namespace limber
 
     const Sides<dim>                                      &sides;
     const CoveredSides<dim> *const                         covered; // or null
-    std::array<std::vector<HeldComponent>, 1 << (2 * dim)> held;    // by sets
+    std::array<std::vector<HeldComponent>, 1 << (2 * dim)> held;    // by set
     std::vector<Constraint>                                list;
-    std::vector<std::size_t> moving;      // of them: those with a formula
-    std::uint64_t            version = 0; // of the active nodes in the list
+    std::vector<std::size_t> moving; // indices of those with a formula
+    std::uint64_t            version            = 0; // of the active nodes
     std::uint64_t            version_of_covered = 0;
     double                   time_of_values     = 0; // s
     bool                     has_values         = false;

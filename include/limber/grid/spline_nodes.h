@@ -6,13 +6,13 @@
 
 namespace limber
 {
-  /** Stands for a node of a ghost cell of which this rank knows nothing. */
+  /** A node of a ghost cell that this rank does not know. */
   inline constexpr std::uint32_t unknown_node = 0xffffffffu;
 
   /**
-   * The nodes of quadratic splines (interpolation/spline_factors.h) over equal
-   * cells: one for each cell, and those in the sides of the grid, which belong
-   * to the cells next to them.
+   * The nodes of quadratic splines (interpolation/spline_factors.h) on equal
+   * cells: one per cell, and those in the sides of the grid, which belong to
+   * the adjacent cells.
    */
   template <int dim>
   struct QuadraticNodes
@@ -22,20 +22,22 @@ namespace limber
     std::vector<SplineCell<dim, 2>> cells;
   };
 
-  /** Needs the cells of the grid, and their bins. */
+  /** Needs the cell tables and bins of the grid. */
   template <int dim>
   QuadraticNodes<dim>
   number_quadratic_nodes(const BackgroundGrid<dim> &grid);
 
   /**
-   * The same for cubic splines, whose nodes are the vertices of the cells;
-   * those of owned cells are all known.
+   * The cells of cubic splines, whose nodes are the vertices; all nodes of
+   * owned cells are known.
    */
   template <int dim>
   std::vector<SplineCell<dim, 3>>
   find_cubic_cells(const BackgroundGrid<dim> &grid);
 
-  /** Complete the table of the vertices for cubic splines: who is inward. */
+  /**
+   * Complete the table of the vertices for cubic splines: inward neighbours.
+   */
   template <int dim>
   void
   set_inward_vertices(const BackgroundGrid<dim> &grid,
