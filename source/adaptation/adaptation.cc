@@ -14,9 +14,9 @@ namespace limber
 {
   namespace
   {
-    // Points may go so much of the rim, in fine cells, before criteria are
-    // asked again: all but half a cell. Points next to each other part by less
-    // than they go.
+    // Displacement in the margin, in fine cells, until criteria are evaluated
+    // again: the width of the margin less half a cell. The distance of
+    // neighbouring points changes by less than that.
     template <int dim>
     double
     way_between(const Problem<dim> &problem)
@@ -24,9 +24,9 @@ namespace limber
       return problem.grid.levels > 0 ? 2 * rim_pairs(problem) - 0.5 : 0.5;
     }
 
-    // What formulas of the time and fields want may change while points rest,
-    // and points are stretched by others that move. Steps of the finest cells:
-    // while there are only coarse ones, steps are longer.
+    // Criteria that depend on time or fields may change while points rest, and
+    // points are stretched by others that move: evaluate at least every so many
+    // steps of the finest cells. With coarse cells only, steps are longer.
     constexpr std::uint64_t steps_at_rest = 50;
   } // namespace
 
@@ -111,8 +111,8 @@ namespace limber
   bool
   Adaptation<dim>::adapt_mesh(const double time, const KeptPoints &kept)
   {
-    // A cell is joined again only when nothing has wanted it twice in a row;
-    // what is left behind in empty room, at once.
+    // Hysteresis: a cell is coarsened only if no criterion wanted it in two
+    // evaluations in a row; with a wide margin (empty cells only), at once.
     RefinedCells<dim>       mesh    = wanted_mesh(problem, grid, bodies, time);
     const RefinedCells<dim> present = grid.divided_cells();
     RefinedCells<dim>       held    = grid.no_divided_cells();
@@ -135,7 +135,7 @@ namespace limber
 
 
 
-  // Numbers that this rank's predecessors take come first.
+  // Ids are given to the ranks in their order (exclusive prefix sum).
   template <int dim>
   std::uint64_t
   Adaptation<dim>::take_numbers(const std::size_t   body,
@@ -158,7 +158,7 @@ namespace limber
 
 
 
-  // A part may be too long still, or long along another axis.
+  // Repeated, as a part may still be too long, or long along another axis.
   template <int dim>
   bool
   Adaptation<dim>::divide_points(const std::size_t                        b,
@@ -182,8 +182,8 @@ namespace limber
 
 
 
-  // Zero where no obstacle is as near as the surface of the body and one cell
-  // more.
+  // Outward normals at surface points towards obstacles; zero if no obstacle is
+  // within the distance of the surface plus one cell.
   template <int dim>
   std::vector<dealii::Tensor<1, dim>>
   Adaptation<dim>::normals_to_obstacles(const MaterialPoints<dim>      &points,
@@ -218,7 +218,7 @@ namespace limber
 
 
 
-  // Moving refinements have a rim around them.
+  // Moving refinements have a margin instead.
   template <int dim>
   bool
   Adaptation<dim>::looks_ahead() const
@@ -232,8 +232,8 @@ namespace limber
 
 
 
-  // The fastest point may go that far into fine cells before criteria are asked
-  // again.
+  // The fastest point may move that far into fine cells until criteria are
+  // evaluated again.
   template <int dim>
   double
   Adaptation<dim>::seconds_to_look_ahead() const

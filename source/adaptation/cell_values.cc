@@ -21,7 +21,7 @@ namespace limber
 
 
 
-  // Places from the middle of the cell: no digits are lost in differences.
+  // Coordinates relative to the cell centre, against cancellation.
   template <int dim>
   void
   MotionSums<dim>::add(const PointView<dim>    &points,
@@ -110,11 +110,11 @@ namespace limber
 
   namespace
   {
-    /** Sums of the points in each cell, owned or ghost, by local number. */
+    /** Sums over the points of each cell, owned or ghost, by local number. */
     template <std::size_t n>
     using CellRecords = std::vector<std::array<double, n>>;
 
-    /** Give what stands in ghost cells to the owners; collective. */
+    /** Add the sums in ghost cells to those of the owners; collective. */
     template <int dim, std::size_t n>
     void
     give_to_owners(const BackgroundGrid<dim> &grid, CellRecords<n> &records)
@@ -139,7 +139,7 @@ namespace limber
 
 
 
-    /** Call add(record, p) for each point that has a cell; collective. */
+    /** Sums by add(points, p, record) over points with a cell; collective. */
     template <std::size_t n, int dim, class Add>
     CellRecords<n>
     sums_over_points(const BackgroundGrid<dim> &grid,
@@ -157,7 +157,7 @@ namespace limber
 
 
 
-    /** Let those of ghost cells be what their owners have; collective. */
+    /** Copy the owners' records to the ghost cells; collective. */
     template <int dim, std::size_t n>
     void
     give_to_ghosts(const BackgroundGrid<dim> &grid, CellRecords<n> &records)
@@ -176,7 +176,10 @@ namespace limber
 
 
 
-    /** See motion_of_cells(); of ghost cells, what this rank has there. */
+    /**
+     * See motion_of_cells(); ghost cells have the contribution of this rank
+     * only.
+     */
     template <int dim>
     CellRecords<MotionSums<dim>::n>
     motion_records(const BackgroundGrid<dim> &grid,
@@ -224,7 +227,7 @@ namespace limber
           for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
               gradient[d][e] *= grid.geometry[cell].inverse_edge[e];
-          // Of the tensor in space: in a plane its zz is that of the deviator.
+          // Norm of the 3d deviator, including zz in plane strain.
           const dealii::SymmetricTensor<2, dim> rate = symmetrize(gradient);
           const double                          norm = std::sqrt(
             std::max(0., rate * rate - trace(rate) * trace(rate) / 3));
@@ -259,11 +262,11 @@ namespace limber
 
 
 
-    // Mass, J p and the deviator of J sigma, times mass or their means
+    // Mass, and J p and the deviator of J sigma, as sums m times or as means
     template <int dim>
     using StressRecord = std::array<double, 2 + n_deviator<dim>>;
 
-    /** The norm of the difference of two stresses, Pa. */
+    /** The Frobenius norm of the difference of two stresses, Pa. */
     template <int dim>
     double
     jump_between(const StressRecord<dim> &a, const StressRecord<dim> &b)

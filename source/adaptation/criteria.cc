@@ -17,8 +17,8 @@ namespace limber
   namespace
   {
     /**
-     * Whether a formula is positive at one of @p per_edge places along each
-     * edge of a part of a cell.
+     * Whether a formula is positive at any sample of a part of a cell, with @p
+     * per_edge samples along each edge.
      */
     template <int dim>
     bool
@@ -55,9 +55,9 @@ namespace limber
 
 
     /**
-     * Whether a cell has a part in a refinement. Of the finest cells only one
-     * thing is asked, whether they stay: at the corners of their halves they
-     * and their siblings know what the cell was asked that they came from.
+     * Whether a cell overlaps a refinement. The finest cells are only asked
+     * whether they remain, with three samples per edge: together with their
+     * siblings these are the five per edge of their parent.
      */
     template <int dim>
     bool
@@ -71,7 +71,7 @@ namespace limber
       Corners<dim> part(lower, upper);
       for (int d = 0; d < dim; ++d)
         {
-          // A box that ends where the cell begins has no part of it.
+          // A box that ends where the cell begins does not overlap it.
           const double tolerance = 1e-6 * (upper[d] - lower[d]);
           part.first[d]          = std::max(lower[d], refinement.box.first[d]);
           part.second[d]         = std::min(upper[d], refinement.box.second[d]);
@@ -87,7 +87,7 @@ namespace limber
 
   namespace
   {
-    /** Asks the refinements of the scene, cell by cell. */
+    /** Evaluates the refinement criteria of the scene, cell by cell. */
     template <int dim>
     class Criteria
     {
@@ -138,7 +138,7 @@ namespace limber
           }
       }
 
-      /** The level wanted in a cell, but at most one beyond its own. */
+      /** The level wanted in a cell, at most one above its own. */
       unsigned int
       wanted_level(const Cell &cell) const
       {
@@ -198,8 +198,8 @@ namespace limber
         return std::min(result, own + 1);
       }
 
-      // As fine as it has to be for not more points than 4^dim, or as many as
-      // 'Points per cell edge' of one level finer.
+      // The level necessary for no more than 4^dim points per cell, or as many
+      // as 'Points per cell edge' gives on one level finer.
       unsigned int
       level_by_points(const Cell &cell) const
       {
@@ -217,7 +217,7 @@ namespace limber
       }
 
     private:
-      // Bodies that share their nodes are one.
+      // Bodies in the same nodal field count as one.
       void
       find_fields(const Bodies &bodies)
       {
@@ -243,9 +243,9 @@ namespace limber
         return false;
       }
 
-      // A cell that wishes it, is_near(level, place, distance), is to be
-      // divided; its ancestors have wished so as well, and one cell more keeps
-      // those divided that are.
+      // The level up to which is_near(level, place, distance) holds for the
+      // cell and all its ancestors. For ancestors the distance is one cell
+      // larger, so that divided cells stay divided (hysteresis).
       template <class IsNear>
       unsigned int
       level_of_wish(const Refinement<dim> &refinement,
@@ -268,8 +268,9 @@ namespace limber
         return level;
       }
 
-      // By the distance of its middle, less half its diagonal; so a cell is as
-      // near as its parts at least. What is within an obstacle holds nothing.
+      // Signed distance at the centre, less half the diagonal: a lower bound
+      // for all parts of the cell. Cells entirely inside an obstacle are empty
+      // and not refined.
       unsigned int
       level_by_obstacle(const Refinement<dim> &refinement,
                         const Cell            &cell) const
@@ -299,8 +300,9 @@ namespace limber
         return level;
       }
 
-      // Stress and rate jump by half as much on half the size, so what has just
-      // been divided is not joined at once, nor the other way round.
+      // Hysteresis: jumps of stress and rate are half as large on half the
+      // size, so a cell that has just been refined is not coarsened at once, or
+      // vice versa.
       static unsigned int
       level_by_value(const double share, const unsigned int own)
       {
@@ -316,11 +318,11 @@ namespace limber
       const double                    time;
       const Occupancy<dim>            occupancy; // by all bodies
       std::vector<ObstaclePlace<dim>> obstacles;
-      // By bodies that share their nodes, for the criterion 'contact'
+      // By nodal field, for the criterion 'contact'
       std::vector<std::unique_ptr<Occupancy<dim>>> fields;
-      // By refinement, where it asks for some
+      // By refinement, for the criterion 'body'
       std::vector<std::unique_ptr<Occupancy<dim>>> of_bodies;
-      // Likewise by cell, where it has a scale
+      // By refinement and cell, for criteria with a scale
       std::vector<std::vector<double>> values;
       std::uint64_t                    most_points = 0;
     };
@@ -384,8 +386,7 @@ namespace limber
                                       return refinement.is_moving();
                                     });
     result.grade(moving ? rim_pairs(problem) : 0);
-    // No rim around these: points in it would be split in their turn, and so
-    // on.
+    // No margin around these: points in it would be split in turn, and so on.
     result.join(for_points);
     result.grade(0);
     return result;

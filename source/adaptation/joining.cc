@@ -16,7 +16,7 @@ namespace limber
 
     using Set = std::vector<std::size_t>;
 
-    /** Whether the points of a cell move nearly as a linear function. */
+    /** Whether the velocity of the points of a cell is nearly linear. */
     template <int dim>
     bool
     moves_evenly(const BackgroundGrid<dim> &grid,
@@ -79,7 +79,7 @@ namespace limber
 
 
 
-    /** Whether they bear nearly the same stress. */
+    /** Whether their stress is nearly uniform. */
     template <int dim>
     bool
     is_loaded_evenly(const PointView<dim> &points,
@@ -111,7 +111,7 @@ namespace limber
 
 
 
-    /** Whether it is a part of what has been stretched. */
+    /** Whether the point has been made by dividing a stretched one. */
     template <int dim>
     bool
     is_divided(const BackgroundGrid<dim> &grid,
@@ -130,7 +130,9 @@ namespace limber
 
 
 
-    /** The points of a cell by the rooms of its own points; see sets_to_join().
+    /**
+     * Sort the points of a cell by the sub-boxes of points of its level; see
+     * sets_to_join().
      */
     template <int dim>
     void
@@ -162,7 +164,7 @@ namespace limber
                                            static_cast<int>(rooms[d]) - 1);
           by_room[room].push_back(p);
         }
-      // As points have moved, a room may have some more or less.
+      // As points move, the number of points in a sub-box may vary.
       constexpr std::size_t family = 1 << dim;
       for (Set &set : by_room)
         if (4 * set.size() >= 3 * family && 2 * set.size() <= 3 * family)
@@ -237,9 +239,9 @@ namespace limber
       return body.stress->summarize(only(body.points.view(), p)).strain_energy;
     };
     const PointView<dim> points = body.points.view();
-    // Set by set: of all points together the difference would be round-off.
+    // By set: the difference of sums over all points would be round-off.
     std::vector<double>                            strain(sets.size(), 0.);
-    std::unordered_map<std::uint64_t, std::size_t> set_of; // by its first one
+    std::unordered_map<std::uint64_t, std::size_t> set_of; // by first id
     double                                         kinetic = 0;
     for (std::size_t s = 0; s < sets.size(); ++s)
       {

@@ -5,7 +5,10 @@ namespace limber
 {
   namespace
   {
-    /** Give cells and their points to ranks anew; the grid is not complete. */
+    /**
+     * Repartition cells with their points; BackgroundGrid::complete() must
+     * follow.
+     */
     template <int dim>
     void
     redistribute(BackgroundGrid<dim>                             &grid,
@@ -14,7 +17,7 @@ namespace limber
       for (auto &body : bodies)
         body->points.prepare_mesh_change();
 
-      // A cell without points takes memory but no time.
+      // Weights for load balancing: empty cells cost memory but no time.
       using Cell        = typename BackgroundGrid<dim>::Cell;
       using Status      = typename dealii::Triangulation<dim>::CellStatus;
       const auto weight = [&](const Cell &cell, const Status) -> unsigned int {
@@ -47,7 +50,7 @@ namespace limber
 
 
 
-  // A pass brings every cell one level closer.
+  // Each pass brings every cell one level closer.
   template <int dim>
   bool
   change_mesh(BackgroundGrid<dim>                             &grid,
@@ -73,7 +76,7 @@ namespace limber
     };
     if (!take_passes())
       {
-        // Parted siblings cannot be joined.
+        // Siblings on different ranks cannot be coarsened.
         redistribute(grid, bodies);
         grid.mark_towards(mesh);
         AssertThrow(take_passes(),

@@ -8,7 +8,7 @@ namespace limber
 {
   namespace
   {
-    /** Equal places become one entry with the sum of their points. */
+    /** Merge entries of the same cell, adding their points. */
     template <class Entries>
     void
     merge_equal(Entries &entries)
@@ -46,7 +46,7 @@ namespace limber
           if (view.cell[p] != invalid_cell)
             ++points[view.cell[p]];
       }
-    // Level, place and points, one after the other, to be sent.
+    // Serialised as level, index and points.
     std::vector<std::uint64_t> own;
     for (const auto &cell : grid.triangulation.active_cell_iterators())
       if (!cell->is_artificial())
@@ -140,7 +140,7 @@ namespace limber
         Place        other = place;
         unsigned int rest  = k;
         for (int d = 0; d < dim; ++d, rest /= width)
-          other[d] += rest % width - distance; // below zero: beyond, too
+          other[d] += rest % width - distance; // unsigned underflow: not inside
         if (numbering.is_inside(level, other) &&
             is_filled(level, other) == filled)
           return true;

@@ -9,9 +9,9 @@ namespace limber
 {
   namespace
   {
-    constexpr double longest = 2. / 3.; // over the edge of the cell
+    constexpr double longest = 2. / 3.; // edge of a point over that of its cell
 
-    /** The left Cauchy-Green tensor, from stretches along unit vectors. */
+    /** b from the squared stretches along axes and diagonals (polarisation). */
     template <int dim>
     dealii::SymmetricTensor<2, dim>
     left_cauchy_green(const StressUpdate<dim> &stress,
@@ -41,7 +41,7 @@ namespace limber
 
 
 
-    /** Whether the point is to be divided, and then where. */
+    /** Whether the point is to be divided, and along which edge. */
     template <int dim>
     bool
     is_stretched(const BackgroundGrid<dim> &grid,
@@ -100,7 +100,7 @@ namespace limber
 
 
 
-    /** Of the points in a cell and in those around, 1/s. */
+    /** Linear fit over the points in a cell and those around it, 1/s. */
     template <int dim>
     dealii::Tensor<2, dim>
     velocity_gradient(const BackgroundGrid<dim>          &grid,

@@ -10,19 +10,19 @@
 
 namespace limber
 {
-  /** What an adaptation takes from step to step; plain, for checkpoints. */
+  /** State of the adaptation between steps; plain data, for checkpoints. */
   struct AdaptationState
   {
-    // The mesh, and what criteria wanted when they were last asked; see
+    // The mesh, and the one that criteria wanted when last evaluated; see
     // RefinedCells::numbers()
     std::vector<std::uint64_t> mesh, wanted;
-    // Of each body, numbers that its points have had, and points made beyond
-    // those of the start
+    // For each body the next free point id, and the number of points created
+    // since the start
     std::vector<std::uint64_t> next_id;
-    std::uint64_t              points_added = 0;
-    double                     way          = 0; // see Adaptation::is_due()
-    std::uint64_t              steps        = 0; // since criteria were asked
-    std::uint64_t points_joined = 0; // those that have gone in this way
+    std::uint64_t              points_added  = 0;
+    double                     way           = 0; // see Adaptation::is_due()
+    std::uint64_t              steps         = 0; // since the last evaluation
+    std::uint64_t              points_joined = 0; // points removed by joining
     // For the report
     std::uint64_t times_asked = 0, mesh_changes = 0, points_split = 0;
   };
@@ -30,44 +30,44 @@ namespace limber
 
 
   /**
-   * Lets the mesh follow what the scene's refinements want, and points follow
-   * the mesh: one in a cell of a finer level than it was made for becomes 2^dim
-   * of half its size, or 3^dim if it is observed, of which the middle one
-   * stays. Where the scene allows it, points in a cell of a coarser level than
-   * they were made for are joined, and stretched ones divided. Every member
-   * function is collective but those that only tell something.
+   * Adaptive mesh refinement (AMR) with points: the mesh follows the refinement
+   * criteria of the scene, and points follow the mesh. A point in a cell of a
+   * finer level than it was made for is split into 2^dim of half its size, or
+   * 3^dim if it is observed, of which the middle one stays. If the scene
+   * permits, points in a cell of a coarser level than theirs are joined, and
+   * stretched ones divided. All member functions except mere queries are
+   * collective.
    */
   template <int dim>
   class Adaptation
   {
   public:
     using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
-    // Numbers of points of each body that are observed: they stay where they
-    // are
+    // Ids of observed points of each body, which have to stay in place
     using KeptPoints = std::vector<std::unordered_set<std::uint64_t>>;
 
-    /** Of a scene set up; does nothing where it does not adapt. */
+    /** For a scene that has been set up; does nothing if it does not adapt. */
     Adaptation(const Problem<dim>  &problem,
                BackgroundGrid<dim> &grid,
                Bodies              &bodies);
 
     /**
-     * To be called once per step, with the largest way of a point in the last
-     * one, in edges of the smallest cells: whether it is time to ask the
-     * criteria again.
+     * Whether criteria have to be evaluated again; to be called once per step,
+     * with the largest displacement of a point in the last one, in edges of the
+     * smallest cells.
      */
     bool
     is_due(double displacement);
 
     /**
-     * Ask the criteria at @p time, change the mesh, split and join points;
-     * returns whether anything has changed, and then fields of nodes and cells
-     * have to adopt the mesh.
+     * Evaluate the criteria at @p time, change the mesh, split and join points.
+     * Returns whether anything has changed; then fields of nodes and cells have
+     * to adopt the mesh.
      */
     bool
     adapt(double time, const KeptPoints &kept);
 
-    /** Make the mesh that of a checkpoint; points are lost. */
+    /** Restore the mesh of a checkpoint; all points are discarded. */
     void
     restore(const AdaptationState &former);
 
@@ -77,27 +77,29 @@ namespace limber
       return memory;
     }
 
-    /** Kinetic and strain energy less by the last adapt() on this rank, J;
-     * below zero where there is more. */
+    /**
+     * Kinetic and strain energy removed by the last adapt() on this rank, J;
+     * negative if it was added.
+     */
     double
     energy_removed() const
     {
       return removed;
     }
 
-    /** Time that adapting has taken on this rank, s. */
+    /** Wall time spent in adaptation on this rank, s. */
     double
     seconds() const
     {
       return seconds_spent;
     }
 
-    /** "points and cells by level ...", of all ranks, for the report. */
+    /** Text for the report: cells and points by level, over all ranks. */
     std::string
     report() const;
 
   private:
-    /** Keep on record what the mesh is. */
+    /** Store the present mesh in the state. */
     void
     set_mesh(const RefinedCells<dim> &mesh);
 
@@ -116,13 +118,17 @@ namespace limber
                          const std::vector<std::size_t> &which,
                          double                          time) const;
 
-    /** Whether points are split before they come into fine cells: where no
-     * refinement moves. */
+    /**
+     * Whether points are split before they enter fine cells: if no refinement
+     * moves, as moving ones have a margin instead.
+     */
     bool
     looks_ahead() const;
 
-    /** In which points may come into fine cells that lie before them, s; zero
-     * where there is a rim around these. Collective. */
+    /**
+     * The time, s, within which points may enter fine cells ahead of them; zero
+     * if these have a margin. Collective.
+     */
     double
     seconds_to_look_ahead() const;
 
@@ -139,9 +145,9 @@ namespace limber
     Bodies              &bodies;
     const double         longest_way; // between adaptations, in fine cells
     AdaptationState      memory;
-    // Steps of the finest cells that there may be, in one on this mesh
+    // Number of steps on the finest possible cells per step on this mesh
     std::uint64_t fine_steps_in_one = 1;
-    unsigned int  finest_level      = 0; // that there has been in this run
+    unsigned int  finest_level      = 0; // reached so far in this run
     double        seconds_spent     = 0;
     double        removed           = 0;
   };

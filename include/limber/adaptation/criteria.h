@@ -7,14 +7,14 @@
 #include <memory>
 #include <vector>
 
-/** @file What the scene wants the mesh to be. */
+/** @file Evaluation of the refinement criteria of the scene. */
 namespace limber
 {
   /**
-   * How many pairs of fine cells lie around what moving refinements ask for.
-   * One, as points that come to lie in the rim are split; but six (three in
-   * space) where the refinements want all bodies fine wherever they are: then
-   * nothing but room becomes fine, which costs memory alone, and the mesh has
+   * Width, in pairs of fine cells, of the margin around what moving refinements
+   * ask for. One, as points that enter the margin are split; but six (three in
+   * 3d) if the refinements want all bodies fine wherever they are: then only
+   * empty cells become fine, which costs nothing but memory, and the mesh has
    * to change less often.
    */
   template <int dim>
@@ -24,13 +24,12 @@ namespace limber
 
 
   /**
-   * The graded mesh that the scene's refinements ask for at @p time, s, seen
-   * from the mesh as it is: a cell can ask to be divided once more, so several
-   * changes may be needed until nothing is asked for. Where refinements move,
-   * there is a rim of fine cells around what they ask for (rim_pairs()), so
-   * that points may go on for a while. Cells with more points than can be of
-   * their size are not to be joined. Collective; throws InputError where a
-   * formula is not finite.
+   * The graded (2:1) mesh that the refinements of the scene ask for at @p time,
+   * s, relative to the present one: cells are refined by at most one level at a
+   * time, so several passes may be needed. Moving refinements get a margin of
+   * fine cells (rim_pairs()), in which points may move for a while. Cells with
+   * too many points for a coarser size are not coarsened. Collective; throws
+   * InputError if a formula is not finite.
    */
   template <int dim>
   RefinedCells<dim>

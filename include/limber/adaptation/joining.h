@@ -7,10 +7,11 @@
 #include <unordered_set>
 
 /**
- * @file Points that become one. Mass, momentum and the centre of mass stay;
- * kinetic energy, 1/2 sum m |v - V|^2, and some strain energy go, and moment of
- * momentum of points that do not move as one. Nodal records change, so it is
- * done only where no small mass is near and motion and stress are even.
+ * @file Joining (merging) of points. Mass, momentum and the centre of mass are
+ * conserved; kinetic energy, 1/2 sum m |v - V|^2, and some strain energy are
+ * lost, and angular momentum of points that do not move as one. As nodal
+ * records change, it is done only where no nodal mass is small and velocity and
+ * stress are smooth.
  */
 namespace limber
 {
@@ -22,13 +23,13 @@ namespace limber
     const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
 
   /**
-   * Sets of points, by their places in the arrays, that may be joined. Points
-   * are in owned cells. A set fills the room of one point of the cell's level
-   * with points of the next finer one, about 2^dim of them, none of them
-   * @p kept. All cells around the cell have points, it has points of this
-   * body alone, their velocity differs from a linear function by less than
-   * 1e-3 c and their stress from its mean by less than 5 %, or by less than a
-   * velocity of 1e-3 c makes in a wave, 1e-3 rho c^2. Collective.
+   * Sets of points, by index, that may be joined. Points are in owned cells. A
+   * set fills the sub-box of one point of the cell's level with points of the
+   * next finer class, about 2^dim of them, none of them @p kept. Conditions:
+   * all cells around the cell have points, it contains points of this body
+   * only, their velocity deviates from the linear fit by less than 1e-3 c and
+   * their stress from its mean by less than 5 %, or by less than 1e-3 rho c^2,
+   * the stress of a wave with a velocity of 1e-3 c. Collective.
    */
   template <int dim>
   std::vector<std::vector<std::size_t>>
@@ -37,7 +38,7 @@ namespace limber
                const MaterialBody<dim>                 &body,
                const std::unordered_set<std::uint64_t> &kept);
 
-  /** Join them; returns the kinetic and strain energy that goes, J. */
+  /** Join them; returns the kinetic and strain energy that is lost, J. */
   template <int dim>
   double
   join(const std::vector<std::vector<std::size_t>> &sets,

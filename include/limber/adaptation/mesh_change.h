@@ -7,13 +7,13 @@
 #include <memory>
 #include <vector>
 
-/** @file The ways in which the mesh changes under the points. */
+/** @file Changes of the mesh under the points: repartitioning and AMR. */
 namespace limber
 {
   /**
-   * Partition the cells anew, so that ranks get as many points each; tables
-   * are rebuilt, points travel along. Fields of nodes and cells have to adopt
-   * the new mesh afterwards. Collective.
+   * Load balancing: repartition the cells so that ranks get equal numbers of
+   * points; tables are rebuilt, points migrate. Fields of nodes and cells have
+   * to adopt the new mesh afterwards. Collective.
    */
   template <int dim>
   void
@@ -21,10 +21,10 @@ namespace limber
           std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies);
 
   /**
-   * Divide and join cells until the mesh is @p mesh, which is graded; points
-   * stay what they are, on their ranks, and get the numbers of their new cells.
+   * Refine and coarsen cells until the mesh is @p mesh, which must be graded;
+   * points are not changed, stay on their ranks, and get new cell numbers.
    * Returns whether anything had to change; fields of nodes and cells then have
-   * to adopt the new mesh, and ranks may have unequal shares. Collective.
+   * to adopt the new mesh, and ranks may be out of balance. Collective.
    */
   template <int dim>
   bool

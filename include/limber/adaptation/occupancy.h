@@ -11,9 +11,9 @@
 namespace limber
 {
   /**
-   * How many points there are in the cells of all levels, over all ranks: in
-   * those that there are and in those that these are parts of. Sixteen bytes
-   * for each cell that holds points, on every rank, while criteria look at it.
+   * Number of points in the cells of all levels, over all ranks: in active
+   * cells and their ancestors. Sixteen bytes per occupied cell, on every rank,
+   * while criteria are evaluated.
    */
   template <int dim>
   class Occupancy
@@ -23,29 +23,32 @@ namespace limber
     using Bodies = std::vector<std::unique_ptr<MaterialBody<dim>>>;
 
     /**
-     * Of all bodies, or of those with these names. Points may be in ghost
-     * cells. Collective.
+     * Counts the points of all bodies, or of those with these names. Points may
+     * be in ghost cells. Collective.
      */
     Occupancy(const BackgroundGrid<dim>      &grid,
               const Bodies                   &bodies,
               const std::vector<std::string> &names = {});
 
-    /** In the cells of this level or finer ones at that place. */
+    /**
+     * Number of points in the cell of this level at that index, or in its
+     * descendants.
+     */
     std::uint64_t
     points_in(unsigned int level, const Place &place) const;
 
-    /** Whether there are any, or the place is part of a cell with some. */
+    /** Whether it contains points, or is part of a coarser cell with points. */
     bool
     is_filled(unsigned int level, const Place &place) const;
 
     /**
-     * Whether a place of this size is empty within @p distance of it along
-     * each axis. Beyond the sides of the box nothing is.
+     * Whether any cell of this size within @p distance cells along each axis is
+     * empty. Places outside of the box do not count.
      */
     bool
     is_near_empty(unsigned int level, const Place &place, int distance) const;
 
-    /** Likewise, whether one is filled. */
+    /** Likewise, whether any is filled. */
     bool
     is_near_filled(unsigned int level, const Place &place, int distance) const;
 
@@ -70,7 +73,7 @@ namespace limber
              bool         filled) const;
 
     const RefinedCells<dim>         numbering;
-    std::vector<std::vector<Entry>> all, cells; // by level; those that are
+    std::vector<std::vector<Entry>> all, cells; // by level; active cells only
   };
 } // namespace limber
 

@@ -197,12 +197,12 @@ namespace limber
       Velocity      impulse;
     };
 
-    const Sides<dim>                   &sides;
-    const Sides<dim>                    others; // without those by surface
-    const std::vector<bool>             by_surface;
+    const Sides<dim>       &sides;
+    const Sides<dim>        others; // without those that act by surface
+    const std::vector<bool> by_surface;
     std::array<SideConstraints<dim>, 2> constraints; // of sides, of others
     std::vector<Rubbing>                rubbing;     // of this step
-    const bool                          one_sided;   // for nodes of any field
+    const bool one_sided; // any side, for the nodes of any field
   };
 } // namespace limber
 

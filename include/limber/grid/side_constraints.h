@@ -61,8 +61,8 @@ namespace limber
     const CoveredSides<dim> *const                         covered; // or null
     std::array<std::vector<HeldComponent>, 1 << (2 * dim)> held;    // by set
     std::vector<Constraint>                                list;
-    std::vector<std::size_t> moving; // indices of those with a formula
-    std::uint64_t            version            = 0; // of the active nodes
+    std::vector<std::size_t> moving;      // indices of those with a formula
+    std::uint64_t            version = 0; // of the active nodes in the list
     std::uint64_t            version_of_covered = 0;
     double                   time_of_values     = 0; // s
     bool                     has_values         = false;

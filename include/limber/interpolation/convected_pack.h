@@ -373,11 +373,11 @@ namespace limber
     const int         n;
     bool              fits; // whether every domain is in one block
 
-    Matrix                        edges; // restricted R, in cells, if they fit
-    BlockNodes<dim>               block;
-    BoxFunctions<dim>             on_boxes;   // GIMP, or ...
-    CornerFunctions<dim>          at_corners; // ... CPDI, CPDI2
-    std::array<Vector, n_corners> offsets;    // corners of hexahedra, in cells
+    Matrix               edges; // restricted R, in cells, where they fit
+    BlockNodes<dim>      block;
+    BoxFunctions<dim>    on_boxes;         // GIMP, or ...
+    CornerFunctions<dim> at_corners;       // ... CPDI, CPDI2
+    std::array<Vector, n_corners> offsets; // of corners of hexahedra, in cells
   };
 } // namespace limber
 
