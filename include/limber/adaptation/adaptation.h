@@ -19,10 +19,10 @@ namespace limber
     // For each body the next free point id, and the number of points created
     // since the start
     std::vector<std::uint64_t> next_id;
-    std::uint64_t              points_added  = 0;
-    double                     way           = 0; // see Adaptation::is_due()
-    std::uint64_t              steps         = 0; // since the last evaluation
-    std::uint64_t              points_joined = 0; // points removed by joining
+    std::uint64_t              points_added = 0;
+    double                     way          = 0; // see Adaptation::is_due()
+    std::uint64_t              steps        = 0; // since the last evaluation
+    std::uint64_t points_joined = 0; // number of points removed by joining
     // For the report
     std::uint64_t times_asked = 0, mesh_changes = 0, points_split = 0;
   };
