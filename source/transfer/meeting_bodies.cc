@@ -344,7 +344,8 @@ namespace limber
           }
         difference = std::max(difference, square);
       }
-    // What may press is no further from here than four times half the edge.
+    // Margin for different normals: material in contact is within four half
+    // edges, so their difference changes distances by up to 4 |dn| half edges.
     const double turned = 4 * std::sqrt(difference);
     for (std::size_t p = some.batch.begin; p < some.batch.end; p += lanes)
       {

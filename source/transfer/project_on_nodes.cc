@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** Of a quantity that each point knows. */
+    /** Sums of a quantity given at points, with weights. */
     template <int dim, class Quantity, class Weight>
     void
     sweep(const PointView<dim> &points,

@@ -42,7 +42,7 @@ namespace limber
       double begin, end; // time, s
       // FLIP share; the rest of the velocity of points is PIC
       double flip_share = 1;
-      // Whether points move with the sides that hold them; see apply()
+      // Whether points move with the sides that always hold them; see apply()
       bool keeps_points = false;
     };
 

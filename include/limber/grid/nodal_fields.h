@@ -21,7 +21,7 @@ namespace limber
   public:
     using Layout = NodeLayout<dim>;
 
-    /** Of the nodes of the grid's kernel. */
+    /** For the nodes of the kernel of the grid. */
     explicit NodalFields(const BackgroundGrid<dim> &grid);
 
     /**
@@ -45,7 +45,7 @@ namespace limber
       return selected;
     }
 
-    /** Call work() with each field selected, from the last to the first. */
+    /** Call work() with each field selected; the first remains selected. */
     template <class Work>
     void
     for_each_field(const Work &work)

@@ -8,7 +8,7 @@
 
 namespace limber
 {
-  /** A vector field of the grid on the domains of a pack (convected.h). */
+  /** A vector field of the grid on the domains of a pack (domain_shape.h). */
   template <int dim>
   struct FieldOnPack
   {

@@ -56,13 +56,13 @@ namespace limber
 
 
   /**
-   * The domain of a point, over which functions of the grid are averaged.
+   * The domain of a point, over which shape functions are averaged.
    *
-   * Convected (CPDI; Sadeghirad, Brannon and Burghardt, IJNME 86 (2011)
-   * 1435-1456) it is the parallelogram or parallelepiped around the point with
-   * the half edges r_k, the columns of R, which are carried along by the grid.
-   * Its corners are x_c = x + R s_c with signs s_c. The functions of the point
-   * are means over it of those of the grid, interpolated from the corners,
+   * CPDI (convected particle domain interpolation; Sadeghirad, Brannon and
+   * Burghardt, IJNME 86 (2011) 1435-1456): the parallelogram or parallelepiped
+   * around the point with the half edges r_k, the columns of R, which are
+   * convected by the grid velocity. Its corners are x_c = x + R s_c with signs
+   * s_c. Grid functions are interpolated from the corners and averaged,
    *
    *   N_i = 2^-d sum_c N_i(x_c),   grad N_i = 2^-d sum_c N_i(x_c) R^-T s_c,
    *
@@ -72,33 +72,31 @@ namespace limber
    *   u = 2^-d sum_c u_c,   grad u = sum_k u,k R^-1_k,   u,k = 2^-d sum_c s_ck
    *   u_c.
    *
-   * They see the linear functions of the cells in which the corners are, looked
-   * up one by one: a stencil of each point's own.
+   * N_i(x_c) are the linear functions of the cells of the corners, looked up
+   * one by one: each point has a stencil of its own.
    *
-   * With generalised interpolation (GIMP; Bardenhagen and Kober, CMES 5 (2004)
-   * 477-495) it is a box along the axes, R = diag(a), and functions are its
-   * exact means, N_i = (1/V) int N_i dV and grad N_i = (1/V) int grad N_i dV,
-   * which in each cell are those of its part there. It keeps its size, or
-   * follows the stretch: a_d is the length of row d of the R that is carried
-   * along, sqrt((R R^T)_dd), which the left stretch V = sqrt(F F^T) gives along
-   * the axis and no rotation changes.
+   * GIMP (generalised interpolation; Bardenhagen and Kober, CMES 5 (2004)
+   * 477-495): an axis-parallel box, R = diag(a), and functions are exact means
+   * over it, N_i = (1/V) int N_i dV and grad N_i = (1/V) int grad N_i dV,
+   * summed up over its parts in each cell. The box has fixed size (uGIMP), or
+   * follows the stretch (cpGIMP): a_d is the length of row d of the convected
+   * R, sqrt((R R^T)_dd), which corresponds to the left stretch V = sqrt(F F^T)
+   * along the axis and is invariant to rotations.
    *
-   * With corners that are carried along one by one (CPDI2) it is the
-   * quadrilateral or hexahedron around the point, its centroid
-   * (hexahedron.h). The functions are exact means over it of what is
-   * interpolated from its corners, N_i = sum_c share_c N_i(x_c) and grad N_i =
-   * sum_c slope_c N_i(x_c); with the half edges r_k of the middle, u,k = sum_c
-   * (slope_c . r_k) u_c.
+   * CPDI2: the quadrilateral or hexahedron whose corners are convected one by
+   * one, with the point as its centroid (hexahedron.h). Functions are exact
+   * means over it of the interpolation from its corners, N_i = sum_c share_c
+   * N_i(x_c) and grad N_i = sum_c slope_c N_i(x_c); with the half edges r_k of
+   * the middle, u,k = sum_c (slope_c . r_k) u_c.
    *
-   * Rules. Along each axis a domain counts for no more than a cell on either
-   * side of its point; what is longer is shortened to that. One that has turned
-   * inside out, or is flatter than a thousandth, counts as the box around it; a
-   * hexahedron that is so in one of its Gauss points counts as the
-   * parallelepiped of its half edges before that. A
-   * corner outside the grid counts in its side. A box counts for no more than
-   * half a cell on either side, the smallest that it reaches; so its corners
-   * are in all cells that it has a part in. Where it reaches beyond a side of
-   * the grid it sees linear functions as if they went on.
+   * Restrictions. A domain extends at most one cell from its point along each
+   * axis; longer ones are scaled down to that. An inverted domain, or one of
+   * less than a thousandth of the volume of its bounding box, is replaced by
+   * that; a hexahedron that is inverted at any Gauss point is first replaced
+   * by the parallelepiped of its half edges. A corner outside of the grid is
+   * clamped to its side. A box extends at most half a cell (the smallest that
+   * it overlaps) from its point, so that its corners are in all cells that it
+   * overlaps; beyond a side of the grid it sees linear functions continued.
    */
   template <int dim>
   class DomainShape

@@ -8,8 +8,8 @@
 namespace limber
 {
   /**
-   * A quadrilateral or hexahedron, the image of the square or cube [-1, 1]^d
-   * under a map that is linear in each direction,
+   * A quadrilateral or hexahedron (Q1), the image of the square or cube
+   * [-1, 1]^d under the bilinear or trilinear map
    *
    *   x = x_0 + sum_k r_k xi_k + sum_t h_t prod_{k in t} xi_k,
    *
@@ -17,17 +17,16 @@ namespace limber
    * natural coordinates: xi eta in two dimensions; eta zeta, zeta xi, xi eta
    * and xi eta zeta in three. In m; numbers are doubles or packs of them.
    *
-   * CPDI2 (Sadeghirad, Brannon and Guilkey, IJNME 95 (2013) 928-952) takes the
-   * means over it of what the M_c, linear in each direction, interpolate
-   * between its corners:
+   * CPDI2 (Sadeghirad, Brannon and Guilkey, IJNME 95 (2013) 928-952) needs the
+   * means over it of the Q1 functions M_c of its corners and their gradients:
    *
    *   share_c = (1/V) int M_c dV,   slope_c = (1/V) int grad M_c dV.
    *
    * Both integrands are of third degree at most along each direction, so that
    * two Gauss points along each are exact: in two dimensions these are the
    * closed formulas of the paper, in three slope_c V is the B of Flanagan and
-   * Belytschko (IJNME 17 (1981) 679-706). As share_c is a sum of M_c J
-   * there, none is negative where the map is not inside out at these points.
+   * Belytschko (IJNME 17 (1981) 679-706). As share_c is a sum of M_c J over
+   * these points, none is negative if J is positive at all of them.
    */
   template <int dim, class Number>
   struct Hexahedron

@@ -207,55 +207,52 @@ namespace limber
 
 
   /**
-   * The contract, checked when a law enters the list. A law has
-   *  - name, what the scene calls it; text, one line about it; parameters,
-   *    what its section holds, the density first; takes_pressure, whether a
-   *    body may start under pressure;
-   *  - n_history<dim>, how many doubles a point keeps besides the stress;
-   *  - variables, those of them that the scene may name: the last ones, in this
+   * The interface of a law, checked when it enters the list. A law has
+   *  - name, its word in the scene; text, one line of help; parameters, the
+   *    entries of its section, density first; takes_pressure, whether a body
+   *    may have an initial pressure;
+   *  - n_history<dim>, number of history variables of a point;
+   *  - variables, those of them with names in the scene: the last ones, in this
    *    order;
-   *  - has_deviator, whether it bears shear;
-   *  - uses_spin, whether it looks at the skew part of the motion;
+   *  - has_deviator, whether it has shear stress;
+   *  - uses_spin, whether it uses the skew part of the gradient;
    *  - dissipates, whether update() may return dissipated energy;
-   *  - objection(), what is wrong with parameters that are admissible one by
-   *    one, as the end of a sentence; null where nothing is;
-   *  - accepts(), whether this variant of a law serves given parameters;
+   *  - objection(), why parameters that are admissible one by one are not
+   *    together, as the end of a sentence; null if they are;
+   *  - accepts(), whether this variant of a law is for given parameters;
    *  - has_constant_wave_speed(), whether it is the same in every state;
    *  - bulk_modulus, shear_modulus at rest, Pa;
-   *  - volumetric, the index of the history variable with the volumetric
-   *    history, or -1 where that is the pressure itself;
+   *  - volumetric, the index of the volumetric variable (J) in the history, or
+   *    -1 if that is the pressure itself;
    *  - keeps_deviator, whether it has a deviatoric elastic strain; then also
    *    deviatoric_strain(), set_deviatoric_strain(), deviatoric_energy(): the
-   *    strain in a form that may be averaged over points that share a frame
-   *    (logarithmic and in the current configuration where it is finite);
-   *  - update(): new stress and history after a motion;
+   *    strain in a form that may be averaged over points of one configuration
+   *    (logarithmic and in the current configuration at finite strain);
+   *  - update(): new stress and history for an increment;
    *  - initialise(): the state at rest under a given pressure;
-   *  - start_under(), admits(), where it does not take pressure: the state
-   * under a given Cauchy stress, and whether the law may be in it;
+   *  - start_under(), admits(), unless it takes pressure: the state under a
+   *    given Cauchy stress, and whether the law admits a state;
    *  - volume_ratio(), stretch_along(), strain_energy(), volumetric_energy(),
    *    wave_speed_squared() of a state; volumetric_energy_gain() from one value
    *    of its volumetric variable to another; dynamic_viscosity();
    *  - is_elastic, whether the stress follows from the deformation alone;
-   *  - is_plastic, whether it flows plastically: elastic coefficients then say
-   *    nothing about its strain, and update() returns plastic work; then also
+   *  - is_plastic, whether it flows plastically: then update() returns plastic
+   *    work, the total strain does not follow from the stress, and it has
    *    is_frictional, whether its strength grows with the pressure.
    *
-   *
-   * A law that takes pressure or is elastic has besides kirchhoff_pressure(),
+   * A law that takes pressure or is elastic also has kirchhoff_pressure(),
    * J p, and kirchhoff_stiffness(), -J d(J p)/dJ, at a value of its volumetric
    * variable (implicit pressure).
    *
-   * An elastic law has besides
-   *  - finite_strain: whether the measure of volume is J = det F and forces
-   *    act on the deformed body; otherwise J = 1 + tr(F - 1) and the geometry
-   *    is that at the start;
-   *  - at_deformation(F, J): the state that F leads to from rest, with the
-   *    volume ratio J in its volumetric part;
-   *  - deviatoric_wave_speed_squared() of a state, without its volumetric part;
+   * An elastic law also has
+   *  - finite_strain: whether J = det F and forces act on the deformed body;
+   *    otherwise J = 1 + tr(F - 1) and the geometry is the initial one;
+   *  - at_deformation(F, J): the state after F from rest, with the volume
+   *    ratio J in its volumetric part;
+   *  - deviatoric_wave_speed_squared() of a state, without volumetric part;
    *  - volumetric_stiffness(J) = d^2 U / dJ^2 of the volumetric energy U;
-   *  - deviatoric_tangent(state, e): by how much the Kirchhoff deviator grows
-   *    in a frame that moves with the material (its Oldroyd rate), for the
-   *    symmetric velocity gradient e; rows and columns within the dimensions.
+   *  - deviatoric_tangent(state, e): the Oldroyd rate of the Kirchhoff deviator
+   *    for the symmetric velocity gradient e, dim x dim.
    */
   template <class Law>
   struct CheckLaw

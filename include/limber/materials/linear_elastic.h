@@ -231,7 +231,7 @@ namespace limber
                                density);
     }
 
-    /** Of the deviatoric part alone. */
+    /** The same for the deviatoric part alone. */
     template <int dim, class Number>
     Number
     deviatoric_wave_speed_squared(const State<dim, Number> &) const

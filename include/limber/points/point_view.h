@@ -21,7 +21,8 @@ namespace limber
   inline constexpr unsigned int max_history = 12;
 
   /**
-   * The domain over which the functions of a point are averaged (convected.h).
+   * The domain over which the functions of a point are averaged
+   * (domain_shape.h).
    */
   enum class DomainForm
   {
@@ -80,8 +81,8 @@ namespace limber
     std::array<double *, max_history>     history{}; // as the law defines them
     std::array<double *, dim * dim>       affine{};  // APIC, row-major, 1/s
     std::array<double *, dim> acceleration{};        // generalised-alpha, m/s^2
-    // Half edges of the domain (convected.h), m: component d of edge k at d *
-    // dim + k, of fixed boxes those with d = k only; then the twists of a
+    // Half edges of the domain (domain_shape.h), m: component d of edge k at d
+    // * dim + k, of fixed boxes those with d = k only; then the twists of a
     // hexahedron, component d of twist t at dim * (dim + t) + d
     DomainForm domain_form = DomainForm::none;
     std::array<double *, n_domain_components(DomainForm::hexahedron, dim)>

@@ -14,10 +14,9 @@ namespace limber
    * @p density gives the mass per volume (kg/m^3) at a position.
    *
    * Placements by cells give a point its share of the volume of the cell, if
-   * its position is inside the shape. With 'cut' a sub-box whose corners and
-   * centre do not agree on this has the volume and the centroid of those of its
-   * 16^2 or 8^3 sample positions that are inside. With 'gauss' the part of a
-   * cell inside, from the same samples, gets the Gauss-Legendre points of a
+   * its position is inside the shape. With 'cut' a point has the volume and the
+   * centroid of the part of its sub-box inside the shape (part_inside.h). With
+   * 'gauss' the part of a cell inside gets the Gauss-Legendre points of a
    * parallelepiped with the same centroid and second moments, so that volume,
    * first and second moments of the body are those of its shape, exactly in
    * boxes and in blocks of the plane. 'fitted' divides the shape itself, into
