@@ -71,7 +71,8 @@ namespace limber
     // Share by which the volumetric variable is relaxed to the mean of the cell
     // in this step: 0 keeps the history, 1 replaces it.
     double relaxation = 0;
-    // Per cell, change of that variable (checkerboard control); null: none
+    // Per cell, change of that variable by checkerboard and density control;
+    // null: none
     const double *shift       = nullptr;
     double        shift_share = 1; // of it
     // By cell, with Treatment::cell: dilation of a liquid over the mean

@@ -21,8 +21,8 @@ namespace limber
   {
     // Two values are added alone: the next batch reads velocities next to
     // re-mapped momenta in the same records, and an overlapping wider store
-    // would stall its loads (no store forwarding). This costs nothing in three
-    // dimensions.
+    // would stall its loads (no store forwarding). In three dimensions nothing
+    // stalls.
     constexpr unsigned int n_nodes = 1 << dim;
     constexpr unsigned int width   = n_values == 2 ? 2 : n_nodes;
     static_assert(dim == 2 || n_values <= width, "one transposition in 3d");
