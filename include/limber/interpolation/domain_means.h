@@ -83,7 +83,7 @@ namespace limber
    * The mean within a cell that a treatment needs: none, over its points, or
    * around its nodes. The kind is a run-time choice, once per batch and pack,
    * as the functions of domains outweigh it by far: compiled for each treatment
-   * they took half as long again to compile.
+   * they took half as long again.
    */
   template <int dim>
   class DomainMean

@@ -108,8 +108,8 @@ namespace limber
     }
 
     /**
-     * The transpose: subtract from the nodal forces the divergence of the nodal
-     * tensors, volume times stress over the nodal volume.
+     * The transpose: subtract from the nodal forces those of the nodal tensors,
+     * volume times stress over the nodal volume.
      */
     void
     add_forces_of_stress(double *const records) const
