@@ -21,7 +21,7 @@ namespace limber
 
   namespace
   {
-    /** Keep of a closed line what has sign * x_d <= sign * bound. */
+    /** Clip a polygon by the half-plane sign * x_d <= sign * bound. */
     void
     cut_beyond(std::vector<Point<2>> &outline,
                const unsigned int     d,
@@ -45,7 +45,9 @@ namespace limber
 
 
 
-    /** What is within a closed line, counterclockwise, by its triangles. */
+    /**
+     * Area and moments of a counterclockwise polygon, from a fan of triangles.
+     */
     PartInside<2>
     enclosed_by(const std::vector<Point<2>> &outline)
     {
@@ -112,8 +114,8 @@ namespace limber
 
 
 
-  // The determinant is at most quadratic in each coordinate, where two points
-  // of Gauss and Legendre are exact.
+  // The Jacobian determinant is at most quadratic in each coordinate, for which
+  // two Gauss-Legendre points are exact.
   template <int dim>
   double
   BlockShape<dim>::volume(const Corners<dim> &part) const
@@ -134,7 +136,7 @@ namespace limber
 
 
 
-  // Newton's method for the natural coordinates.
+  // Inverse mapping: Newton's method for the natural coordinates.
   template <int dim>
   bool
   BlockShape<dim>::contains(const Point<dim> &point) const
@@ -155,7 +157,7 @@ namespace limber
                 return false;
             return true;
           }
-        // Far outside, the map may fold.
+        // Far outside the block its map may fold.
         if (determinant(slopes) <= 0)
           return false;
         xi += invert(slopes) * miss;
@@ -165,8 +167,8 @@ namespace limber
 
 
 
-  // Its outline, from which the sides of the box cut what is beyond, one after
-  // the other (Sutherland and Hodgman 1974).
+  // Clips its outline by one side of the box after the other (polygon clipping
+  // of Sutherland and Hodgman 1974).
   template <int dim>
   std::optional<PartInside<dim>>
   BlockShape<dim>::inside_of(const Corners<dim> &box) const

@@ -13,16 +13,18 @@ namespace limber
 {
   namespace
   {
-    // A side that moves inward by more than that share of an edge lets go what
-    // it holds: its nodes lose the points (doc/theory/boundaries_and_loads.md).
+    // Share of an edge by which a side may move inward. Its condition acts on
+    // nodes that stay in place: beyond that these lose the points, and the side
+    // lets go what it holds (doc/theory/boundaries_and_loads.md).
     constexpr double reach_of_side = 0.5;
 
 
 
     /**
-     * How far a side moves inward until @p end (s) at most, m. By parts of time
-     * in which it moves by a small part of what it may, so that one that swings
-     * often does not seem to go away; of a very long run the beginning.
+     * Largest inward displacement of a side until @p end (s), m. Integrated in
+     * time steps in which it moves by a small part of its limit, so that an
+     * oscillating side does not seem to move away; of a very long run only the
+     * beginning.
      */
     template <int dim>
     double
@@ -181,7 +183,7 @@ namespace limber
     constexpr unsigned int per_edge  = 4; // places in a cell
     using Node                       = std::array<int, dim>;
     const GridDescription<dim> &grid = problem.grid;
-    std::vector<std::set<Node>> pieces; // which share no node
+    std::vector<std::set<Node>> pieces; // disjoint sets of nodes
     for (const Body<dim> &body : problem.bodies)
       {
         const Corners<dim>                   box = body.shape->bounding_box();
@@ -220,7 +222,7 @@ namespace limber
                 nodes.insert(node);
               }
           }
-        // joins what it shares nodes with
+        // merge with all pieces that share a node
         std::vector<std::set<Node>> others;
         for (auto &piece : pieces)
           if (std::any_of(piece.begin(), piece.end(), [&](const Node &node) {

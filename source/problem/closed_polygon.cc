@@ -16,7 +16,8 @@ namespace limber
                  const std::array<double, 2> &lower,
                  const std::array<double, 2> &upper)
   {
-    // Said out loud, as a compiler may fuse one copy of this and not another.
+    // An explicit fused multiply-add, as a compiler may contract one copy of
+    // this expression and not another.
     return std::fma(upper[0] - lower[0],
                     place[1] - lower[1],
                     -((place[0] - lower[0]) * (upper[1] - lower[1]))) > 0;
@@ -79,7 +80,8 @@ namespace limber
         }
     };
 
-    // As many as edges, unless these are long: then memory decides.
+    // As many rows as edges, unless long edges lie in many of them: then memory
+    // limits the number.
     std::size_t  n_rows = std::clamp<std::size_t>(edges.size(), 1, 1 << 20);
     std::size_t  n      = 0;
     const double height = box.second[1] - box.first[1];
@@ -135,8 +137,8 @@ namespace limber
 
 
 
-  // Green's formula, the integral of x dy around the region; which side of an
-  // edge the region is on is asked beside its middle.
+  // Area by Green's theorem, the integral of x dy around the region; on which
+  // side of an edge the region is, is tested beside the edge's midpoint.
   double
   ClosedPolygon::integrate_area() const
   {
@@ -201,7 +203,7 @@ namespace limber
     };
     for (std::size_t row = 0; row + 1 < row_begins.size(); ++row)
       {
-        // from left to right, so that few pairs are left to look at
+        // from left to right, so that only edges that overlap in x are compared
         std::vector<std::uint32_t> here(in_rows.begin() + row_begins[row],
                                         in_rows.begin() + row_begins[row + 1]);
         std::sort(here.begin(), here.end(), [&](const auto e, const auto f) {

@@ -27,7 +27,7 @@ namespace limber
 
   namespace
   {
-    /** Places of which none is within a tolerance of another one. */
+    /** Merges places within a tolerance of each other (spatial hashing). */
     class DistinctPlaces
     {
     public:
@@ -35,7 +35,7 @@ namespace limber
         : tolerance(tolerance)
       {}
 
-      /** The number of the place, or of the one that stands for it. */
+      /** The number of the place, or of an earlier one within the tolerance. */
       unsigned int
       number(const Point<3> &place)
       {
@@ -87,7 +87,7 @@ namespace limber
   welded(const std::vector<std::array<Point<3>, 3>> &facets,
          const double                                tolerance)
   {
-    // Most are the same to the last bit, which is found out faster.
+    // Most corners coincide to the last bit, which sorting finds faster.
     std::vector<std::array<double, 4>> all; // with the number of the corner
     all.reserve(3 * facets.size());
     for (const auto &facet : facets)
@@ -114,7 +114,7 @@ namespace limber
 
   namespace
   {
-    /** An edge of a facet: its ends in the order of their numbers. */
+    /** An edge of a facet (half-edge), its lower vertex number first. */
     struct EdgeOfFacet
     {
       unsigned int  low, high;
@@ -156,7 +156,7 @@ namespace limber
 
 
 
-    /** The fault of the facets at one edge, [begin, end), if there is one. */
+    /** What is wrong with the facets at one edge, [begin, end), if anything. */
     std::optional<SurfaceFault::Kind>
     fault_at(const EdgeOfFacet *begin, const EdgeOfFacet *end)
     {
@@ -190,7 +190,7 @@ namespace limber
         auto &fault = *kind == SurfaceFault::Kind::open ? open : flipped;
         if (!fault)
           {
-            // The second one that runs as the first does.
+            // The next facet that runs along the edge in the same direction.
             std::size_t other = begin + 1;
             while (other + 1 < end &&
                    edges[other].upwards != edges[begin].upwards)
@@ -228,7 +228,7 @@ namespace limber
 
 
 
-    /** Whether all facets hang together by their corners. */
+    /** Whether all facets are connected by common vertices (union-find). */
     bool
     is_one_piece(const TriangleMesh &mesh)
     {
@@ -255,7 +255,7 @@ namespace limber
     double
     signed_volume(const TriangleMesh &mesh)
     {
-      // from a corner of the body, as places far from zero lose digits
+      // relative to a corner of the body: far from zero places lose digits
       const Point<3> origin = mesh.corners[mesh.facets[0][0]];
       double         sum    = 0;
       for (std::size_t f = 0; f < mesh.facets.size(); ++f)
@@ -271,7 +271,8 @@ namespace limber
   {
     if (is_one_piece(mesh))
       enclosed = std::abs(signed_volume(mesh));
-    // The ray goes where the fewest facets lie behind each other.
+    // Cast rays along the axis in which the fewest facets lie behind each
+    // other.
     double       least = 0;
     unsigned int best  = 0;
     for (unsigned int direction = 0; direction < 3; ++direction)
@@ -369,7 +370,7 @@ namespace limber
     const double wanted = std::sqrt(extent[0] * extent[1] / facets.size());
     for (unsigned int d = 0; d < 2; ++d)
       cells.n[d] = wanted > 0 ? std::clamp(extent[d] / wanted, 1., 2048.) : 1;
-    // Long facets lie over many cells; memory then decides.
+    // Long facets overlap many cells: coarsen, to limit the memory.
     for (;;)
       {
         for (unsigned int d = 0; d < 2; ++d)
@@ -412,7 +413,10 @@ namespace limber
 
   namespace
   {
-    /** Where the ray through a place meets the plane of a facet, along it. */
+    /**
+     * Where the ray through a place intersects the plane of a facet: its
+     * coordinate along the ray.
+     */
     double
     meeting_place(const std::array<std::array<double, 2>, 3> &across,
                   const std::array<double, 3>                &along,
@@ -436,8 +440,9 @@ namespace limber
 
 
 
-  // Over the lattice, facets cover each place across the ray as often from
-  // either side, exactly, since neighbours ask for their common edge alike.
+  // Winding number by ray casting. A line through the surface meets exactly as
+  // many facets from one side as from the other, in spite of round-off, since
+  // neighbours evaluate their common edge by the same expression.
   bool
   ClosedSurface::contains(const Point<3> &point) const
   {

@@ -27,8 +27,10 @@ namespace limber
 
 
 
-    /** How far a place of the shape is from the first one that is not, along
-     * n; to 1e-13 of the stride. */
+    /**
+     * Length of the ray along n from a place in the shape to where it leaves
+     * the shape, by strides and bisection; to 1e-13 of the stride.
+     */
     template <int dim>
     double
     way_out(const Shape<dim>     &shape,
@@ -54,8 +56,10 @@ namespace limber
 
 
 
-    /** The farthest place that is found from the centres of the parts of a
-     * box, and how far it is. */
+    /**
+     * The farthest place along n that rays from the centres of the parts of a
+     * box find, and its n . place.
+     */
     template <int dim>
     struct Farthest
     {
@@ -71,7 +75,7 @@ namespace limber
         const double stride  = box.first.distance(box.second) / n_parts;
         const auto   n_all   = std::size_t(std::pow(n_parts, dim) + 0.5);
         double       highest = reach - 2 * stride;
-        // Those that are far behind others are not worth the way out.
+        // Centres that are far behind others along n need no ray.
         std::vector<Point<dim>> inside;
         for (std::size_t i = 0; i < n_all; ++i)
           if (const Point<dim> centre = centre_of_part(box, n_parts, i);
@@ -113,8 +117,8 @@ namespace limber
     farthest.look(shape, n, all, n_coarse);
     if (farthest.reach < -1e299)
       return std::nullopt;
-    // From now on around the best place, in ever smaller boxes: a corner of
-    // the shape is found like that, and the top of a hill.
+    // Then refine around the best place, in ever smaller boxes, which finds
+    // sharp corners of the shape and smooth maxima alike.
     for (double part = 4. / n_coarse; part > 1e-10; part /= 2)
       {
         Corners<dim> around;

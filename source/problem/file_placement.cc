@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** In the plane of the axes a and b, from a to b, by degrees. */
+    /** Rotation in the plane of the axes a and b, from a to b, by degrees. */
     template <int dim>
     dealii::Tensor<2, dim>
     turn(const unsigned int a, const unsigned int b, const double degrees)

@@ -11,14 +11,16 @@ namespace limber
   namespace
   {
     /**
-     * C = a k^-b is nine tenths of the least C among blocks at any place in the
-     * grid, with two points or more per edge, plane strain and Poisson's
-     * ratios from 0 to 0.5, up to k = 16; with linear functions of full cells.
+     * Fit of the stability limit of the Courant number for order k of the
+     * filter: C = a k^-b is nine tenths of the least limit among blocks at any
+     * place in the grid, with two points or more per edge, plane strain and
+     * Poisson's ratios from 0 to 0.5, up to k = 16; for linear functions in
+     * full cells only.
      */
     struct Bound
     {
       double a, b;
-      double shrinks; // with n points per edge as (2 / n)^shrinks
+      double shrinks; // C falls as (2 / n)^shrinks, n points per edge
     };
 
 
@@ -68,7 +70,7 @@ namespace limber
           least = std::min(least, n);
         }
     result *= std::pow(2. / most, shrinks);
-    // One point per cell hardly tells the shortest waves apart.
+    // One point per cell hardly resolves the shortest waves of the grid.
     return least == 1 ? 0.7 * result : result;
   }
 

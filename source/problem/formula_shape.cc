@@ -37,7 +37,8 @@ namespace limber
 
 
 
-  // Of first order: exact where the formula is linear across the surface.
+  // Value over gradient: a signed distance of first order, exact where the
+  // formula is linear across the surface.
   template <int dim>
   std::optional<SignedDistance<dim>>
   FormulaShape<dim>::signed_distance(const Point<dim> &point) const

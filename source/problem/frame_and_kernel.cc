@@ -18,20 +18,22 @@ namespace limber
 {
   namespace
   {
-    // Of edges: beyond, a body may fold onto itself when it hits something.
+    // Longest over shortest edge, beyond which a body may fold onto itself in
+    // an impact (self-contact).
     constexpr double slender = 4;
 
-    // What a body that turns by less does not feel of it, rad. Laws for small
-    // rotations take half of its square for a strain.
+    // Rotation, rad, up to which a small-strain law in the initial frame is
+    // accurate enough: it takes half the square of the angle for a strain.
     constexpr double small_rotation = 0.1;
 
-    // A disc whose fall has .13 times its Young's modulus as energy per volume
-    // bounces in its initial frame, with 1.3 times its points invert.
+    // Impact energy per volume over Young's modulus up to which 'auto' is the
+    // initial frame: a disc with 0.13 from its fall bounces there, with 1.3 its
+    // points invert.
     constexpr double most_violence = 0.3;
 
 
 
-    /** An entry that a choice does not go with. */
+    /** Why a choice is refused, and the remedy. */
     struct Hindrance
     {
       std::string cause;
@@ -46,7 +48,9 @@ namespace limber
 
 
 
-    /** What the frame of the initial configuration cannot do. */
+    /**
+     * Which entry excludes the initial frame (total Lagrangian); empty: none.
+     */
     std::optional<Hindrance>
     obstacle_to_initial_frame(const Section &section, const Section &root)
     {
@@ -106,9 +110,9 @@ namespace limber
 
 
     /**
-     * Why several bodies cannot have the frame of the initial configuration: a
-     * body would not notice that it meets another one. In steps of Newton's
-     * method those that are one piece can.
+     * Why several bodies cannot use the initial frame: there a body does not
+     * detect contact with another one. In steps by Newton's method bodies that
+     * form one piece can.
      */
     template <int dim>
     std::optional<Hindrance>
@@ -140,7 +144,7 @@ namespace limber
 
 
 
-    /** An entry that a kernel has no meaning for. */
+    /** An entry of a body that is incompatible with the kernel. */
     struct Misfit
     {
       std::string entry, reason, remedy;
@@ -216,7 +220,10 @@ namespace limber
 
 
 
-    /** What does not go with a kernel in the section of a body. */
+    /**
+     * The first entry in the section of a body that is incompatible with the
+     * kernel.
+     */
     std::optional<Misfit>
     misfit(const KernelKind kernel, const Section &section, const bool liquid)
     {
@@ -231,8 +238,10 @@ namespace limber
 
 
 
-    /** Whether a body never folds onto itself: a ball, or a box or block that
-     * is not slender. */
+    /**
+     * Whether self-contact is excluded: a ball, or a box or block that is not
+     * slender.
+     */
     template <int dim>
     bool
     is_compact(const Shape<dim> &shape)
@@ -256,8 +265,9 @@ namespace limber
 
 
     /**
-     * Energy per volume that a body of rubber may hit a side with, over Young's
-     * modulus: that of its fall and of its velocity, from places on a lattice.
+     * Impact energy per volume of a neo-Hookean body, over Young's modulus: of
+     * the fall to the sides of the box, and of the initial velocity, sampled on
+     * a lattice.
      */
     template <int dim>
     double
@@ -292,10 +302,10 @@ namespace limber
 
 
     /**
-     * Whether a body may hit sides in its initial frame: it feels them at its
-     * surface (choose_side_contact()), does not fold onto itself, may rotate as
-     * it likes, and is not hit so hard that cells that stay with it would
-     * invert.
+     * Whether 'auto' may choose the initial frame for a body that hits sides:
+     * contact acts at its surface (choose_side_contact()), it cannot fold onto
+     * itself, its law admits finite rotations, and the impact is too weak to
+     * invert cells in the initial frame.
      */
     template <int dim>
     bool
@@ -313,8 +323,8 @@ namespace limber
       for (unsigned int side = 0; side < 2 * dim; ++side)
         {
           const Side<dim> &wall = problem.sides[side];
-          // What rolls there rolls on its points, which stay where they are in
-          // the surface: gently sloped, it stands still.
+          // With friction a body would roll on its outermost points, which keep
+          // their places in the surface: on a gentle slope it stands still.
           if (wall.friction > 0)
             return false;
           if (wall.held != HeldComponents::none && !wall.one_sided &&
@@ -328,9 +338,9 @@ namespace limber
 
 
     /**
-     * Why a body may meet something that its initial frame would not notice;
-     * empty if it is held or if there is nothing to meet. A side where it may
-     * slide is also one from which it may lift.
+     * Which contact may occur that the initial frame would not detect; empty if
+     * the body is held or if there is nothing to meet. A side along which it
+     * may slide is also one from which it may lift.
      */
     template <int dim>
     std::string
@@ -366,8 +376,8 @@ namespace limber
 
 
     /**
-     * Whether cells that stay with a body may not be able to follow it: what
-     * goes from one equilibrium to the next does not flow that far.
+     * Whether plastic flow may distort the cells of the initial frame too much;
+     * quasi-static equilibria do not flow that far.
      */
     template <int dim>
     bool
@@ -379,8 +389,10 @@ namespace limber
 
 
 
-    /** Whether its law, with the gradient since the start, takes what the body
-     * turns for a strain. */
+    /**
+     * Whether the law is for small strains and, with the deformation gradient
+     * since the start, takes the rotation of the body for a strain.
+     */
     template <int dim>
     bool
     turns_too_far(const Body<dim> &body, const double end_time)
@@ -412,7 +424,7 @@ namespace limber
       if (body.frame != Frame::automatic)
         return;
 
-      std::string meeting; // of any of what is one piece
+      std::string meeting; // of any body of the piece
       for (const auto &part : problem.bodies)
         if (meeting.empty())
           meeting = may_flow_far(part, problem.method.integration) ?
@@ -437,7 +449,7 @@ namespace limber
 
 
 
-    // Bodies share the functions of their nodes.
+    // Bodies share the shape functions of their nodes, hence one frame.
     template <int dim>
     void
     check_frames(const Problem<dim> &problem)
@@ -468,8 +480,10 @@ namespace limber
 
 
 
-    /** Why splines are not for this scene, whatever solids would gain; empty:
-     * they are. */
+    /**
+     * Why 'Kernel = auto' does not take splines here, whatever solids would
+     * gain; empty if it may.
+     */
     template <int dim>
     std::string
     against_splines(const Section &root, const Problem<dim> &problem)
@@ -491,8 +505,8 @@ namespace limber
         if (body.is_plastic && !body.keeps_surface)
           return "material that flows without end, like body " +
                  in_quotes(body.name) + ", keeps no strain that could creep";
-      // With splines and FLIP liquids lose volume, and what floats in them
-      // sinks; only affine increments keep it.
+      // With splines and FLIP liquids lose volume, so that floating bodies
+      // sink; only affine transfers (APIC, AFLIP) conserve it.
       const std::string transfer = root.subsection("Method").text("Transfer");
       if (transfer != "apic" && transfer != "aflip")
         for (const auto &body : problem.bodies)
@@ -523,9 +537,10 @@ namespace limber
                        " creep with linear functions when their points cross "
                        "cells");
           }
-      // Linear functions bend along the axes alone: across the cells a strip
-      // of two of them is a fifth too stiff, with splines right to 0.3 %. But
-      // with splines the spin of a free body feeds vibrations.
+      // Linear functions represent bending along the axes of the grid only: a
+      // strip two cells thick that runs across the cells is 20 % too stiff,
+      // with splines right to 0.3 %. But with splines the spin of a free body
+      // excites vibrations.
       const bool may_spin =
         !root.subsection("Loads").list("Face loads").empty();
       for (const auto &body : problem.bodies)

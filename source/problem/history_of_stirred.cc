@@ -8,9 +8,11 @@ namespace limber
 {
   namespace
   {
-    /** Whether something drives a liquid for as long as it likes: a side with a
-     * velocity, or an obstacle that turns. What is displaced may be a piston,
-     * which does not. */
+    /**
+     * Whether a liquid is driven without end (stirred): by a side with a
+     * velocity or a rotating obstacle. A displaced obstacle may be a piston,
+     * which is no stirrer.
+     */
     template <int dim>
     bool
     is_stirred(const Problem<dim> &problem)
@@ -37,7 +39,8 @@ namespace limber
   void
   choose_histories(const Section &root, Problem<dim> &problem)
   {
-    // Cells of several sizes have no one time to cross them.
+    // 'crossing' relaxes within the time in which a point crosses a cell, which
+    // differs between cells of several sizes.
     if (problem.method.integration != TimeIntegration::explicit_steps ||
         problem.grid.kernel != KernelKind::linear || problem.grid.levels > 0 ||
         !is_stirred(problem))

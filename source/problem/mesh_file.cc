@@ -206,7 +206,10 @@ namespace limber
 
 
 
-    /** Element by element, with the kinds that stand behind all of them. */
+    /**
+     * Elements side by side with their types (CELL_TYPES), which the file lists
+     * behind all elements.
+     */
     template <int dim>
     void
     read_elements_of_vtk(MeshWords        &words,
@@ -257,7 +260,7 @@ namespace limber
 
 
 
-    /** UCD files begin with lines of remarks. */
+    /** UCD files begin with comment lines. */
     void
     skip_remarks(const std::string &text, MeshWords &words)
     {

@@ -17,7 +17,7 @@ namespace limber
   {
     using MeshFace = std::vector<unsigned int>;
 
-    /** Faces of one element only, as that goes around them. */
+    /** Boundary faces, which belong to one element only, in its orientation. */
     template <int dim>
     std::vector<MeshFace>
     outer_faces(const CoarseMesh<dim> &mesh)

@@ -26,7 +26,10 @@ namespace limber
 
 
 
-    /** In the triangle below the place, or on one of its edges. */
+    /**
+     * The nearest place of a triangle: the foot of the perpendicular, or a
+     * place on one of its edges.
+     */
     Point<3>
     nearest_on_triangle(const Point<3> &place, const NearestFacet::Facet &facet)
     {
@@ -65,7 +68,7 @@ namespace limber
     , box(box)
   {
     // About as many bins on the surface of the box as there are facets, nearly
-    // cubes: shells of flat ones are narrow
+    // cubes, as shells of flat bins are too narrow to exclude much
     const Tensor<1, 3> extent = box.second - box.first;
     const double area   = 2 * (extent[0] * extent[1] + extent[1] * extent[2] +
                              extent[2] * extent[0]);
@@ -125,7 +128,7 @@ namespace limber
 
 
 
-  // Those that the box around it meets.
+  // Bins that the bounding box of the facet meets.
   template <class Work>
   void
   NearestFacet::for_each_bin(const Facet &facet, const Work &work) const
@@ -144,7 +147,7 @@ namespace limber
 
 
 
-  // Bins that are so many away in one direction and no more in the others.
+  // Bins at a distance, in bins, in the maximum norm.
   template <class Work>
   void
   NearestFacet::for_each_in_shell(const std::array<int, 3> &centre,
@@ -170,8 +173,8 @@ namespace limber
 
 
 
-  // What is in bins beyond a shell is as far as its width from the place next
-  // to this one in the box.
+  // Search in growing shells of bins. Facets in bins beyond a shell are at
+  // least its width away from the point of the box nearest to the place.
   NearestFacet::Found
   NearestFacet::operator()(const Point<3> &place) const
   {

@@ -70,7 +70,7 @@ namespace limber
   bool
   PointListShape<dim>::contains(const Point<dim> &place) const
   {
-    // Decimal fractions need not meet exactly where boxes do.
+    // Boxes that touch need not do so exactly in floating point.
     constexpr double            touching = 0.5 * (1 + 1e-9);
     const std::array<long, dim> bin      = bin_of(place);
     constexpr unsigned int      n        = dim == 2 ? 9 : 27;
@@ -133,7 +133,7 @@ namespace limber
 
   namespace
   {
-    /** Mass per volume of the body that has the list. */
+    /** Density of the body that has the list. */
     double
     density_of(const Section &body)
     {

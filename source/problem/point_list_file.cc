@@ -37,7 +37,7 @@ namespace limber
 
 
 
-    /** The words between separators, which names with blanks need. */
+    /** Words between separators other than blanks, which names may contain. */
     std::vector<std::string>
     cells_of(std::string_view line)
     {
@@ -50,7 +50,9 @@ namespace limber
 
 
 
-    /** The names in the first line; those that nothing asks for are empty. */
+    /**
+     * The column names in the first line; those of unused columns are empty.
+     */
     std::vector<std::string>
     read_header(const InputFile   &file,
                 std::string_view   line,
@@ -136,7 +138,7 @@ namespace limber
 
 
 
-    /** Closes what HDF5 has opened; negative handles stand for failures. */
+    /** Owns an HDF5 identifier; negative ones stand for failures. */
     struct Hdf5Handle
     {
       const hid_t id;
@@ -173,16 +175,16 @@ namespace limber
 
 
 
-    // From memory, as the first rank has read the file for all.
+    // From a file image in memory, as the first rank has read the file for all.
     PointTable
     read_hdf5(const InputFile &file, const unsigned int dim)
     {
-      H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // told by messages of ours
+      H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); // errors are reported here
       std::string      bytes = file.bytes;
       const Hdf5Handle access{H5Pcreate(H5P_FILE_ACCESS), H5Pclose};
       H5Pset_fapl_core(access.id, 1 << 20, false);
       H5Pset_file_image(access.id, bytes.data(), bytes.size());
-      // HDF5 wants a name under which there is no file.
+      // HDF5 needs a name under which there is no file.
       const std::string name = file.path + "/in memory";
       const Hdf5Handle  hdf5{H5Fopen(name.c_str(), H5F_ACC_RDONLY, access.id),
                             H5Fclose};

@@ -17,7 +17,7 @@ namespace limber
 
   namespace
   {
-    /** Loops as they are read, with the line of each vertex. */
+    /** Reads closed loops of vertices, with the line of each vertex. */
     class LoopReader
     {
     public:
@@ -121,7 +121,7 @@ namespace limber
             area += std::abs(a[0] * b[1] - a[1] * b[0]);
             size = std::max({size, a.norm_square(), b.norm_square()});
           }
-        if (!(area > 1e-12 * size)) // all in one line
+        if (!(area > 1e-12 * size)) // collinear
           refuse("A loop without area ends",
                  lines.number,
                  "Usually a column was copied twice. Write x and y of each "

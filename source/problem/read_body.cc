@@ -187,7 +187,7 @@ namespace limber
       const Corners<dim> box = body.shape->bounding_box();
       for (unsigned int d = 0; d < dim; ++d)
         {
-          // Decimal fractions need not meet exactly.
+          // Decimal fractions may differ by round-off.
           const double tolerance = 1e-10 * (grid.upper[d] - grid.lower[d]);
           if (box.first[d] < grid.lower[d] - tolerance ||
               box.second[d] > grid.upper[d] + tolerance)
@@ -204,9 +204,10 @@ namespace limber
 
 
     /**
-     * Whether averages leave hourglass modes without resistance: all modes
-     * where everything is averaged, or where the rest bears no load at rest;
-     * in 3d also the torsion of a cell where shear is averaged.
+     * Whether a treatment leaves hourglass (zero-energy) modes: all of them
+     * where every strain is averaged, or where what is not averaged has no
+     * stiffness at rest (fluids); in 3d also the torsion of a cell where shear
+     * is averaged.
      */
     template <int dim>
     bool
@@ -221,15 +222,15 @@ namespace limber
 
 
     /**
-     * Splines alone follow a solid well up to this ratio of its bulk and shear
-     * moduli (Poisson's ratio 0.475), means around nodes from there on: below,
-     * they make it too soft.
+     * Ratio of bulk to shear modulus (Poisson's ratio 0.475) up to which
+     * splines need no locking treatment; from there on 'auto' takes means
+     * around nodes, which make softer solids too soft.
      */
     constexpr double large_moduli_ratio = 20;
 
 
 
-    /** The treatment for a material; says in the log what and why. */
+    /** Locking treatment of the word 'auto'; says in the log what and why. */
     template <int dim>
     Treatment
     automatic_treatment(const Body<dim> &body,
@@ -274,7 +275,7 @@ namespace limber
 
 
 
-    /** A history that is not kept needs means to tend to. */
+    /** A history other than 'keep' needs a mean that it tends to. */
     template <int dim>
     void
     check_histories(const Section   &section,
@@ -363,7 +364,8 @@ namespace limber
         body.treatment = automatic_treatment(body, fluid, problem);
       body.hourglass =
         read_word(section, "Hourglass response", hourglass_words());
-      // Elastic coefficients go on hardening where the material flows.
+      // With elastic coefficients hourglass forces would keep growing, like
+      // hardening, while the material flows plastically.
       if (body.hourglass == HourglassResponse::automatic)
         body.hourglass = body.is_plastic ? HourglassResponse::incompressible :
                                            HourglassResponse::bending;
@@ -400,7 +402,9 @@ namespace limber
 
 
 
-    /** Throws InputError where a formula of the start asks for the time. */
+    /**
+     * Throws InputError where a formula of the initial state asks for the time.
+     */
     void
     refuse_time(const Section &section, const std::string &entry)
     {
@@ -449,11 +453,11 @@ namespace limber
 
     /**
      * With AFLIP and linear functions points take the gradient of the new
-     * velocity, as with USL. It has no bound where a point comes so close to
-     * the edge of its cell that nodes beyond have next to no mass, and what
-     * points give back has it in it (APIC bounds it). Points that the lattice
-     * of the grid places keep away from edges until they move, in the initial
-     * frame for ever.
+     * velocity, as with USL. It is unbounded where a point is so close to an
+     * edge of its cell that the nodes beyond have next to no mass (small cut),
+     * and the momentum that points give back (P2G) includes it; APIC bounds it.
+     * Points of 'regular' placement stay away from edges until they move, in
+     * the initial frame for ever.
      */
     template <int dim>
     void

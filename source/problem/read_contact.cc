@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** What a word makes of a pair. */
+    /** What a word means for a pair. */
     struct ContactKind
     {
       ContactLaw law;
@@ -104,7 +104,7 @@ namespace limber
 
 
 
-    /** Those of a section: several if it names one body only. */
+    /** The pairs of a section: several if it names one body only. */
     template <int dim>
     std::vector<ContactPair>
     read_pairs(const Section      &section,
@@ -158,8 +158,8 @@ namespace limber
 
 
     /**
-     * Bodies that may part from another one have fields of their own, all
-     * others the first.
+     * Bodies that may separate from another one get velocity fields of their
+     * own, all others share the first (multi-field contact).
      */
     template <int dim>
     void
@@ -203,7 +203,7 @@ namespace limber
         refuse(method, "Kernel", "'Kernel = linear' or 'quadratic'");
       if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse(method, "Time integration", "'Time integration = explicit'");
-      // two balls would gain half of their energy
+      // two colliding balls would gain half of their energy
       if (problem.method.transfer == Transfer::apic)
         refuse(method, "Transfer", "'Transfer = aflip' or 'flip'");
     }

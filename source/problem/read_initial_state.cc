@@ -78,7 +78,7 @@ namespace limber
 
 
 
-    /** One part of 'Initial state', "name: formula". */
+    /** One variable of 'Initial state', "name: formula". */
     template <int dim>
     void
     read_variable(const std::string                &part,
@@ -137,7 +137,7 @@ namespace limber
 
 
 
-    /** One part of 'Initial stress', "name: formula". */
+    /** One component of 'Initial stress', "name: formula". */
     template <int dim>
     void
     read_stress(const std::string  &part,

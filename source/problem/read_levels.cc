@@ -117,7 +117,10 @@ namespace limber
 
   namespace
   {
-    /** As deal.II builds the mesh: factors of two in common are levels. */
+    /**
+     * Levels of the mesh as deal.II builds it: common factors of two in the
+     * numbers of cells become refinement levels.
+     */
     template <int dim>
     unsigned int
     levels_of_lattice(std::array<unsigned int, dim> cells)
@@ -298,7 +301,9 @@ namespace limber
 
 
 
-    /** Of bodies that the scene names each has one, else at least one of all.
+    /**
+     * Every body that the criterion names must have plastic strain, or any body
+     * if it names none.
      */
     template <int dim>
     void
@@ -365,7 +370,10 @@ namespace limber
 
   namespace
   {
-    /** Whether its functions are made of those of the nodes of single cells. */
+    /**
+     * Whether the kernel is composed of the linear shape functions of single
+     * cells, so that it works with hanging nodes.
+     */
     bool
     goes_with_levels(const KernelKind kernel)
     {
@@ -378,7 +386,7 @@ namespace limber
 
   namespace
   {
-    /** Points may be halved only if they know how far they are stretched. */
+    /** Splitting of points needs to know how far they are stretched. */
     template <int dim>
     void
     check_stretched(const Section      &section,

@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** The word of the entry 'Face' that stands for all of them. */
+    /** The word of the entry 'Face' that stands for the whole surface. */
     const std::string whole_surface = "surface";
 
 
@@ -161,7 +161,7 @@ namespace limber
 
 
 
-    /** Nothing for the whole surface. */
+    /** The number of the face; empty for the whole surface. */
     template <int dim>
     std::optional<unsigned int>
     read_face(const Section &section, const Body<dim> &body)

@@ -79,7 +79,9 @@ namespace limber
 
   namespace
   {
-    /** On a lattice inside the body; where the formula is undefined, skipped.
+    /**
+     * Sampled on a lattice inside the body; places where the formula is
+     * undefined are skipped.
      */
     template <int dim>
     double
@@ -113,7 +115,7 @@ namespace limber
 
 
 
-    /** Of the sides that move: on a lattice of each, up to the end time. */
+    /** Of the moving sides, sampled on a lattice of each up to the end time. */
     template <int dim>
     double
     largest_side_speed(const Problem<dim> &problem)
@@ -149,7 +151,7 @@ namespace limber
 
 
 
-    /** K of the word 'auto'; says in the log what it is. */
+    /** Bulk modulus of the word 'auto'; says in the log what it is. */
     template <int dim>
     double
     automatic_bulk_modulus(const Section   &section,
@@ -175,7 +177,7 @@ namespace limber
 
 
 
-    /** A number as it is; a word as its place among the words. */
+    /** A number, or of a word its position among the choices. */
     double
     read_value(const Section &section, const LawParameter &parameter)
     {
@@ -187,7 +189,7 @@ namespace limber
       const auto words = split(parameter.words, '|');
       return std::find(words.begin(), words.end(), text) - words.begin();
     }
-    /** Of an entry of a law, if it has it. */
+    /** Value of a named entry of a law, if the law has it. */
     std::optional<double>
     value_of(const std::string         &entry,
              const LawDescription      &law,
@@ -201,8 +203,8 @@ namespace limber
 
 
 
-    // Soil with cohesion is often meant to bear some tension, and sheds points
-    // where it does not.
+    // Cohesive soil is often meant to bear some tension; without tensile
+    // strength it sheds points.
     template <int dim>
     void
     note_lack_of_tension(const LawDescription &law,

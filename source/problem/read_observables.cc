@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** The same in two and three dimensions. */
+    /** Those of the kinds, the same in two and three dimensions. */
     std::vector<std::string>
     kind_words()
     {
@@ -350,9 +350,10 @@ namespace limber
 
 
     /**
-     * A frequency is that of another observable, not of a frequency. Says so
-     * where rows may be too rare for its zeros: implicit steps are no longer
-     * than motions need, explicit ones are a hundred times shorter.
+     * An observable 'frequency' looks at another observable that is no
+     * frequency. Notes where rows may be too rare to resolve zero crossings:
+     * implicit steps are as long as the motion allows, explicit ones a hundred
+     * times shorter.
      */
     template <int dim>
     void
@@ -397,7 +398,7 @@ namespace limber
 
   namespace
   {
-    /** Say so where the point that will be followed is far from the place. */
+    /** Notes where the point that will be followed is far from the place. */
     template <int dim>
     void
     look_at_location(const Observable<dim> &observable, Problem<dim> &problem)

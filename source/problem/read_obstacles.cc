@@ -149,7 +149,9 @@ namespace limber
 
   namespace
   {
-    /** Three times as large as the grid: where nobody says where it ends. */
+    /**
+     * Three times as large as the grid: for shapes whose extent is not given.
+     */
     template <int dim>
     Corners<dim>
     beyond(const GridDescription<dim> &grid)
@@ -204,7 +206,9 @@ namespace limber
 
 
 
-    /** Empty, or finite in the run and the same at all places. */
+    /**
+     * A prescribed motion: empty, or finite in the run and uniform in space.
+     */
     template <int dim>
     Formula<dim>
     read_motion(const Section      &section,
@@ -243,7 +247,7 @@ namespace limber
 
 
 
-    /** That which the criterion 'obstacle' makes all cells around it have. */
+    /** The level that the criterion 'obstacle' gives all cells around it. */
     template <int dim>
     unsigned int
     level_around(const Obstacle<dim>        &obstacle,
@@ -260,8 +264,8 @@ namespace limber
 
 
     /**
-     * Nodes know no side of what is thinner than two cells: the same one would
-     * hold what is left and right of it.
+     * Nodes cannot tell the two sides of an obstacle thinner than two cells:
+     * the same node would constrain the material on both.
      */
     template <int dim>
     void
@@ -277,7 +281,7 @@ namespace limber
       for (unsigned int d = 0; d < dim; ++d)
         if (!std::isfinite(box.first[d]) || !std::isfinite(box.second[d]))
           return;
-      constexpr unsigned int n = dim == 2 ? 129 : 33; // odd, to meet middles
+      constexpr unsigned int n = dim == 2 ? 129 : 33; // odd, to sample centres
       double                 deepest = 0;
       for (unsigned int i = 0; i < std::pow(n, dim); ++i)
         {
@@ -287,7 +291,7 @@ namespace limber
             place[d] = box.first[d] +
                        (box.second[d] - box.first[d]) * (rest % n) / (n - 1.);
           const double value = obstacle.shape->signed_distance(place)->value;
-          if (value > -1e299) // of a formula without slope there
+          if (value > -1e299) // except where the gradient vanishes
             deepest = std::max(deepest, -value);
         }
       if (deepest < 0.99 * longest_edge)
@@ -354,8 +358,10 @@ namespace limber
 
 
 
-    /** The pressure on obstacles is implicit for liquids that slide on them,
-     * over cells of one size. */
+    /**
+     * The implicit pressure at obstacles needs liquids that slip on them and
+     * cells of one size.
+     */
     template <int dim>
     void
     check_implicit_pressure(const Section &root, const Problem<dim> &problem)
@@ -398,9 +404,10 @@ namespace limber
 
 
 
-    /** The largest angle, in degrees, between a side and an obstacle that has
-     * a part of it at the start and looks into the box as it does; 0: there is
-     * none, or it has all of the side, as a piston that has come some way.
+    /**
+     * Largest angle, in degrees, between a side and the surface of an obstacle
+     * that covers a part of it at the start and faces into the box as it does;
+     * 0: none, or the whole side is covered, as by a piston that has advanced.
      */
     template <int dim>
     double
@@ -426,7 +433,10 @@ namespace limber
 
 
 
-    /** An obstacle takes over a side face by face: see CoveredSides. */
+    /**
+     * A moving obstacle takes over a side face by face (see CoveredSides),
+     * which is noisy if it starts there at an angle.
+     */
     template <int dim>
     void
     note_oblique_starts(Problem<dim> &problem)
@@ -452,7 +462,7 @@ namespace limber
 
 
 
-    /** What the criterion 'obstacle' has to know of those that there are. */
+    /** Gives the criterion 'obstacle' what it has to know of the obstacles. */
     template <int dim>
     void
     complete_refinements(const Section &root, Problem<dim> &problem)

@@ -49,12 +49,12 @@ namespace limber
       if (section.text(entry) != "auto")
         points = section.numbers(entry);
       else
-        // Liquids stretch their lattice of points, and at twice the length
-        // cells between two stacks of points are empty: their pressure is
-        // noise. With two points solids with splines creep some ten times as
-        // much with every crossing; and a cantilever sags by 14 % too much in
-        // fifty quasi-static steps, with three by 2 %, which costs a third of
-        // the time (doc/theory/implicit_steps.md).
+        // A liquid that flows stretches its lattice of points; at twice the
+        // length there are empty cells between two columns of points, and the
+        // pressure is noise. With two points solids with splines creep some ten
+        // times as much with every cell crossing; and a cantilever sags by 14 %
+        // too much in fifty quasi-static steps, with three by 2 %, which costs
+        // a third of the time (doc/theory/implicit_steps.md).
         points = {body.is_liquid ||
                       (body.frame == Frame::current &&
                        (is_spline(problem.grid.kernel) ||
@@ -69,7 +69,7 @@ namespace limber
 
 
 
-    /** Points of a list are where they are, and as large as they are. */
+    /** A point list prescribes places and sizes of the points. */
     template <int dim>
     void
     check_point_list(const Section              &section,
@@ -95,7 +95,7 @@ namespace limber
 
 
 
-    /** Distance of the points of 'regular', m, in cells with that edge. */
+    /** Spacing of the points of 'regular', m, in cells of this edge length. */
     template <int dim>
     double
     spacing_along(const unsigned int direction,
@@ -107,8 +107,10 @@ namespace limber
 
 
 
-    /** Spacings of points in the smallest cells that the longest edge of a
-     * direction has room for. */
+    /**
+     * Number of points of 'fitted' in a direction of the block: its longest
+     * edge there in spacings of the smallest cells, rounded up.
+     */
     template <int dim>
     unsigned int
     parts_of_edges(const BlockShape<dim>      &block,
@@ -130,14 +132,16 @@ namespace limber
             }
           longest = std::max(longest, std::sqrt(square));
         }
-      // Decimal fractions need not meet exactly.
+      // Decimal fractions may differ by round-off.
       return std::lround(std::clamp(std::ceil(longest - 1e-6), 1., 1e9));
     }
 
 
 
-    /** Whether faces across the axes lie where parts of 'regular' end, in cells
-     * of whichever size. */
+    /**
+     * Whether faces normal to the axes coincide with borders of the points'
+     * parts of cells in 'regular', on every level.
+     */
     template <int dim>
     bool
     is_in_lattice(const BlockShape<dim>      &block,
@@ -158,8 +162,10 @@ namespace limber
 
 
 
-    /** Volume of the parts of 'regular' in an upright block, in the largest
-     * cells, over its own. */
+    /**
+     * Volume that points of 'regular' give an upright block, in the largest
+     * cells, over its own volume.
+     */
     template <int dim>
     double
     filled_by_regular(const BlockShape<dim>      &block,
@@ -184,7 +190,7 @@ namespace limber
 
 
 
-    /** Of the shapes whose parts are cheap to tell inside from outside. */
+    /** For shapes that are cheap to test for inside and outside. */
     template <int dim>
     bool
     has_curved_surface(const Shape<dim> &shape)
@@ -196,14 +202,18 @@ namespace limber
 
 
 
-    /** Mass, weight and stiffness that 'regular' may err by, of a block. */
+    /**
+     * Error of mass, weight and stiffness of a block that 'regular' may make.
+     */
     constexpr double least_misfill = 0.02;
 
 
 
-    /** Whether 'regular' is good enough for an upright block. Bodies side by
-     * side or that meet something need their faces where they are, and liquids
-     * in cells of several sizes, or their level is another one in each. */
+    /**
+     * Whether 'regular' is good enough for an upright block. Bodies side by
+     * side or in contact need their faces exactly in place, as do liquids in
+     * cells of several sizes, whose level would differ from one to the next.
+     */
     template <int dim>
     bool
     suits(const BlockShape<dim> &block,
@@ -221,8 +231,9 @@ namespace limber
 
 
     /**
-     * Whether the faces of a shape run as they like, so that parts that count
-     * as a whole miss its volume. Pictures and lists bring theirs along.
+     * Whether the surface of a shape is independent of cells and points, so
+     * that parts counted as a whole miss its volume. Pixels and point lists
+     * bring parts of their own.
      */
     template <int dim>
     bool
@@ -237,27 +248,35 @@ namespace limber
 
 
 
-    // Parts of 'regular' are in or out as a whole: a block may be too thick
-    // by one of them, or too thin. A lattice of its own, which domains need,
-    // fills the cells unevenly: what is under stress is not at rest, and
-    // softer. Cut, none but those at the surface are; but linear functions take
-    // the edges of points for where bodies touch, and thin parts then touch
-    // from afar. So are other shapes with splines that nothing touches: a ball
-    // of ten cells has its mass instead of 1.4 % more, and when it bounces off
-    // a side, a tenth of the error of its energy; thin parts of an STL file may
-    // miss a fifth of theirs. Where the body stays in its
-    // initial frame and meets nothing, points take the places of Gauss and
-    // Legendre in what they fill of cells: rows at the middle of parts have
-    // less of a second moment, and bend too easily. But cells with a splinter
-    // of the body fly when it is hit: a ball of twelve cells that has fallen on
-    // a side has nodes of 13 m/s with such points, of 3 m/s cut. Liquids that
-    // obstacles bound have to have the mass of what they fill there: counted by
-    // parts, water of 93 J moves beside a wall that it should rest at; and so
-    // have boxes of a liquid, whose level would be off, and waves, of which
-    // stairs of parts have a third less energy; but with APIC splinters at the
-    // surface of a wave of 64 cells turn inside out. (Linear functions
-    // without a treatment lock in bending, which such rows make up for in part:
-    // a disk that swirls errs by a third less.)
+    // Placement of the word 'auto', from experience with each:
+    //
+    // 'regular' counts the part of a cell that belongs to a point in or out as
+    // a whole, so a block may be too thick or too thin by one of them.
+    //
+    // 'fitted', a lattice of its own, fills the cells unevenly: a body under
+    // stress is then not in equilibrium, and softer. Kernels with domains need
+    // it; so do blocks in contact with linear functions, where bodies touch at
+    // the edges of points: with 'cut', thin parts would touch from afar.
+    //
+    // 'cut' is uneven at the surface only. With splines, away from contact, a
+    // ball of ten cells has its exact mass instead of 1.4 % more and, bouncing
+    // off a side, a tenth of the error of its energy; thin parts of an STL body
+    // may otherwise miss a fifth of theirs. In an impact it is better than
+    // 'gauss' for small-cut cells: a ball of twelve cells that has fallen on a
+    // side has nodes of 13 m/s with 'gauss', of 3 m/s with 'cut'.
+    //
+    // Liquids are cut at obstacles, where they need the mass of what they fill:
+    // counted by whole parts, water of 93 J moves beside a wall at which it
+    // should rest. So are boxes of a liquid, whose level would be off, and
+    // waves, as the staircase of whole parts has a third less energy; but with
+    // APIC small-cut points at the surface of a wave of 64 cells turn inside
+    // out.
+    //
+    // 'gauss' (Gauss-Legendre points in the filled part of each cell) is for
+    // bodies in the initial frame that meet nothing: rows at the centres of
+    // parts have a smaller second moment, and bend too easily. (That
+    // compensates in part for linear functions without a treatment, which lock
+    // in bending: a disk that swirls errs by a third less.)
     template <int dim>
     void
     choose_placement(const Section  &section,

@@ -14,8 +14,8 @@ namespace limber
   namespace
   {
     /**
-     * Points of a solid that cross cells gain or lose energy with the first
-     * order of the step if the strain has one velocity only
+     * Points of a solid that cross cells gain or lose energy at first order in
+     * the step if the strain increment uses a single nodal velocity
      * (doc/theory/energy_balance.md); for a liquid it makes no difference.
      */
     template <int dim>
@@ -79,10 +79,9 @@ namespace limber
 
   namespace
   {
-    // When a run is resumed it may end at another time and write other files,
-    // but not become another run: not with other loads, where these grow until
-    // it ends. A file may be at another place by then, but not hold something
-    // else.
+    // A resumed run may have another end time and other output, but must remain
+    // the same run: its end time is fixed if loads grow until then. A file may
+    // have been moved, but its content must be the same.
     template <int dim>
     std::vector<std::string>
     fixed_entries(const Parameters &parameters, const Problem<dim> &problem)
@@ -131,7 +130,7 @@ namespace limber
                        "list was forgotten. Write 'set Bodies = block' and a "
                        "section 'Body block'.");
 
-    // Each part may ask those before it.
+    // The order matters: each part may use those read before it.
     Problem<dim> problem;
     problem.end_time = root.number("End time");
     problem.end_step = static_cast<unsigned long>(root.number("End step"));
@@ -221,7 +220,7 @@ namespace limber
         set Tolerance  = 0.05
       end
     )";
-    // The table has entries that do not go together yet, a scene has not.
+    // The table lists entries that do not go together yet; a scene must not.
     if (style == PrintStyle::markdown)
       example.text += R"(
         set Obstacles = floor

@@ -82,7 +82,7 @@ namespace limber
 
   namespace
   {
-    // Steps of the run, but for those that it halves.
+    // Number of steps of the run, not counting halved ones.
     unsigned int
     steps_of_run(const Method &method, const double end_time)
     {

@@ -145,8 +145,8 @@ namespace limber
                                n_components,
                                section.where(entry));
 
-    // Not the middle of the box, where formulas in polar coordinates like to
-    // have their pole.
+    // Not the centre of the box, where formulas in polar coordinates often have
+    // their pole.
     const double       share[3] = {0.437, 0.391, 0.413};
     dealii::Point<dim> place;
     for (unsigned int d = 0; d < dim; ++d)

@@ -13,8 +13,7 @@ namespace limber
   {
     /**
      * Names become sections of the scene and of --set, columns of tables and
-     * fields of pictures. The letters that one of these cannot hold are left
-     * to them.
+     * fields of pictures. Refuses letters that one of these cannot hold.
      */
     void
     check_name_form(const std::string &name,

@@ -11,8 +11,10 @@ namespace limber
 {
   namespace
   {
-    /** Who flows without end of those that share the nodes of a body, itself
-     * included; null: nobody. */
+    /**
+     * The body that flows without end among those in the nodal field of a body,
+     * itself included; null: none.
+     */
     template <int dim>
     const Body<dim> *
     who_flows(const Body<dim> &body, const Problem<dim> &problem)
@@ -47,8 +49,8 @@ namespace limber
 
 
 
-  // What lies at a side that slips is held there in both directions, as by a
-  // plane of symmetry.
+  // A body that lies at a slip side from the start is held there in both
+  // directions, as by a plane of symmetry.
   template <int dim>
   bool
   may_be_hit(const unsigned int  side,
@@ -76,9 +78,10 @@ namespace limber
 
 
 
-  // Nodes stop what comes to a side from a cell before it on: a block that is
-  // slow against its waves then rebounds by a quarter too fast, and what rolls
-  // is braked (doc/theory/boundaries_and_loads.md).
+  // A condition at nodes stops a body up to one cell before the side: if its
+  // speed is small against its wave speeds, a block then rebounds by a quarter
+  // too fast, and rolling bodies are braked
+  // (doc/theory/boundaries_and_loads.md).
   template <int dim>
   void
   choose_side_contact(Problem<dim> &problem)
@@ -100,7 +103,7 @@ namespace limber
         const std::string reason = why_at_nodes(body, problem);
         body.meets_sides         = reason.empty();
         any                      = any || body.meets_sides;
-        // In a tank the sides that slip are those of what flows.
+        // In a tank the slip sides are meant for the liquid.
         const auto &names = who_flows(body, problem) ? one_sided : hit;
         if (!body.is_liquid && !reason.empty() && !names.empty())
           problem.notes.push_back(

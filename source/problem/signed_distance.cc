@@ -22,7 +22,7 @@ namespace limber
     if (length > 0)
       result.normal /= length;
     else
-      result.normal[0] = 1; // all are as near
+      result.normal[0] = 1; // at the centre: any direction
     return result;
   }
 

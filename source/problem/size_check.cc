@@ -30,7 +30,10 @@ namespace limber
 
 
 
-    /** So much less along each edge brings it below the limit. */
+    /**
+     * Factor for the cells along each edge that brings the scene below the
+     * limit.
+     */
     template <int dim>
     double
     factor_per_edge(const double excess)
@@ -53,7 +56,7 @@ namespace limber
 
 
 
-    /** The same for cells, with many factors of two in common. */
+    /** The same for numbers of cells, rounded to common factors of two. */
     template <std::size_t dim>
     std::string
     scaled_cells(const std::array<unsigned int, dim> &cells,
@@ -73,7 +76,9 @@ namespace limber
 
 
 
-    /** What to write instead: of the largest share, as much as fits. */
+    /**
+     * What to write instead: reduces what takes the most memory until it fits.
+     */
     template <int dim>
     std::string
     remedy_for(const Problem<dim> &problem,
@@ -101,7 +106,7 @@ namespace limber
         }
       const Body<dim> &body =
         problem.bodies[largest - size.bytes_of_points.begin()];
-      // Points follow cells, unless a cell holds too many of them.
+      // Fewer cells mean fewer points, unless a cell holds too many of them.
       const double per_cell = std::accumulate(body.points_per_cell_edge.begin(),
                                               body.points_per_cell_edge.end(),
                                               1.,

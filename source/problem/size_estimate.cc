@@ -37,7 +37,7 @@ namespace limber
 
 
 
-    /** As with the mesh: factors of two in common are refinements. */
+    /** Common factors of two are refinements, as when the mesh is built. */
     template <std::size_t dim>
     double
     count_coarse(std::array<unsigned int, dim> cells)
@@ -67,7 +67,7 @@ namespace limber
 
 
 
-    /** Exact for blocks; others by samples. m^dim */
+    /** Volume, m^dim: exact for blocks, of other shapes by sampling. */
     template <int dim>
     double
     volume_of(const Shape<dim> &shape)
@@ -95,17 +95,14 @@ namespace limber
                        (rest % n + 0.5) / n * (box.second[d] - box.first[d]);
           inside += shape.contains(place);
         }
-      // What is thinner than the samples is not nothing.
+      // A shape thinner than the spacing of samples has some volume.
       return volume * std::max(inside, 1u) / n_all;
     }
 
 
 
-    /**
-     * At most so many coarse cells make as much as the finer ones that are
-     * wanted within a box add to them; where formulas decide, by the volume of
-     * their boxes.
-     */
+    /** Upper bound of the number of cells that refinement adds within a box;
+     * regions given by a formula count with their boxes. */
     template <int dim>
     double
     added_by_levels(const GridDescription<dim> &grid,
@@ -210,8 +207,8 @@ namespace limber
                                                        dim * dim;
           const double own =
             per_point + (domains ? of_domain * sizeof(double) : 0);
-          // The places in one cell are kept while points are placed; a lattice
-          // of the body's own has none.
+          // While points are placed, the places in one cell are kept; the
+          // lattice of 'fitted' has none.
           const double places = body.placement == Placement::fitted ?
                                   0 :
                                   product(body.points_per_cell_edge);
@@ -220,7 +217,8 @@ namespace limber
         }
       if (!pictures)
         return size;
-      // One after the other: the larger one counts.
+      // Pictures of cells and points are written one after the other: the
+      // larger one counts.
       const double of_grid = size.cells * of_cell_in_a_picture[k];
       const double of_all  = size.all_points() * of_point_in_a_picture[k];
       if (of_grid > of_all)
@@ -233,7 +231,10 @@ namespace limber
 
 
 
-    /** Elements over each edge, as the mesh will have them at first. */
+    /**
+     * Coarse elements along each edge, as the mesh of the reference will have
+     * them.
+     */
     template <int dim>
     std::array<unsigned int, dim>
     coarse_elements(const ReferenceRequest &request)
@@ -248,7 +249,7 @@ namespace limber
 
 
 
-    /** The longest edge over the shortest one, for each further direction. */
+    /** Product of all edges over the shortest one. */
     template <int dim>
     double
     slenderness(const Body<dim> &body)

@@ -17,19 +17,19 @@ namespace limber
 {
   namespace
   {
-    // A bar n cells thick vibrates in torsion slower by this over n^2
-    // (doc/theory/initial_frame.md).
+    // The torsional vibration of a bar n cells thick is too slow by this over
+    // n^2 (doc/theory/initial_frame.md).
     constexpr double torsion_of_linear = 1.5, torsion_of_splines = 3.3;
 
-    // In which FLIP loses what is worth telling of the spin.
+    // Turns in the run from which FLIP loses a share of the spin worth a note.
     constexpr double fewest_turns = 0.1;
 
 
 
     /**
-     * What bends with linear functions and does not creep is right only if
-     * it bends along the axes of the cells: else they have no field of
-     * constant curvature.
+     * Bending with linear functions, where there is no creep, is right along
+     * the axes of the cells only: at an angle they contain no field of constant
+     * curvature.
      */
     template <int dim>
     void
@@ -54,8 +54,10 @@ namespace limber
 
 
 
-    /** Of the initial velocity of a body: its mean spin, about, 1/s. From
-     * places on a lattice. */
+    /**
+     * Mean angular velocity of the initial velocity of a body, about, 1/s.
+     * Sampled on a lattice.
+     */
     template <int dim>
     double
     spin(const Body<dim> &body)
@@ -96,15 +98,15 @@ namespace limber
       double norm = 0;
       for (const double component : momentum)
         norm += component * component;
-      // in space the moment of a ball
+      // in space with the moment of inertia of a ball
       return squares > 0 ? std::sqrt(norm) / (2. / dim * squares) : 0;
     }
 
 
 
     /**
-     * FLIP gives rows of points that turn through the cells the mean of the
-     * velocity next to them, and what is lost of the spin becomes vibration
+     * With FLIP rows of points that rotate through the cells take the mean of
+     * the velocity next to them, and the spin that is lost becomes vibration
      * (doc/theory/transfers.md).
      */
     template <int dim>
@@ -166,9 +168,9 @@ namespace limber
 
     /**
      * Nodes carry the mass of points h^2/6 further out (mean square, with
-     * linear functions; h^2/4 with splines), which slows what turns: in torsion
-     * a bar that is n cells thick by about twice that share of its polar moment
-     * (doc/theory/initial_frame.md).
+     * linear functions; h^2/4 with splines), which increases the moment of
+     * inertia: in torsion a bar n cells thick is slower by about twice that
+     * share of its polar moment (doc/theory/initial_frame.md).
      */
     template <int dim>
     void

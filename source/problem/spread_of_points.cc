@@ -8,16 +8,19 @@ namespace limber
 {
   namespace
   {
-    // of what nodes hold beyond their room, pushed apart in a step
+    // 'auto' of the density control: share of the excess of the points' volume
+    // over the volume of a node that a step removes
     constexpr double density_control = 0.2;
 
-    // Found with water that has been stirred.
+    // 'auto' of the particle shifting, found with water that has been stirred.
     constexpr double particle_shifting = 2;
 
 
 
-    /** Whether nothing is left for bodies to move into: the middles of all
-     * cells are in bodies or obstacles at the start. */
+    /**
+     * Whether the box is full, with no free surface for bodies to move into:
+     * the centres of all cells are in bodies or obstacles at the start.
+     */
     template <int dim>
     bool
     is_full(const Problem<dim> &problem)
@@ -41,7 +44,7 @@ namespace limber
       unsigned long n    = 1;
       for (const unsigned int cells : grid.cells)
         n *= cells;
-      // from the last one on: what is empty is most often above
+      // from the last cell on: empty cells are most often at the top
       for (unsigned long cell = n; cell-- > 0;)
         {
           dealii::Point<dim> middle;
@@ -60,8 +63,10 @@ namespace limber
 
 
 
-    /** Whether it is known what nodes should hold: solids may have less volume
-     * than at first. */
+    /**
+     * Whether the volume that the points at a node should have is known: not
+     * with solids, which may have less volume than at first.
+     */
     template <int dim>
     bool
     may_control_density(const Problem<dim> &problem, const Body<dim> &body)
@@ -83,7 +88,10 @@ namespace limber
 
 
 
-    /** What is pushed apart in a full box presses on all of it. */
+    /**
+     * In a full box 'auto' is none: points that are pushed apart there would
+     * raise the pressure everywhere.
+     */
     template <int dim>
     void
     read_density_control(const Section      &section,
@@ -106,8 +114,11 @@ namespace limber
 
 
 
-    /** Only with means over cells, of linear functions, clumps weigh more than
-     * they press. */
+    /**
+     * Particle shifting is for volume ratios averaged over cells, with linear
+     * functions: only there points that gather (clumping) weigh more than their
+     * pressure balances.
+     */
     template <int dim>
     void
     read_particle_shifting(const Section      &section,

@@ -12,8 +12,8 @@ namespace limber
   namespace
   {
     /**
-     * Where the way from a place inside to one outside leaves the region; the
-     * same to the last bit for all who go that way.
+     * Where the segment from a place inside to one outside crosses the surface,
+     * by bisection; the same to the last bit for all who share the segment.
      */
     template <int dim>
     Point<dim>
@@ -46,7 +46,9 @@ namespace limber
 
 
 
-    /** A part of the lattice; corners are counted in deal.II's order. */
+    /**
+     * A cell of the sampling lattice; corners are counted in deal.II's order.
+     */
     template <int dim>
     struct Part
     {
@@ -59,7 +61,7 @@ namespace limber
 
 
     /**
-     * A side of a part, or the part itself in two dimensions: its corners,
+     * A face of a part, or the part itself in two dimensions: its corners,
      * counterclockwise as seen from within the part.
      */
     using Square = std::array<unsigned int, 4>;
@@ -92,9 +94,10 @@ namespace limber
 
 
     /**
-     * The surface leaves a square over edges that go, counterclockwise, from
-     * inside to outside and comes back over those that go the other way. Call
-     * @p work with both, for each line in which it crosses the square.
+     * Marching squares: the surface leaves a square over edges that go,
+     * counterclockwise, from inside to outside and comes back over those that
+     * go the other way. Call @p work with both, for each line in which it
+     * crosses the square.
      */
     template <int dim, class Work>
     void
@@ -106,8 +109,8 @@ namespace limber
       const auto inside = [&](const unsigned int i) {
         return part.is_inside[square[i % 4]];
       };
-      // Where two opposite corners are inside, the centre tells whether they
-      // hang together.
+      // Ambiguous case: where two opposite corners are inside, the centre tells
+      // whether they are joined.
       const bool is_ambiguous = inside(0) == inside(2) &&
                                 inside(1) == inside(3) &&
                                 inside(0) != inside(1);
@@ -130,8 +133,8 @@ namespace limber
 
 
     /**
-     * Along the surface where it crosses an edge of a part, from there into the
-     * part; nothing where it is not the same surface a bit further.
+     * Tangent of the surface where it crosses an edge of a part, into the part;
+     * nothing where it is not the same surface a bit further.
      */
     std::optional<dealii::Tensor<1, 2>>
     tangent(const Region<2> &region,
@@ -153,8 +156,9 @@ namespace limber
 
 
     /**
-     * Where the surface bends sharply between two edges of a part, of which
-     * the first corner is inside: where its tangents meet, if it goes there.
+     * A sharp corner of the surface between two edges of a part, of which the
+     * first corner is inside: the intersection of the tangents, if the surface
+     * goes there.
      */
     std::optional<Point<2>>
     sharp_corner(const Region<2> &region,
@@ -176,7 +180,7 @@ namespace limber
       if (std::abs(sine) < least_sine * a->norm() * b->norm())
         return std::nullopt;
       Point<2> corner = start + cross(end - start, *b) / sine * *a;
-      // Tangents of what is curved may meet a bit beyond the part.
+      // Tangents of a curved surface may meet slightly outside of the part.
       const double size = (part.corner[3] - part.corner[0]).norm();
       for (int d = 0; d < 2; ++d)
         {
@@ -187,7 +191,7 @@ namespace limber
           corner[d] = within;
         }
 
-      // A rounded one stays within its tangents.
+      // A rounded corner does not reach the intersection of its tangents.
       dealii::Tensor<1, 2> beyond    = corner - (start + 0.5 * (end - start));
       const bool           is_convex = cross(end - start, beyond) < 0;
       const double way = std::min(0.1, tolerance * size / beyond.norm());
@@ -213,7 +217,8 @@ namespace limber
                              part.corner[edge.second]);
       };
 
-      // In three dimensions the lines on the sides join to closed polygons.
+      // In three dimensions (marching cubes) the lines on the faces join to
+      // closed polygons.
       std::vector<std::pair<Edge, Edge>> lines;
       for (const Square &square : all_squares)
         for_each_line<dim>(region,
@@ -262,7 +267,7 @@ namespace limber
           const Corners<dim>            &box,
           const std::array<double, dim> &spacing)
   {
-    // Nodes of the lattice, in a layer more than fill the common box, so that
+    // The nodes of the lattice cover the common box and one layer more, so that
     // the outermost are outside.
     Corners<dim>                         common = shape.bounding_box();
     std::array<std::vector<double>, dim> lines;
@@ -274,7 +279,7 @@ namespace limber
         const double length = common.second[d] - common.first[d];
         if (length <= 0)
           return {};
-        // Decimal fractions need not meet exactly.
+        // Decimal fractions may differ by round-off.
         const int n = std::max(1., std::ceil(length / spacing[d] - 1e-6));
         for (int i = -1; i <= n + 1; ++i)
           lines[d].push_back(i == n ? common.second[d] :

@@ -14,15 +14,16 @@ namespace limber
 {
   namespace
   {
-    // gamma of the compact Laplacian: enough for a solver whose work does not
-    // grow with the grid, too little to be seen in motions
+    // Share gamma of the compact Laplacian in the pressure equation: enough for
+    // a solver whose work does not grow with the grid, too little to affect
+    // motions visibly
     constexpr double compact_share = 0.1;
 
-    // Sound over all other speeds, from where 'auto' is semi-implicit: such a
-    // run takes about a quarter of the time
+    // Speed of sound over all other speeds from which 'auto' is semi-implicit:
+    // such a run takes about a quarter of the time
     constexpr double fast_sound = 30;
 
-    // Time of a semi-implicit step over that of an explicit one, as measured in
+    // Cost of a semi-implicit step over that of an explicit one, as measured in
     // doc/theory/implicit_pressure.md (7 to 12)
     constexpr double cost_of_step = 10;
 
@@ -144,14 +145,15 @@ namespace limber
 
 
     /**
-     * Why explicit steps are right although sound is fast; empty: they are not.
+     * Why explicit steps are needed although sound is fast; empty: they are
+     * not.
      */
     template <int dim>
     std::string
     need_for_explicit_steps(const Problem<dim> &problem,
                             const double        longest_explicit_step)
     {
-      // What is loaded suddenly rings, which implicit pressures damp at once
+      // A sudden load excites sound, which an implicit pressure damps at once
       for (const auto &load : problem.loads.faces)
         for (const Body<dim> &body : problem.bodies)
           if (body.is_liquid && body.name == load.body)
@@ -235,8 +237,9 @@ namespace limber
 
 
     /**
-     * Whether the pressure of a solid is implicit where those of liquids are:
-     * it is one for each cell, and the stress follows from the strain.
+     * Whether the pressure of a solid can be implicit along with that of
+     * liquids: one pressure per cell (treatment 'cell'), and a stress that
+     * follows from the strain.
      */
     template <int dim>
     bool
@@ -250,7 +253,10 @@ namespace limber
 
 
 
-    /** What keeps the pressure of a liquid from being implicit. */
+    /**
+     * Throws InputError for what keeps the pressure of a liquid from being
+     * implicit.
+     */
     template <int dim>
     void
     check_liquid(const Section &section, const Body<dim> &body)
@@ -270,7 +276,7 @@ namespace limber
 
 
 
-    /** Let the equations of the pressure cut tension off, and not the law. */
+    /** Leave the tension cut-off to the pressure system instead of the law. */
     template <int dim>
     void
     give_tension_to_system(Body<dim> &body)

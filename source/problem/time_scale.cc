@@ -11,13 +11,17 @@ namespace limber
   {
     constexpr unsigned int n_places = 3, n_times = 1001;
 
-    // Of the time between samples: a rate is that over this, which sees what is
-    // faster than they are, or that from one to the next, which sees jumps.
+    // Interval of difference quotients as a share of that between samples: they
+    // see what is faster than the samples, differences between samples see
+    // jumps.
     constexpr double at_once = 1e-4;
 
 
 
-    /** Of a vector as a function of time, from zero to @p end. */
+    /**
+     * Of a vector as a function of time, from zero to @p end: its rms about the
+     * mean over the rms of its rate.
+     */
     template <int dim, class Function>
     double
     time_scale(const Function &function, const double end)
@@ -27,7 +31,8 @@ namespace limber
       double squares = 0, squares_of_rate = 0, squares_of_steps = 0, before = 0;
       for (unsigned int k = 0; k < n_times; ++k)
         {
-          // not at equal times, as what swings might be the same at all
+          // quasi-random times (golden ratio): at equal times a periodic
+          // function might always have the same value
           const double golden = 0.5 * (std::sqrt(5.) - 1) * k,
                        time   = interval * (k + golden - std::floor(golden));
           const dealii::Tensor<1, dim> value = function(time),

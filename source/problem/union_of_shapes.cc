@@ -30,7 +30,8 @@ namespace limber
 
 
 
-  // Exact outside; inside, where parts overlap, too near.
+  // The least distance from a part: exact outside; inside, where parts overlap,
+  // the depth is underestimated.
   template <int dim>
   std::optional<SignedDistance<dim>>
   UnionShape<dim>::signed_distance(const Point<dim> &point) const

@@ -43,7 +43,7 @@ namespace limber
 
 
 
-    /** The whole numbers of a PGM, with remarks between them. */
+    /** The integers of a PGM file, with comments between them. */
     class PgmNumbers
     {
     public:
