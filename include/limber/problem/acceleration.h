@@ -8,7 +8,7 @@
 
 namespace limber
 {
-  /** Call work(place) for those of a lattice in a box, @p n along each edge,
+  /** Calls work(place) for a lattice in a box, @p n places along each edge,
    * from end to end. */
   template <int dim, class Work>
   void
@@ -29,9 +29,9 @@ namespace limber
 
 
   /**
-   * The largest size of each component of gravity and body force together, in
-   * the box around the body as it is at the start and at any time of the run,
-   * m/s^2: sampled, where the formula is finite.
+   * Bound of each component of gravity plus body force, m/s^2, in the box
+   * around the body at the start and at any time of the run: sampled, where the
+   * formula is finite.
    */
   template <int dim>
   dealii::Tensor<1, dim>

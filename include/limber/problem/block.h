@@ -12,10 +12,10 @@
 namespace limber
 {
   /**
-   * A quadrilateral or hexahedron: the image of the unit cell under the map
-   * that is linear along each of its edges. Corners and faces are counted in
-   * deal.II's order, in natural coordinates xi in [0, 1]. Only such shapes
-   * have faces that may bear loads.
+   * A quadrilateral or hexahedron: the image of the unit cell under the
+   * multilinear map. Corners and faces are counted in deal.II's order, in
+   * natural coordinates xi in [0, 1]. Only such shapes have faces that may bear
+   * loads.
    */
   template <int dim>
   class BlockShape : public Shape<dim>
@@ -37,15 +37,15 @@ namespace limber
 
     explicit BlockShape(const Vertices &vertices);
 
-    /** The place of natural coordinates. */
+    /** Map from natural coordinates. */
     dealii::Point<dim>
     place(const dealii::Point<dim> &xi) const;
 
-    /** d x_i / d xi_j, m. */
+    /** Jacobian matrix d x_i / d xi_j, m. */
     dealii::Tensor<2, dim>
     jacobian(const dealii::Point<dim> &xi) const;
 
-    /** Volume of a box in natural coordinates, exact, m^dim. */
+    /** Exact volume of a box in natural coordinates, m^dim. */
     double
     volume(const Corners<dim> &part) const;
 

@@ -4,15 +4,13 @@
 
 #include <limber/problem/problem.h>
 
-/** @file What bodies are to each other and to the sides of the box at the
- * start.
+/**
+ * @file Where bodies touch each other and the sides of the box at the start.
  */
 namespace limber
 {
-  /**
-   * Whether the body ends in a side with a face, not in a line or a corner
-   * as a ball does that lies on the floor.
-   */
+  /** Whether the body touches a side with a face, not only in a line or a
+   * corner as a ball on the floor does. */
   template <int dim>
   bool
   has_face_in(unsigned int                side,
@@ -20,10 +18,10 @@ namespace limber
               const GridDescription<dim> &grid);
 
   /**
-   * Whether a body on which nothing acts stays clear of the sides for ever,
-   * also if it grows by a fifth: its centre is at rest whatever it does
-   * otherwise. One that flies meets a side in the end, and a run may be
-   * extended. From places on a lattice. @p face_loads: the scene has some.
+   * Whether a body without loads never reaches a side, even if it grows by a
+   * fifth: its centre is at rest, whatever it does otherwise. A flying body
+   * meets a side in the end, and a run may be extended. Sampled on a lattice.
+   * @p face_loads: the scene has some.
    */
   template <int dim>
   bool
@@ -32,9 +30,9 @@ namespace limber
               const Problem<dim> &problem);
 
   /**
-   * Whether a body ends with a face in a side that holds it; or, in steps of
-   * Newton's method, with faces in sides that together hold it against every
-   * translation, as planes of symmetry do. What moves freely may be thrown
+   * Whether a body is held: it ends with a face in a side that holds it or, in
+   * steps of Newton's method, with faces in sides that together prevent all
+   * translations, like planes of symmetry. In explicit steps it may be thrown
    * off such planes.
    */
   template <int dim>
@@ -43,17 +41,15 @@ namespace limber
 
   /**
    * Whether the bodies of a scene are one piece: they share nodes of the grid,
-   * each directly or by others, and stick to each other there. From places on
-   * a lattice.
+   * directly or by way of others, and stick to each other there. Sampled on a
+   * lattice.
    */
   template <int dim>
   bool
   are_one_piece(const Problem<dim> &problem);
 
-  /**
-   * Throws InputError where a side with a 'velocity' moves inward, so far that
-   * bodies in the current frame would be let go: its nodes stay where they are.
-   */
+  /** Throws InputError where a side with a 'velocity' moves inward so far that
+   * bodies in the current frame would lose contact: its nodes stay in place. */
   template <int dim>
   void
   check_moving_sides(const Problem<dim> &problem);

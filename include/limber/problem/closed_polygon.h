@@ -10,10 +10,10 @@
 namespace limber
 {
   /**
-   * Which side of an edge between @p lower and @p upper a place is on, where
-   * the edge passes its height, lower[1] <= place[1] < upper[1]: whether the
-   * edge lies beyond the place in direction 0. Rounded, but in the same way
-   * for all who share the edge, so that counts of crossings stay exact.
+   * On which side of an edge from @p lower to @p upper a place is, at a height
+   * that the edge passes, lower[1] <= place[1] < upper[1]: whether the edge
+   * lies beyond the place in direction 0. Rounded, but in the same way for all
+   * who share the edge, so that counts of crossings stay exact.
    */
   bool
   is_before_edge(const std::array<double, 2> &place,
@@ -33,11 +33,11 @@ namespace limber
 
 
   /**
-   * The region within closed lines of straight edges in the plane: a place is
-   * inside if a ray from it crosses an odd number of edges (Shimrat 1962,
-   * Commun. ACM 5(8), 434), so loops within loops are holes, whichever way they
-   * go around. Edges are kept in rows: a question costs about as much as the
-   * edges at its height.
+   * The region within closed polygons in the plane, by the even-odd rule: a
+   * place is inside if a ray from it crosses an odd number of edges (Shimrat
+   * 1962, Commun. ACM 5(8), 434), so loops within loops are holes, whichever
+   * way they go around. Edges are kept in rows: a question costs about as much
+   * as the edges at its height.
    */
   class ClosedPolygon
   {
@@ -50,11 +50,11 @@ namespace limber
     bool
     contains(const dealii::Point<2> &place) const;
 
-    /** From the edges; looks at each. */
+    /** Signed distance, by comparison with every edge. */
     SignedDistance<2>
     signed_distance(const dealii::Point<2> &place) const;
 
-    /** Area between the edges of odd and even numbers of crossings, m^2. */
+    /** Area by the even-odd rule, m^2. */
     double
     area() const
     {
@@ -67,7 +67,7 @@ namespace limber
       return box;
     }
 
-    /** Two edges, by number, that cross or lie over each other. */
+    /** Two edges, by number, that intersect or overlap. */
     std::optional<std::pair<std::size_t, std::size_t>>
     crossed_edges() const;
 

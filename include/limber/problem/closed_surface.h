@@ -10,7 +10,7 @@
 
 namespace limber
 {
-  /** Triangles in space that share their corners, by number. */
+  /** Triangles in space with common vertices, by number. */
   struct TriangleMesh
   {
     std::vector<dealii::Point<3>>            corners; // m
@@ -23,17 +23,16 @@ namespace limber
 
 
 
-  /**
-   * Let corners within @p tolerance of each other be one. Without that the
-   * facets of a file, each of which has its own three, share nothing.
-   */
+  /** Merges vertices within @p tolerance of each other. Without that the facets
+   * of a file, each of which has its own three, share nothing. */
   TriangleMesh
   welded(const std::vector<std::array<dealii::Point<3>, 3>> &facets,
          double                                              tolerance);
 
 
 
-  /** An edge that keeps triangles from enclosing a region. */
+  /** An edge at which a triangulated surface is not closed or not consistently
+   * oriented. */
   struct SurfaceFault
   {
     enum class Kind
@@ -46,12 +45,13 @@ namespace limber
     std::size_t                     facet;       // the first one there
     std::size_t                     other_facet; // of the same direction
     std::array<dealii::Point<3>, 2> edge;
-    std::size_t                     n_edges; // of this kind
+    std::size_t                     n_edges; // number of such edges
   };
 
   /**
-   * The first edge along which facets do not run both ways equally often,
-   * open ones before flipped ones; nothing where the surface is closed.
+   * The first edge along which facets do not run both ways equally often, open
+   * ones before flipped ones; nothing where the surface is closed and
+   * consistently oriented.
    */
   std::optional<SurfaceFault>
   find_fault(const TriangleMesh &mesh);
@@ -59,11 +59,11 @@ namespace limber
 
 
   /**
-   * The region within closed surfaces of triangles that all go the same way
-   * around: a place is inside if the facets that a ray from it meets, counted
-   * with the side they are met from, do not cancel (winding number). So
-   * surfaces within surfaces that go the other way around are cavities, and
-   * bodies that overlap are one. Facets are kept in a lattice across the ray.
+   * The region within closed, consistently oriented surfaces of triangles, by
+   * the winding number: a place is inside if the facets that a ray from it
+   * meets, counted with the side they are met from, do not cancel. So surfaces
+   * within surfaces that go the other way around are cavities, and bodies that
+   * overlap are one. Facets are kept in a lattice across the ray.
    */
   class ClosedSurface
   {
@@ -73,7 +73,7 @@ namespace limber
     bool
     contains(const dealii::Point<3> &place) const;
 
-    /** From the facets; the first question of all sorts them. */
+    /** Signed distance; the first call sorts all facets into bins. */
     SignedDistance<3>
     signed_distance(const dealii::Point<3> &place) const;
 
@@ -83,10 +83,8 @@ namespace limber
       return box;
     }
 
-    /**
-     * By Gauss's theorem, m^3, where the surface is in one piece. The volumes
-     * of several need not add up: they may overlap.
-     */
+    /** Volume by Gauss's theorem, m^3, where the surface is in one piece. The
+     * volumes of several need not add up: they may overlap. */
     std::optional<double>
     volume() const
     {
@@ -104,7 +102,8 @@ namespace limber
       double                top; // the largest of these
     };
 
-    /** Cells across the ray, and the facets over each: as rows of a table. */
+    /** Cells of a lattice across the ray, and the facets over each, as rows of
+     * a table (compressed rows). */
     struct Lattice
     {
       Place                      lower, edge;
@@ -115,7 +114,7 @@ namespace limber
       std::size_t
       index(const unsigned int direction, const double x) const;
 
-      /** First and last cell over which a triangle may lie, each way. */
+      /** Range of cells that a triangle overlaps, in each direction. */
       std::array<std::size_t, 4>
       range(const std::array<Place, 3> &triangle) const;
     };
@@ -123,11 +122,11 @@ namespace limber
     void
     set_direction(const TriangleMesh &mesh, unsigned int direction);
 
-    /** Cells about as large as facets, without these. */
+    /** A lattice of cells about as large as facets, without the table. */
     Lattice
     fitting_lattice() const;
 
-    /** How many facets lie over the cells, summed over these. */
+    /** Number of pairs of a facet and a cell that overlap. */
     std::size_t
     count(const Lattice &cells) const;
 
@@ -139,7 +138,7 @@ namespace limber
     Lattice               lattice;
     Corners<3>            box;
     std::optional<double> enclosed;
-    // Made when somebody asks for a distance, which few do
+    // built for the first call of signed_distance(), which is rare
     mutable std::shared_ptr<const NearestFacet> nearest;
   };
 } // namespace limber

@@ -7,9 +7,9 @@
 namespace limber
 {
   /**
-   * The largest n . x of all places x of a shape, m, to 1e-9 of its size: how
-   * far it reaches in the direction @p n, of length 1. The bounding box alone
-   * does not tell, if it is not tight or n is not along an axis. Nothing if
+   * Support function of a shape: the largest n . x of all its places x, m, to
+   * 1e-9 of its size, in the direction @p n of unit length. The bounding box
+   * alone does not tell, if it is not tight or n is not along an axis. Empty if
    * no place of the shape is found, as it is thinner than 1/256 (in three
    * dimensions 1/64) of its bounding box.
    */

@@ -14,8 +14,8 @@ namespace limber
 
 
   /**
-   * Where the places that a file names are in the scene: scaled, rotated
-   * about the origin of the file, and shifted, in this order.
+   * Transformation from the coordinates of a file to those of the scene:
+   * scaled, rotated about the origin of the file, and shifted, in this order.
    */
   template <int dim>
   struct FilePlacement

@@ -7,26 +7,27 @@
 namespace limber
 {
   /**
-   * The largest Courant number C of explicit steps with a transfer that filters
-   * the velocity, less a tenth; infinite with any other transfer.
+   * Stability limit of the Courant number C of explicit steps with a transfer
+   * that filters the velocity, less a tenth; infinite with any other transfer.
    *
-   * With the lumped mass M, the full one M_full and the stiffness K, a step of
-   * FMPM(k) makes of the velocity w that strains and of the displacement u
+   * With the lumped mass M, the consistent mass M_full and the stiffness K, a
+   * step of FMPM(k) updates the velocity w that strains and the displacement u
+   * by
    *
    *   w' = Q w - dt F M^-1 K u,  u' = u + dt w',
    *   Q = 1 - (1 - A)^k,  F = A^-1 Q,  A = M^-1 M_full,
    *
    * which is stable if dt^2 times the largest eigenvalue of F (1 + Q)^-1 M^-1 K
-   * is below 2. XPIC(k) has 1 for F. Nodes at the rim that points hardly reach
-   * have an A near 0, so an F near k, and the stiffness G^2 / N of one point.
-   * It is bounded but for linear functions, for which this is the bound of full
-   * cells: cut ones have none (doc/theory/kernels.md).
+   * is below 2. XPIC(k) has 1 for F. Nodes at the surface with next to no mass
+   * (small cut) have an A near 0, so an F near k, and the stiffness G^2 / N of
+   * one point. It is bounded except for linear functions, for which this is the
+   * limit of full cells: cut ones have none (doc/theory/kernels.md).
    */
   template <int dim>
   double
   courant_number_of_filter(const Problem<dim> &problem);
 
-  /** Lower the Courant number of the scene to that, and say so. */
+  /** Lowers the Courant number of the scene to that limit, and says so. */
   template <int dim>
   void
   obey_filter(Problem<dim> &problem);

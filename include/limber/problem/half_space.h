@@ -6,7 +6,7 @@
 
 namespace limber
 {
-  /** All on one side of a line or plane, without end; for obstacles only. */
+  /** A half-space, for obstacles only. */
   template <int dim>
   class HalfSpaceShape : public Shape<dim>
   {

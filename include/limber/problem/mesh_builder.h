@@ -15,8 +15,8 @@
 #include <unordered_map>
 
 /**
- * @file What all readers of mesh files need: the words of a file, and a mesh
- * that looks at each node and element before it takes it.
+ * @file Common tools of the readers of mesh files: the words of a file, and a
+ * mesh that checks each node and element before it takes it.
  */
 namespace limber
 {
@@ -95,7 +95,7 @@ namespace limber
       return static_cast<long>(*value);
     }
 
-    /** A count of things of which each takes @p least letters at least. */
+    /** A count of things that take at least @p least letters each. */
     long
     count(const std::string &what, const std::size_t least)
     {
@@ -116,7 +116,7 @@ namespace limber
       skip_blanks();
     }
 
-    /** On to behind this word; it has to come. */
+    /** Skips to behind this word, which has to come. */
     void
     skip_to(const std::string &end)
     {
@@ -152,7 +152,7 @@ namespace limber
 
 
 
-  /** Takes nodes and elements as they come, and looks at each. */
+  /** Collects nodes and elements and checks each. */
   template <int dim>
   class MeshBuilder
   {
@@ -182,7 +182,9 @@ namespace limber
       mesh.vertices.push_back(point);
     }
 
-    /** Reads the nodes of the element; those of faces and edges are left. */
+    /**
+     * Reads the nodes of the element; mid-face and mid-edge nodes are dropped.
+     */
     void
     read_element(const long number, const ElementKind &kind)
     {
@@ -255,7 +257,8 @@ namespace limber
       mesh.cells.push_back(cell);
     }
 
-    /** The volume that the edges at a corner span, positive in our order. */
+    /** Volume spanned by the edges at a corner (Jacobian determinant), positive
+     * in our order of corners. */
     double
     volume_at(const dealii::CellData<dim> &cell, const unsigned int v) const
     {
@@ -273,7 +276,7 @@ namespace limber
       return determinant(edges);
     }
 
-    /** Some programs go around the other way. */
+    /** Some programs number corners the other way around. */
     void
     orient(const std::string &name, dealii::CellData<dim> &cell) const
     {

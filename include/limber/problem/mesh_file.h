@@ -12,7 +12,7 @@
 /** @file Meshes of quadrilaterals or hexahedra from files of other programs. */
 namespace limber
 {
-  /** Places of nodes and elements by these; in deal.II's order. */
+  /** Positions of the nodes, and elements by these, in deal.II's order. */
   template <int dim>
   struct CoarseMesh
   {
@@ -42,13 +42,12 @@ namespace limber
   };
 
   /**
-   * The mesh that a text holds, in the format msh (Gmsh's 2 and 4.1, ASCII),
-   * inp (AVS UCD) or vtk (legacy, ASCII). Elements of lower dimension are left
-   * out. Each count, node and
-   * element is looked at before it is used; throws InputError with line and
-   * number of the first that is wrong: another shape of element, nodes that
-   * are missing, given twice or not finite, elements that are twisted, flat or
-   * given twice, faces of more than two elements.
+   * The mesh in a text of format msh (Gmsh's 2 and 4.1, ASCII), inp (AVS UCD)
+   * or vtk (legacy, ASCII). Elements of lower dimension are left out. Each
+   * count, node and element is checked before it is used; throws InputError
+   * with line and number of the first that is wrong: another shape of element,
+   * nodes that are missing, given twice or not finite, elements that are
+   * twisted, flat or given twice, faces of more than two elements.
    */
   template <int dim>
   CoarseMesh<dim>

@@ -11,12 +11,12 @@
 
 namespace limber
 {
-  /** Edges of one element only, which go around the mesh. */
+  /** Boundary edges of a mesh, which belong to one element only. */
   ClosedPolygon
   region_of(const CoarseMesh<2> &mesh);
 
   /**
-   * The same with faces. One of four corners becomes four triangles around its
+   * Boundary faces. One of four corners becomes four triangles around its
    * centre: where its corners are not in one plane, these enclose as much as
    * the bilinear face does.
    */

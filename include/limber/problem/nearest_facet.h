@@ -11,9 +11,8 @@
 namespace limber
 {
   /**
-   * Which of many triangles is nearest to a place. They are kept in the bins of
-   * a lattice; bins are asked from that next to the place outwards, until no
-   * other can be nearer.
+   * Nearest of many triangles. They are kept in the bins of a lattice; bins are
+   * searched in growing shells around the place until no other can be nearer.
    */
   class NearestFacet
   {

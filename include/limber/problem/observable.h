@@ -20,7 +20,7 @@ namespace limber
 
 
 
-  /** A number that the scene asks for in every row of the statistics. */
+  /** A quantity that the scene asks for in every row of the statistics. */
   template <int dim>
   struct Observable
   {
@@ -45,15 +45,15 @@ namespace limber
 
 
 
-  /** What a kind of observable looks at. */
+  /** What kinds of observables observe. */
   enum class ObservedPart
   {
-    place,    // where the material of a place has gone, and how fast
-    material, // the same, its stress, volume and variables of its law
+    place,    // position and velocity of the point near a place
+    material, // the same and its stress, volume ratio and state
     body,     // sums over a body, or over all
-    extent,   // how far a body, or all, reach in the direction
-    largest,  // the largest value of a variable in the points of a body
-    side,     // the force on a side of the box
+    extent,   // largest coordinate of a body, or of all, in the direction
+    largest,  // the largest value of a state variable in a body
+    side,     // reaction force of a side of the box
     obstacle, // force and moment on an obstacle
     column    // another observable, over time
   };
@@ -65,9 +65,9 @@ namespace limber
 
 
   /**
-   * What an observable sees of one row, of material points and of finite
-   * elements alike: the part that its kind looks at is filled. What cannot be
-   * told is not a number.
+   * What an observable sees at one row, alike for material points and finite
+   * elements: the part that its kind observes is filled. Unknown values are
+   * NaN.
    */
   template <int dim>
   struct Seen

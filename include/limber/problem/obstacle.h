@@ -9,8 +9,8 @@
 namespace limber
 {
   /**
-   * A rigid obstacle: a shape that nothing moves but its formulas. What it was
-   * made of at X is at time t at
+   * A rigid obstacle with prescribed motion. Its material point X is at time t
+   * at
    *
    *   x = c + Q(t) (X - c) + u(t),
    *
@@ -22,7 +22,8 @@ namespace limber
   {
     std::string                       name;
     std::shared_ptr<const Shape<dim>> shape; // where u = 0 and Q = 1
-    // Coulomb's coefficient; infinite where material sticks that presses on it
+    // Friction coefficient (Coulomb); infinite: material sticks while it
+    // presses on the obstacle
     double               friction = 0;
     dealii::Point<dim>   centre;       // c, m; moments are taken about c + u
     dealii::Tensor<1, 3> axis;         // of unit length
@@ -35,8 +36,8 @@ namespace limber
       return !displacement.empty() || !rotation.empty();
     }
 
-    /** Whether it takes other places than before: not so if it is round and
-     * turns about its own axis. */
+    /** Whether its surface moves: not if it is a body of revolution that turns
+     * about its own axis. */
     bool
     changes_place() const
     {
@@ -47,24 +48,24 @@ namespace limber
 
 
 
-  /** Where an obstacle is at a time. */
+  /** An obstacle in its position at some time. */
   template <int dim>
   class ObstaclePlace
   {
   public:
     ObstaclePlace(const Obstacle<dim> &obstacle, double time);
 
-    /** From the surface as it is now; the shape knows its distance. */
+    /** From its surface in this position. */
     SignedDistance<dim>
     distance(const dealii::Point<dim> &place) const;
 
-    /** Where what is here belongs in the shape, and the other way round. */
+    /** Map from the present position to the initial one, and back. */
     dealii::Point<dim>
     start_of(const dealii::Point<dim> &place) const;
     dealii::Point<dim>
     place_of(const dealii::Point<dim> &start) const;
 
-    /** c + u */
+    /** c + u, the present centre */
     dealii::Point<dim>
     centre() const;
 

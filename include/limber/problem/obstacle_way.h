@@ -7,9 +7,9 @@
 namespace limber
 {
   /**
-   * How far the corner of an obstacle's box that goes the furthest moves in a
-   * step of so many seconds from @p time on, m; where the obstacle has no end,
-   * the corner of the grid. Infinite or undefined where its place is.
+   * Largest displacement, m, of a corner of the obstacle's bounding box in a
+   * step from @p time on, s; of the corners of the grid where the obstacle is
+   * unbounded. Infinite or undefined where its position is.
    */
   template <int dim>
   double
@@ -19,8 +19,9 @@ namespace limber
                   double                      step);
 
   /**
-   * @p step, or so much of it that no obstacle of the scene moves by more than
-   * the Courant number in edges of the smallest cells; it starts at @p time.
+   * @p step from @p time on, or as much of it as keeps the displacement of each
+   * obstacle below the Courant number times the smallest edge of a cell (CFL
+   * condition).
    */
   template <int dim>
   double

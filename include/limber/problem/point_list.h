@@ -51,9 +51,9 @@ namespace limber
 
 
   /**
-   * Points from a file, each with its own volume or mass. As a region it is
-   * where their boxes are, of their volumes around them: what needs the surface
-   * of a body refuses it.
+   * Points from a file, each with its own volume or mass. As a region it is the
+   * union of the boxes of these volumes around the points; it has no surface
+   * for what needs one.
    */
   template <int dim>
   class PointListShape : public Shape<dim>, public FromFile

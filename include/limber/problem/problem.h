@@ -25,11 +25,12 @@
 #include <vector>
 
 /**
- * @file The whole question of a run as plain data: no mesh, no points. It is
- * filled once by read_problem() and handed on as const.
+ * @file The input of a run as plain data, without mesh or points. It is filled
+ * once by read_problem() and handed on as const.
  */
 namespace limber
 {
+  /** How points are seeded in the cells. */
   enum class Placement
   {
     automatic, // chosen by what the body is, when the scene is read
@@ -40,7 +41,8 @@ namespace limber
     fitted     // a lattice in the natural coordinates of a box or block
   };
 
-  /** What happens to the scatter of a history within a cell. */
+  /** What happens to the scatter of a history variable among the points of a
+   * cell. */
   enum class HistoryTreatment
   {
     keep,     // every point keeps its own value
@@ -49,13 +51,13 @@ namespace limber
     replace   // it is replaced by the mean of the cell in every step
   };
 
-  /** What of the state at the end of a step acts in it. */
+  /** Which forces of a step are those of its end. */
   enum class TimeIntegration
   {
-    explicit_steps, // nothing
+    explicit_steps, // none
     semi_implicit,  // the pressure of liquids
-    implicit_steps, // all forces, and those of the beginning as much
-    quasi_static    // all forces, which are in equilibrium
+    implicit_steps, // all, along with those of the start
+    quasi_static    // all, in equilibrium
   };
 
   /** Whether a step is solved by Newton's method. */
@@ -66,19 +68,22 @@ namespace limber
            integration == TimeIntegration::quasi_static;
   }
 
-  /** Of a quasi-static run whose 'Time step' is 0. */
+  /** Number of load steps of a quasi-static run with 'Time step' 0. */
   constexpr unsigned int default_load_steps = 10;
 
-  /** When in a step the stress follows the motion. */
+  /** When in a step the stress is updated. */
   enum class StressUpdateOrder
   {
-    automatic, // by the materials
-    usf,       // update stress first
-    usl,       // update stress last
-    musl,      // the same, with the velocity that points give back
-    usavg      // half of it first, half last
+    automatic, // chosen by the materials
+    usf,       // update stress first (USF)
+    usl,       // update stress last (USL)
+    musl,      // USL with the velocity that points give back (MUSL)
+    usavg      // half of it first, half last (USAVG)
   };
 
+  /**
+   * How points take their velocity from the nodes (doc/theory/transfers.md).
+   */
   enum class Transfer
   {
     pic,
@@ -86,10 +91,10 @@ namespace limber
     apic,
     aflip, // affine as APIC, increments as FLIP
     fmpm,  // full mass, of some order (FMPM(k))
-    xpic   // the same of the velocity before the step (XPIC(k))
+    xpic   // the same for the velocity before the step (XPIC(k))
   };
 
-  /** Whether points carry a gradient of their velocity to the nodes. */
+  /** Whether points carry a velocity gradient, which P2G transfers to nodes. */
   constexpr bool
   is_affine(const Transfer transfer)
   {
@@ -129,19 +134,20 @@ namespace limber
   };
 
   /**
-   * Under which a solid starts: the weight of what is above and a share of it
-   * across, or every component by its formula. Cauchy stress, Pa; components
-   * in tension, the overburden in compression.
+   * Initial stress of a solid: the overburden pressure of the weight above with
+   * a lateral ratio K0, or all components by formulas. Cauchy stress, Pa;
+   * components positive in tension, the overburden in compression.
    */
   template <int dim>
   struct InitialStress
   {
     Formula<dim> lateral_ratio; // K0; empty: components
-    Formula<dim> overburden;    // on the highest place; empty: none
+    Formula<dim> overburden;    // pressure on the highest place; empty: none
     // xx, yy, zz, xy, yz, zx; empty: zero
     std::array<Formula<dim>, 6> components;
   };
 
+  /** A deformable body as the scene describes it. */
   template <int dim>
   struct Body
   {
@@ -149,8 +155,8 @@ namespace limber
     std::shared_ptr<const Shape<dim>> shape;
     std::array<unsigned int, dim>     points_per_cell_edge{};
     Placement                         placement = Placement::regular;
-    // Of a box or block: parts of its edges in each natural direction, for the
-    // placement 'fitted' and for the pieces of loaded faces
+    // Of a box or block: number of parts along its edges in each natural
+    // direction, for the placement 'fitted' and for the pieces of loaded faces
     std::array<unsigned int, dim>     lattice{};
     Formula<dim>                      initial_velocity; // dim components, m/s
     bool                              hydrostatic = false;
@@ -158,49 +164,53 @@ namespace limber
     std::optional<InitialStress<dim>> initial_stress;   // of solids
 
     std::string         law;      // by name, as in the list of laws
-    std::vector<double> material; // its entries, in its order
+    std::vector<double> material; // its parameters, in the order of the law
 
     bool is_liquid  = false; // bears pressure, but no shape of its own
     bool is_plastic = false; // may flow plastically
-    // Points go on to be what they were to the surface: it flows like metal, if
-    // at all.
+    // Whether points at the surface remain there: it does not flow, or only as
+    // metal does.
     bool keeps_surface = true;
 
-    // By number of the law's variables: 1 component each; those not given are
-    // absent
+    // By number of the law's state variable: 1 component each; those not given
+    // are absent
     std::map<unsigned int, Formula<dim>> initial_state;
 
     Frame             frame             = Frame::current;
     Treatment         treatment         = Treatment::none;
     HourglassResponse hourglass         = HourglassResponse::bending;
     double            hourglass_control = 0; // chi, without dimension
-    // Without dimension; where the pressure is implicit, the share gamma of
-    // the compact Laplacian
+    // Without dimension; where the pressure is implicit, the share gamma of the
+    // compact Laplacian in its equation
     double checkerboard_control = 0;
-    // C, without dimension, of liquids (ParticleShifting)
+    // C of the particle shifting of liquids, without dimension
+    // (ParticleShifting)
     double particle_shifting = 0;
-    // Found together with the velocity at the end of the step
+    // Whether the pressure at the end of the step is solved for, together with
+    // the velocity
     bool implicit_pressure = false;
-    // Only above zero, with an implicit pressure; otherwise the law sees to it
+    // Whether the pressure system cuts off tension, if the pressure is
+    // implicit; otherwise the law does
     bool cuts_tension = false;
-    // Of what nodes hold beyond their room, the share that is pushed apart in
-    // a step as long as motion allows
+    // Density control: share of the excess of the points' volume over that of a
+    // node which a step removes, as far as the motion in it allows
     double density_control = 0;
-    // of the volume ratios, and of the deviatoric strain
+    // of the volume ratio, and of the deviatoric strain
     HistoryTreatment history            = HistoryTreatment::keep;
     HistoryTreatment deviatoric_history = HistoryTreatment::keep;
     double           relaxation_time    = 0; // s, for HistoryTreatment::relax
 
-    // Whether points become two where they are stretched so far that cells
+    // Whether points are split where they are stretched so far that cells
     // between them would soon be empty
     bool splits_stretched_points = false;
 
-    // Which fields of nodes it gives to and takes from: bodies that may part
-    // have different ones
+    // Number of the nodal velocity field: bodies that may separate have
+    // different ones (multi-field contact)
     unsigned int nodal_field = 0;
 
-    // Whether it feels sides with Side::meets_surfaces where its material ends,
-    // as obstacles, and not at nodes (choose_side_contact())
+    // Whether contact with sides that have Side::meets_surfaces acts at the
+    // surface of the body, as with obstacles, and not at nodes
+    // (choose_side_contact())
     bool meets_sides = false;
 
     /** Mass per volume in the reference state, kg/m^3. */
@@ -211,20 +221,20 @@ namespace limber
     }
   };
 
-  /** What cells are asked for that may have to become finer. */
+  /** What a refinement criterion asks of a cell. */
   enum class RefinementCriterion
   {
-    region,   // where they are
-    body,     // whether they hold points of some bodies
-    surface,  // how far it is from them to an empty cell
-    obstacle, // how far it is from them to an obstacle
-    contact,  // how far it is from them to a body that may part from theirs
-    stress,   // how far mean stress jumps from them to the next ones
-    rate,     // how fast they are sheared
-    plastic_strain // how far they have flowed
+    region,        // its place
+    body,          // whether it holds points of certain bodies
+    surface,       // its distance from an empty cell (free surface)
+    obstacle,      // its distance from an obstacle
+    contact,       // its distance from a body that may separate
+    stress,        // the jump of mean stress to its neighbours
+    rate,          // the shear rate
+    plastic_strain // plastic strain
   };
 
-  /** Whether it compares a number per cell with a scale. */
+  /** Whether the criterion compares an indicator of the cell with a scale. */
   inline bool
   has_scale(const RefinementCriterion criterion)
   {
@@ -233,7 +243,9 @@ namespace limber
            criterion == RefinementCriterion::plastic_strain;
   }
 
-  /** Where cells of a level are wanted: a criterion, within a region. */
+  /**
+   * Where cells of a level are wanted: a refinement criterion within a region.
+   */
   template <int dim>
   struct Refinement
   {
@@ -243,14 +255,14 @@ namespace limber
     Corners<dim>        box;           // m
     Formula<dim>        where;    // 1 component, positive inside; empty: all
     bool depends_on_time = false; // the formula, or an obstacle that moves
-    // Of 'surface', 'obstacle' and 'contact', in cells
+    // Of 'surface', 'obstacle' and 'contact': range, in cells
     int distance = 1;
     // Of the criterion 'body', and those with a scale; empty: all
     std::vector<std::string> bodies;
     std::vector<std::string> obstacles; // of 'obstacle'; empty: all
-    double scale = 0; // beyond it cells are divided; of 'stress' in Pa
+    double scale = 0; // cells above it are refined; of 'stress' in Pa
 
-    /** Whether cells change in the run because of it. */
+    /** Whether the mesh may change during the run because of it. */
     bool
     is_moving() const
     {
@@ -270,6 +282,7 @@ namespace limber
     }
   };
 
+  /** The box of the background grid, its kernel and its adaptive refinement. */
   template <int dim>
   struct GridDescription
   {
@@ -278,14 +291,14 @@ namespace limber
     KernelKind                    kernel = KernelKind::linear;
     // Why 'Kernel = auto' does not take splines in this scene; empty if it may
     std::string against_splines;
-    // How often cells may be halved; 0: all are as the scene has them
+    // How often a cell may be refined; 0: uniform grid
     unsigned int                 levels = 0;
     std::vector<Refinement<dim>> refinements;
-    unsigned int adapt_every = 0; // steps; 0: as far as points have gone
-    // Whether points that are finer than their cells may become one
+    unsigned int adapt_every = 0; // steps; 0: by the distance points have moved
+    // Whether points that are finer than their cells may be merged
     bool joins_points = false;
 
-    /** Whether criteria may want something else though no point has moved. */
+    /** Whether criteria may ask for another mesh though no point has moved. */
     bool
     may_change_at_rest() const
     {
@@ -321,6 +334,7 @@ namespace limber
     }
   };
 
+  /** Gravity, body force and loads on faces. */
   template <int dim>
   struct Loads
   {
@@ -328,19 +342,19 @@ namespace limber
     std::optional<Formula<dim>> body_force; // dim components, per mass, m/s^2;
                                             // empty where identically zero
     std::vector<FaceLoad<dim>> faces;
-    // Share of gravity and loads that acts, of a quasi-static run: 1 component,
-    // a function of time; empty: the share of the run that has passed
+    // Load factor of a quasi-static run, of gravity and loads: 1 component, a
+    // function of time; empty: proportional to time, 1 at the end
     Formula<dim> factor;
   };
 
-  /** What two bodies do where they touch. */
+  /** Contact law of two bodies. */
   enum class ContactLaw
   {
-    stick,   // share the velocities of nodes, as bodies in no pair do
-    separate // press and part; slide with Coulomb friction, or without
+    stick,   // common nodal velocity, as without a pair
+    separate // unilateral contact, with Coulomb friction or without
   };
 
-  /** Two bodies that touch each other in a way of their own. */
+  /** Two bodies with a contact law of their own. */
   struct ContactPair
   {
     std::string                 name;
@@ -349,24 +363,27 @@ namespace limber
     double                      friction = 0; // coefficient, without dimension
   };
 
+  /** Time integration, transfer and their parameters. */
   struct Method
   {
     TimeIntegration   integration    = TimeIntegration::explicit_steps;
     StressUpdateOrder order          = StressUpdateOrder::automatic;
     Transfer          transfer       = Transfer::flip;
     unsigned int      transfer_order = 4; // k of FMPM(k) and XPIC(k)
-    unsigned int transfer_period = 1; // they act every so many steps, else FLIP
+    unsigned int transfer_period = 1; // filtered every so many steps, else FLIP
     double       blend_time      = 0; // s; FLIP share 1 - dt/time, 0: pure FLIP
     double       damping_rate    = 0; // alpha of the acceleration -alpha v, 1/s
     double       courant_number  = 0.4; // C
     double       time_step       = 0;   // s; 0: from the Courant number
     double       lost_points_limit = 0; // share of all points that may be lost
     double energy_growth_limit = 1; // drift over energy scale that stops a run
-    // Of Newton's method: residual over forces; stiffness against jumps of the
-    // strain next to the surface, over Young's modulus
+    // Of Newton's method: tolerance of the residual over forces; ghost penalty:
+    // stiffness against jumps of the strain next to the surface, over Young's
+    // modulus
     double newton_tolerance = 1e-6;
     double ghost_penalty    = 0.03;
-    // Of implicit steps at infinite frequency: generalised-alpha below 1
+    // Of implicit steps, at infinite frequency: 1, or below it
+    // generalised-alpha
     double spectral_radius = 1;
   };
 
@@ -404,7 +421,7 @@ namespace limber
     explicit_steps  // central differences
   };
 
-  /** How the finite element reference of the scene is computed. */
+  /** How the finite element reference solution of the scene is computed. */
   struct ReferenceRequest
   {
     ReferenceElement          element    = ReferenceElement::q2_p1_p1;
@@ -419,7 +436,8 @@ namespace limber
     unsigned int              frequencies = 0;    // how many; 0: solve in time
   };
 
-  /** Formulas of initial place and time; those not given are empty. */
+  /** Exact solution: formulas of initial place and time; those not given are
+   * empty. */
   template <int dim>
   struct ExactSolution
   {
@@ -427,6 +445,7 @@ namespace limber
     Formula<dim> pressure;               // 1 component, Pa
   };
 
+  /** A value that an observable should have, for the verdict of the run. */
   struct Check
   {
     std::string           name;
@@ -456,13 +475,11 @@ namespace limber
     std::vector<Observable<dim>> observables;
     std::vector<Check>           checks;
     std::vector<std::string>     notes; // what the reader decided, for the log
-    // Entries that a run cannot change on its way, as "name = value"
+    // Entries that a resumed run must not change, as "name = value"
     std::vector<std::string> fixed_entries;
 
-    /**
-     * Whether the nodes of a field leave such sides to the surfaces of their
-     * bodies, all of which feel them there.
-     */
+    /** Whether all bodies of a nodal field have contact with the sides at their
+     * surfaces, so that its nodes are free there. */
     bool
     meets_sides(const unsigned int nodal_field) const
     {
@@ -474,7 +491,8 @@ namespace limber
                          });
     }
 
-    /** Whether there are obstacles, or sides that are felt like them. */
+    /** Whether there are obstacles, or sides with contact at the surfaces of
+     * bodies. */
     bool
     has_rigid_contact() const
     {
@@ -484,8 +502,8 @@ namespace limber
              });
     }
 
-    /** Whether loads grow in proportion to the time, and act as they are when
-     * the run ends; and by what formula they do, "t/2". */
+    /** Whether the load factor is proportional to the time and 1 at the end of
+     * the run; its formula, "t/2". */
     bool
     loads_grow_until_the_end() const
     {
@@ -499,7 +517,7 @@ namespace limber
       return "t/" + to_text(end_time);
     }
 
-    /** Whether points of any body become two where they are stretched. */
+    /** Whether stretched points of any body are split. */
     bool
     splits_stretched_points() const
     {
@@ -509,7 +527,7 @@ namespace limber
       return false;
     }
 
-    /** Whether the grid, or the points of a body, change on the way. */
+    /** Whether the mesh or the set of points changes during the run. */
     bool
     adapts() const
     {

@@ -10,9 +10,9 @@
 #include <vector>
 
 /**
- * @file The parts that read_problem() is made of, one file each. Every part
- * declares its entries and reads them; what contradicts something read
- * before it, it refuses. All read functions throw InputError.
+ * @file The parts of read_problem(), one file each. Every part declares its
+ * entries, reads them, and refuses what contradicts a part before it. All read
+ * functions throw InputError.
  */
 namespace limber
 {
@@ -37,8 +37,8 @@ namespace limber
   unsigned int
   side_index(const std::string &name);
 
-  /** Of the face of the box in a side: places on a lattice, its corners among
-   * them. */
+  /** Sample places on the face of the box in a side, on a lattice, its corners
+   * among them. */
   template <int dim>
   std::vector<dealii::Point<dim>>
   places_in_side(unsigned int side, const GridDescription<dim> &grid);
@@ -49,7 +49,7 @@ namespace limber
                      const std::string &text,
                      const std::string &separator = ", ");
 
-  /** "x, y, t" or "x, y, z, t", to speak about formulas. */
+  /** The arguments of formulas for messages: "x, y, t" or "x, y, z, t". */
   std::string
   variable_names(const unsigned int dim);
 
@@ -57,7 +57,9 @@ namespace limber
   void
   declare_constants(Parameters &parameters);
 
-  /** Those of the top level and, with priority, those of the section. */
+  /**
+   * The constants of the top level and, with priority, those of the section.
+   */
   Constants
   read_constants(const Section &section);
 
@@ -78,7 +80,7 @@ namespace limber
   Corners<dim>
   corners(const GridDescription<dim> &grid);
 
-  /** 'Lower corner' and 'Upper corner', those of a default where empty. */
+  /** 'Lower corner' and 'Upper corner'; empty ones are taken from a default. */
   template <int dim>
   Corners<dim>
   read_corners(const Section &section, const Corners<dim> &default_box);
@@ -129,7 +131,7 @@ namespace limber
               const std::vector<std::string> &bodies,
               GridDescription<dim>           &grid);
 
-  /** Refuses what does not go with cells of unequal size; needs all else. */
+  /** Refuses what does not work on cells of several sizes; needs all else. */
   template <int dim>
   void
   check_levels(const Section &root, const Problem<dim> &problem);
@@ -161,7 +163,7 @@ namespace limber
   void
   declare_shape(Parameters &parameters);
 
-  /** The sections that belong to the entry 'Shape' beside them. */
+  /** The sections that details of the entry 'Shape' may be in. */
   void
   declare_shape_sections(Parameters                     &parameters,
                          const unsigned int              dim,
@@ -187,24 +189,27 @@ namespace limber
                  const SceneNames  &names);
 
   /**
-   * Chooses what is 'auto' of the frames and the kernel, with a note for the
-   * log; refuses what either cannot do (source/problem/frame_and_kernel.cc).
-   * Needs the sides, and of the bodies all but treatment and points.
+   * Resolves 'auto' of the frames and the kernel, with a note for the log;
+   * refuses what either cannot do (source/problem/frame_and_kernel.cc). Needs
+   * the sides, and of the bodies all but treatment and points.
    */
   template <int dim>
   void
   choose_frames_and_kernel(const Section &root, Problem<dim> &problem);
 
   /**
-   * Notes for the log on what frame and kernel of solids do badly: bending
-   * across the cells, torsion, rotation (source/problem/solid_motion.cc).
+   * Notes for the log on motions of solids for which frame and kernel are
+   * inaccurate: bending across the cells, torsion, rotation
+   * (source/problem/solid_motion.cc).
    */
   template <int dim>
   void
   warn_of_solid_motion(Problem<dim> &problem);
 
-  /** By which angle the initial velocity of a body turns it until the end of
-   * the run, if nothing stops it, about (source/problem/solid_motion.cc). */
+  /**
+   * Approximate angle, rad, by which the initial velocity rotates a body until
+   * the end of the run, if nothing stops it (source/problem/solid_motion.cc).
+   */
   template <int dim>
   double
   initial_rotation(const Body<dim> &body, double end_time);
@@ -227,25 +232,23 @@ namespace limber
                      const Problem<dim> &problem,
                      Body<dim>          &body);
 
-  // Where the points of bodies are (source/problem/read_placement.cc)
+  // Placement of points (source/problem/read_placement.cc)
 
-  /** Whether a shape is a block whose faces all lie across the axes. */
+  /** Whether a shape is a block whose faces are all normal to the axes. */
   template <int dim>
   bool
   is_upright(const Shape<dim> &shape);
 
-  /** What the surfaces of bodies may meet in a scene. */
+  /** With what the surfaces of bodies may come into contact in a scene. */
   struct Meetings
   {
     bool obstacles = false;
-    bool bodies    = false; // each other, in pairs
-    bool sides     = false; // which are felt like obstacles
+    bool bodies    = false; // each other, in contact pairs
+    bool sides     = false; // sides that act at the surfaces of bodies
   };
 
-  /**
-   * How many points a body has, and where; its shape and kernel are known, and
-   * what it @p meets.
-   */
+  /** Number of points of a body and their placement; its shape and kernel are
+   * known, and what it @p meets. */
   template <int dim>
   void
   read_placement(const Section  &section,
@@ -259,10 +262,8 @@ namespace limber
   declare_contact(Parameters                     &parameters,
                   const std::vector<std::string> &pairs);
 
-  /**
-   * The pairs, and which fields of nodes their bodies have; needs the bodies
-   * and the method, and refuses what does not go with it.
-   */
+  /** The contact pairs and the nodal fields of bodies; needs the bodies and the
+   * method, and refuses what does not go with it. */
   template <int dim>
   void
   read_contact(const Section &root, Problem<dim> &problem);
@@ -294,26 +295,27 @@ namespace limber
 
   // Of bodies and method (source/problem/time_integration.cc)
 
-  /** Which bodies have an implicit pressure, and whether they can. */
+  /** Time integration of the word 'auto', and which bodies have an implicit
+   * pressure; throws InputError where that is not possible. */
   template <int dim>
   void
   choose_time_integration(const Section &root, Problem<dim> &problem);
 
-  /** Body::history of liquids that leave it to 'auto'. Time integration,
+  /** Resolves the 'History' of liquids that is 'auto'. Time integration,
    * bodies, sides and obstacles are known. */
   template <int dim>
   void
   choose_histories(const Section &root, Problem<dim> &problem);
 
-  /** How points of liquids are kept from gathering: Body::density_control and
+  /** How clumping of points of liquids is prevented: Body::density_control and
    * particle_shifting. Time integration, bodies and obstacles are known. */
   template <int dim>
   void
   choose_spread_of_points(const Section &root, Problem<dim> &problem);
 
-  // Steps that Newton's method solves (source/problem/newton_scene.cc)
+  // Steps by Newton's method (source/problem/newton_scene.cc)
 
-  /** Whether they can do all that the scene asks for; else InputError. */
+  /** Throws InputError for what they do not support. */
   template <int dim>
   void
   check_newton_scene(const Section &root, Problem<dim> &problem);

@@ -25,7 +25,7 @@ namespace limber
 
 
 
-  /** How far a place is from the surface of a shape. */
+  /** Signed distance of a place from the surface of a shape (level set). */
   template <int dim>
   struct SignedDistance
   {
@@ -36,7 +36,7 @@ namespace limber
 
 
 
-  /** What of a region is inside a shape. */
+  /** Moments of the part of a cell or box inside a shape. */
   template <int dim>
   struct PartInside
   {
@@ -48,10 +48,8 @@ namespace limber
 
 
 
-  /**
-   * The region that a body fills at the start, or an obstacle; boundaries
-   * belong to it.
-   */
+  /** The region of a body at the start, or of an obstacle; closed, that is, its
+   * boundary belongs to it. */
   template <int dim>
   class Shape
   {
@@ -61,26 +59,27 @@ namespace limber
     virtual bool
     contains(const dealii::Point<dim> &point) const = 0;
 
-    /** A box that holds the whole shape, as tight as is cheaply known. */
+    /** A box around the whole shape, as tight as is cheaply known. */
     virtual Corners<dim>
     bounding_box() const = 0;
 
-    /** m^dim, where a formula gives it. */
+    /** Volume, m^dim; empty unless there is a formula for it. */
     virtual std::optional<double>
     exact_volume() const
     {
       return std::nullopt;
     }
 
-    /** What of a box along the axes is inside, where a formula gives it. */
+    /** The part of a box along the axes inside the shape; empty unless there is
+     * a formula for it. */
     virtual std::optional<PartInside<dim>>
     inside_of(const Corners<dim> &) const
     {
       return std::nullopt;
     }
 
-    /** Whether turning it about an axis, of unit length, through a place leaves
-     * it as it is; in two dimensions about z. */
+    /** Whether it is a body of revolution about an axis, of unit length,
+     * through a place; in two dimensions about z. */
     virtual bool
     is_round_about(const dealii::Point<dim> & /*place*/,
                    const dealii::Tensor<1, 3> & /*axis*/) const
@@ -88,7 +87,7 @@ namespace limber
       return false;
     }
 
-    /** From the surface; nothing of a shape that cannot tell. */
+    /** Empty for shapes that cannot tell. */
     virtual std::optional<SignedDistance<dim>>
     signed_distance(const dealii::Point<dim> &) const
     {

@@ -12,7 +12,7 @@
 
 namespace limber
 {
-  /** The components of a velocity that a kind of side holds. */
+  /** The velocity components that a kind of side prescribes. */
   enum class HeldComponents
   {
     none,
@@ -23,29 +23,31 @@ namespace limber
 
 
   /**
-   * What one side of the box does to the velocity of its nodes, as its word in
-   * the scene says (source/problem/side_conditions.cc has the list of words).
-   * Whoever applies sides knows these properties and no word.
+   * Boundary condition of one side of the box on the velocity of its nodes, as
+   * its word in the scene says (source/problem/side_conditions.cc has the list
+   * of words). Those who apply sides know these properties and no word.
    */
   template <int dim>
   struct Side
   {
     std::string    word = "slip";
     HeldComponents held = HeldComponents::normal;
-    // Holds only what moves outward, so that the material may part from it; the
-    // impulse J_n that it then gives bears a tangential one of at most the
-    // friction coefficient times J_n against the motion (Coulomb).
+    // Prescribes outward velocities only, so that material may separate; the
+    // normal impulse J_n limits the tangential one against the motion to the
+    // friction coefficient times J_n (Coulomb).
     bool   one_sided = false;
     double friction  = 0;
-    // Something may come to it and leave it again: it is one-sided, or slips
-    // and no body lies at it at the start, while one may move there
+    // Bodies may hit it and separate again: it is one-sided, or it is a slip
+    // side at which no body lies at the start while one may move there
     bool may_be_hit = false;
-    // Felt by bodies with 'meets_sides' where their material ends, as a
-    // half-space would be (ObstacleContact), instead of by their nodes
+    // Acts on bodies with 'meets_sides' at their surfaces, as a half-space
+    // would (ObstacleContact), instead of at their nodes
     bool         meets_surfaces = false;
     Formula<dim> velocity; // of the side, dim components, m/s; empty: at rest
 
-    /** Of a component at a place and a time (s), m/s. */
+    /**
+     * A component of the velocity of the side at a place and a time (s), m/s.
+     */
     double
     prescribed_velocity(const dealii::Point<dim> &place,
                         const double              time,
@@ -63,7 +65,7 @@ namespace limber
 
 
 
-  /** A component of the velocity of a node that a side holds. */
+  /** A velocity component of a node that a side prescribes. */
   struct HeldComponent
   {
     unsigned int side, component;
@@ -73,10 +75,10 @@ namespace limber
 
 
   /**
-   * Whether another side of the set alone holds this component, as the
-   * velocity through it: what presses on that side at the edge of the two is
-   * its force, and if one of them moves, material would go through the other
-   * (the lid of a cavity).
+   * Whether another side of the set prescribes this component as its normal
+   * velocity. At the edge of two sides that one takes precedence: the pressure
+   * on it is its force, and if one of them moves, material would otherwise pass
+   * through the other (lid-driven cavity).
    */
   template <int dim>
   bool
@@ -97,9 +99,9 @@ namespace limber
 
 
   /**
-   * What the sides of a set (bits) hold of a node that lies in all of them,
-   * in the order in which they act: of several entries for one component the
-   * last counts.
+   * Velocity components that the sides of a set (bits) prescribe at a node that
+   * lies in all of them, in the order in which they act: of several entries for
+   * one component the last counts.
    */
   template <int dim>
   std::vector<HeldComponent>

@@ -7,17 +7,19 @@
 #include <algorithm>
 #include <cmath>
 
-/** @file What signed distances of shapes are made of. */
+/** @file Signed distances that those of shapes are composed of. */
 namespace limber
 {
-  /** From a ball, and from a cylinder in the plane across its axis. */
+  /**
+   * From a ball, and from a circle in the plane normal to a cylinder's axis.
+   */
   template <int dim>
   SignedDistance<dim>
   distance_from_ball(const dealii::Point<dim> &place,
                      const dealii::Point<dim> &centre,
                      double                    radius);
 
-  /** From all that lies between two ends along a direction. */
+  /** From the slab between two ends along a direction. */
   template <int dim>
   SignedDistance<dim>
   distance_from_slab(const dealii::Point<dim> &place,
@@ -25,19 +27,15 @@ namespace limber
                      double                    lower,
                      double                    upper);
 
-  /**
-   * From what is in two regions whose normals are perpendicular: exact
-   * outside at their common edge as well.
-   */
+  /** From the intersection of two regions whose normals are perpendicular:
+   * exact outside at their common edge as well. */
   template <int dim>
   SignedDistance<dim>
   distance_from_common_part(const SignedDistance<dim> &one,
                             const SignedDistance<dim> &other);
 
-  /**
-   * From closed lines of straight edges; contains(place) tells which side is
-   * inside. Looks at every edge.
-   */
+  /** From closed polygons; contains(place) tells which side is inside. Compares
+   * every edge. */
   template <class Edges, class Contains>
   SignedDistance<2>
   distance_from_edges(const dealii::Point<2> &place,

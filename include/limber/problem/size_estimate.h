@@ -4,10 +4,10 @@
 
 #include <limber/problem/problem.h>
 
-/** @file How large a scene is, told before any memory is taken for it. */
+/** @file Size of a scene, estimated before memory is allocated for it. */
 namespace limber
 {
-  /** What is going to be computed of a scene. */
+  /** What is to be computed for a scene. */
   enum class Task
   {
     run,
@@ -16,7 +16,9 @@ namespace limber
 
 
 
-  /** The processes of a run and the memory that they may take together. */
+  /**
+   * Number of processes of a run and the memory that they may take together.
+   */
   struct Machine
   {
     unsigned int ranks = 1;     // of the whole run
@@ -27,10 +29,8 @@ namespace limber
   Machine
   this_machine();
 
-  /**
-   * The memory of the machine with least of it per rank counts for all ranks,
-   * so every rank gets the same. Collective.
-   */
+  /** The machine with the least memory per rank counts for all ranks, so every
+   * rank gets the same. Collective. */
   Machine
   this_machine(MPI_Comm communicator);
 
@@ -77,7 +77,8 @@ namespace limber
              const Machine      &machine,
              const double        elements_in_file = 1);
 
-  /** The same for steps, as soon as their length @p step, s, is known. */
+  /** The same for the number of steps, as soon as their length @p step, s, is
+   * known. */
   template <int dim>
   void
   check_steps(const Problem<dim> &problem, Task task, double step);

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-/** @file The surface of any shape, in small plane parts. */
+/** @file Triangulated surface of any shape (marching squares and cubes). */
 namespace limber
 {
   /**
@@ -18,7 +18,7 @@ namespace limber
 
 
 
-  /** What a place is asked for: whether it is in a shape, or in a part. */
+  /** Indicator function of a shape or of a part: whether a place is inside. */
   template <int dim>
   using Region = std::function<bool(const dealii::Point<dim> &)>;
 
@@ -27,14 +27,14 @@ namespace limber
   /**
    * The surface of the part of a shape inside @p box, closed: marching squares
    * and cubes on a lattice that divides the common box of the two into parts
-   * not larger than @p spacing (m, by direction). Corners of facets lie on the
-   * surface to round-off, so smooth surfaces have errors of second order.
-   * Sharp corners in the plane are found where the tangents on both sides meet;
-   * sharp edges in space are cut off within a part of the lattice, unless they
-   * lie in the sides of the common box, where lattice and shape fit. What is
-   * thinner than a part may be missed.
+   * not larger than @p spacing (m, by direction). Vertices lie on the surface
+   * to round-off, so smooth surfaces have errors of second order. Sharp corners
+   * in the plane are where the tangents on both sides intersect; sharp edges in
+   * space are cut off within a part of the lattice, unless they lie in the
+   * sides of the common box, where lattice and shape fit. Features thinner than
+   * a part may be missed.
    *
-   * Nothing but Shape::contains() is asked for, so every shape will do.
+   * Uses Shape::contains() alone, so it works for every shape.
    */
   template <int dim>
   std::vector<Facet<dim>>
@@ -44,7 +44,7 @@ namespace limber
 
 
 
-  /** The parts of facets in a region; those that its border crosses are cut. */
+  /** Facets clipped by a region. */
   template <int dim>
   std::vector<Facet<dim>>
   part_in(const Region<dim> &region, const std::vector<Facet<dim>> &facets);

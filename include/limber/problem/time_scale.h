@@ -7,11 +7,10 @@
 namespace limber
 {
   /**
-   * The shortest time in which what drives a scene changes, s: of velocities of
-   * sides, ways of obstacles and the body force, 1/omega where they go as
-   * sin(omega t). It is the root mean square of each about its mean over that
-   * of its rate, sampled in the box and over the run; infinite where nothing
-   * changes.
+   * Shortest time scale of what drives a scene, s: velocities of sides, motions
+   * of obstacles and the body force; 1/omega where they go as sin(omega t). It
+   * is the root mean square of each about its mean over that of its rate,
+   * sampled in the box and over the run; infinite where nothing changes.
    */
   template <int dim>
   double

@@ -14,8 +14,8 @@
 #include <vector>
 
 /**
- * @file The words of the scene and what they mean to the program, side by
- * side and once: ranges, help texts and error messages follow from them.
+ * @file The words of the scene and their values in the program, side by side in
+ * one place: ranges, help texts and error messages follow from them.
  */
 namespace limber
 {
@@ -103,7 +103,7 @@ namespace limber
 
 
 
-  /** The same words with themselves as values, for whoever only lists them. */
+  /** The same words as their own values, for those who only list them. */
   template <typename Enum>
   Words<std::string>
   without_values(const Words<Enum> &words)
