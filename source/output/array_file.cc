@@ -15,7 +15,7 @@ namespace limber
 {
   namespace
   {
-    /** Closes what HDF5 has opened; negative handles stand for failures. */
+    /** Owns an HDF5 identifier; negative ones stand for failures. */
     class Hdf5Object
     {
     public:
@@ -111,7 +111,7 @@ namespace limber
            const std::size_t   n_bytes,
            const std::uint32_t before)
   {
-    // Without bytes zlib would begin anew.
+    // Given no bytes, zlib would start from the beginning.
     return n_bytes == 0 ?
              before :
              crc32_z(before, static_cast<const Bytef *>(bytes), n_bytes);
@@ -135,7 +135,7 @@ namespace limber
     : path(path)
     , mode(mode)
   {
-    // Failures are told by fail(), not by HDF5's own report.
+    // Failures are reported by fail(), not by HDF5.
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Hdf5Object creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
     H5Pset_userblock(creation, room);

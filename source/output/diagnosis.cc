@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-/** @file What symptoms are a sign of, and what helps. */
+/** @file From symptoms to the numerical failure mode and its remedy. */
 namespace limber
 {
   namespace
@@ -20,11 +20,13 @@ namespace limber
 
 
     /**
-     * USL needs C < sqrt(2 xi) where a cell at the rim of a body is filled to
-     * xi; in full cells it holds to 0.7. Points that cross make every xi, so
-     * what is seen now need not be what began it. It is sound that does it,
-     * which semi-implicit steps do not follow. With FMPM(k) it is C < sqrt(2 xi
-     * / k). Smooth functions are as small in such a cell as the forces in it.
+     * Small-cut instability. USL needs C < sqrt(2 xi) where a cell at the
+     * surface of a body is filled to xi; in full cells it is stable to 0.7.
+     * Points that cross cells pass through every xi, so the present one need
+     * not have started it. It is an instability of sound, which semi-implicit
+     * steps do not resolve. With FMPM(k) the limit is C < sqrt(2 xi / k).
+     * Smooth kernels are exempt: in such a cell their functions are as small as
+     * the forces.
      */
     template <int dim>
     Diagnosis
@@ -61,9 +63,10 @@ namespace limber
 
 
     /**
-     * The affine part of the motion of a point has next to no inertia near the
-     * edge of its cell, and no bound with AFLIP (doc/theory/transfers.md). What
-     * else is seen then, a checkerboard or a crushed point, follows from it.
+     * The affine part of a point's motion has next to no inertia near an edge
+     * of its cell, and is not bounded with AFLIP (doc/theory/transfers.md).
+     * What else is seen then, a checkerboard or an inverted point, follows from
+     * it.
      */
     template <int dim>
     Diagnosis
@@ -80,8 +83,8 @@ namespace limber
 
 
 
-    /** In liquids that are stirred the volumes of points drift apart, while
-     * those of cells stay. */
+    /** In liquids that are stirred the volume ratios of points drift apart
+     * while the means of cells stay right. */
     template <int dim>
     std::string
     remedy_for_crushed(const BodySymptoms &of_body, const Problem<dim> &problem)
@@ -108,8 +111,8 @@ namespace limber
           if (!found.mode.empty())
             return found;
         }
-      // Where the step has been set; one that follows from the Courant number
-      // is within this.
+      // Only if the step is prescribed; one from the Courant number is within
+      // this bound.
       if (const double bound = courant_number_of_filter(problem);
           symptoms.courant_number > bound * (1 + 1e-6))
         return {"Courant number",
@@ -117,7 +120,8 @@ namespace limber
                   brief(symptoms.courant_number) + ", and the transfer holds " +
                   brief(bound) +
                   ". Set 'Method/Time step = 0', or 'Transfer = flip'."};
-      // MUSL and USF hold to 1.3 and more in the bulk; locked or not.
+      // MUSL and USF are stable to 1.3 and more in full cells, with and without
+      // locking treatment.
       if (symptoms.courant_number > 1)
         return {"Courant number",
                 "the last step had Courant number " +
@@ -148,7 +152,9 @@ namespace limber
 
 
 
-    /** Patterns are taken away, or the motion that makes them is. */
+    /**
+     * Damps the pressure pattern, or else the hourglass motion that causes it.
+     */
     template <int dim>
     std::string
     remedy_for_checkerboard(const Body<dim> &body)
@@ -162,7 +168,7 @@ namespace limber
 
 
 
-    /** By its word, as 'auto' may have chosen none. */
+    /** By the kernel, as 'auto' may have chosen no treatment. */
     std::string
     remedy_for_locking(const KernelKind kernel)
     {
@@ -211,9 +217,10 @@ namespace limber
   namespace
   {
     /**
-     * Liquids lose it to the control of hourglass modes, which makes it;
-     * solids to damping in time. Affine velocities, which hold none of it,
-     * gain energy where points cross cells (doc/theory/transfers.md).
+     * Hourglass modes cause it in liquids, which hourglass control damps; in
+     * solids PIC damping does (blend time). APIC velocities contain no motion
+     * that the grid does not see, but gain energy where points cross cells
+     * (doc/theory/transfers.md).
      */
     template <int dim>
     std::string
@@ -223,7 +230,8 @@ namespace limber
         if (body.is_liquid && body.treatment != Treatment::none &&
             body.hourglass_control == 0 && !is_spline(problem.grid.kernel))
           return "Body " + body.name + "/Hourglass control = 0.2'.";
-      constexpr double share = 0.05; // twenty swings in the time of the run
+      constexpr double share = 0.05; // twenty oscillations in the time of the
+                                     // run
       return "Method/Blend time = " + brief(share * problem.end_time) +
              "' or the shortest time of interest.";
     }
@@ -237,7 +245,7 @@ namespace limber
            const Problem<dim> &problem,
            const bool          unstable)
   {
-    // Newton's method has told what it could not balance.
+    // There Newton's method has reported what is not in equilibrium.
     if (is_solved_by_newton(problem.method.integration))
       return {};
     if (unstable)

@@ -57,7 +57,7 @@ namespace limber
     [[noreturn]] void
     refuse_second(const std::string &folder, const std::string &mark)
     {
-      // Who has just taken it may not have signed yet.
+      // The process that has just locked it may not have signed yet.
       constexpr useconds_t moment = 50000;
       if (text_of(mark).empty())
         usleep(moment);

@@ -13,7 +13,9 @@ namespace limber
     struct HealthCheck;
     using Judge = HealthLine (*)(const HealthFigures &, const HealthCheck &);
 
-    /** A line of the table: above which size a value is no longer good. */
+    /**
+     * A line of the table: up to which size a value is good, or not yet bad.
+     */
     struct HealthCheck
     {
       const char *name;
@@ -23,7 +25,7 @@ namespace limber
       Verdict
       verdict(const double value) const
       {
-        if (!(std::abs(value) <= bad)) // nor is what is not a number good
+        if (!(std::abs(value) <= bad)) // bad for NaN as well
           return Verdict::bad;
         return std::abs(value) <= look ? Verdict::good : Verdict::look;
       }
@@ -61,8 +63,9 @@ namespace limber
 
 
 
-    // What is less than this share of the energy scale of the run is no part of
-    // its result: the last motion of a body that has come to rest.
+    // Unseen motion below this share of the energy scale of the run does not
+    // affect its result: for instance the last motion of a body that has come
+    // to rest.
     constexpr double negligible = 0.01;
 
 
@@ -131,16 +134,16 @@ namespace limber
 
 
 
-    // Scenes with a reference have up to 0.4 %.
+    // Bounds for energy created in contact: scenes with a reference have up to
+    // 0.4 %.
     constexpr HealthCheck created_bounds{"impacts", 0.005, 0.02, nullptr};
 
 
 
-    // What bodies that are solid and elastic lose where they touch is an error;
-    // water that lands on a floor, and what flows plastically, comes to rest
-    // there. What any solid gains is one, too. Where nothing can be hit, it is
-    // a clamp that takes it, of a body whose points cross cells, which has a
-    // line of its own.
+    // Energy that elastic solids lose in contact is an error, as is energy that
+    // any solid gains; liquids that land on a floor, and plastic flow, lose it
+    // physically. Where nothing can be hit the loss is at a clamp, of a body
+    // whose points cross cells (creep), which has a line of its own.
     HealthLine
     judge_impacts(const HealthFigures &figures, const HealthCheck &check)
     {
@@ -253,8 +256,7 @@ namespace limber
 
 
 
-    /** What creep has come to, as a share of the strain, plastic and elastic.
-     */
+    /** Estimated creep as a share of the strain, plastic and elastic. */
     double
     expected_creep(const BodyFigures &body)
     {
@@ -299,8 +301,8 @@ namespace limber
 
 
 
-    // A body that is hardly strained has nothing to creep. Of one that flows
-    // plastically most energy is gone.
+    // Creep needs strain. Of a plastic body most energy is dissipated, so that
+    // is subtracted from the scale.
     bool
     is_strained(const BodyFigures &body, const HealthFigures &figures)
     {
@@ -311,8 +313,9 @@ namespace limber
 
 
 
-    // There creep flows on, in metal: no energy is missing, as it is plastic
-    // work. What flows without end keeps no strain that would grow.
+    // In metal under tension creep is plastic flow: its work is accounted for,
+    // so no energy is missing. What flows without end keeps no strain that
+    // would creep.
     bool
     flows_in_tension(const BodyFigures &body)
     {
@@ -332,9 +335,9 @@ namespace limber
       HealthLine         line;
       line.value   = creep(body);
       line.verdict = check.verdict(line.value);
-      // What creep takes, the work of loads, is missing from the balance, or
-      // goes into the sides that hold the body; in swings about zero it goes to
-      // and fro.
+      // Creep takes work of loads, which is missing from the energy balance or
+      // lost at the sides that hold the body; if both are right the creep is
+      // harmless, as in oscillations about zero, where it cancels.
       constexpr double balance_holds = 0.01;
       if (line.verdict == Verdict::bad && !flows_in_tension(body) &&
           std::abs(figures.drift) <= balance_holds &&
@@ -355,7 +358,8 @@ namespace limber
 
 
 
-    /** Cells that have lost their points, as a share of those that have any. */
+    /** Cells that have lost all points (numerical fracture), as a share of the
+     * occupied cells. */
     double
     share_of_gaps(const BodyFigures &body)
     {
@@ -419,7 +423,8 @@ namespace limber
                           [](const BodyFigures &a, const BodyFigures &b) {
                             return a.points < b.points;
                           });
-      // A body of four points across resolves hardly more than its motion.
+      // A body of four points across hardly resolves more than its rigid
+      // motion.
       const unsigned long few = figures.dim == 2 ? 16 : 64;
       if (line.verdict == Verdict::good && smallest.points < few)
         {
@@ -436,7 +441,7 @@ namespace limber
 
 
 
-    /** How far a volume has gone from the initial one, by its logarithm. */
+    /** Largest |log J| of the points of a body. */
     double
     change_of_volume(const BodyFigures &body)
     {
@@ -526,10 +531,10 @@ namespace limber
 
 
 
-    // Liquids that hit something come to rest in part, as there is no sound
-    // that would carry the energy away; a surface loses some in short waves. So
-    // ends what has been given to points to keep their volume, which is no
-    // loss.
+    // Liquids without sound (semi-implicit steps) lose energy in impacts, where
+    // otherwise sound would carry it away, and at a surface some in short
+    // waves. Energy that volume corrections gave to points ends there as well,
+    // and is no loss.
     HealthLine
     judge_dissipation(const HealthFigures &figures, const HealthCheck &check)
     {

@@ -9,8 +9,8 @@ namespace limber
 {
   namespace
   {
-    // A gap that has opened is first one cell wide, then two; what is wider is
-    // space between parts, which a scene may have as well.
+    // Numerical fracture opens gaps of one cell, then two; wider ones are taken
+    // for space between parts of the body, which a scene may have as well.
     constexpr unsigned int widest_gap = 2;
 
 
@@ -40,7 +40,7 @@ namespace limber
 
 
 
-    /** Equal places of an ascending list become one entry with their sum. */
+    /** Sorts by place; entries of equal place become one with their sum. */
     void
     merge_equal(std::vector<CellCount> &cells)
     {
@@ -61,7 +61,8 @@ namespace limber
 
 
 
-    /** Cells of a finer level count as part of the coarse one they are in. */
+    /** Counts points per cell of the coarsest level; finer cells are part of
+     * one. */
     template <int dim>
     CellCounts
     count_own(const State<dim> &state, const MaterialBody<dim> &body)
@@ -97,7 +98,8 @@ namespace limber
 
 
 
-    /** Whether the body goes on behind a gap that begins next to @p at. */
+    /** Width of the gap that begins next to @p at, if the body continues behind
+     * it. */
     template <int dim>
     unsigned int
     width_of_gap(const CellCounts                    &own,
@@ -117,8 +119,8 @@ namespace limber
 
 
 
-    /** Whether it has neighbours of the body on all sides; @p sides of the grid
-     * may stand for those. */
+    /** Whether all face neighbours of a cell belong to the body; @p sides of
+     * the grid may stand for those. */
     template <int dim>
     bool
     is_inner(const CellCounts                    &own,
@@ -186,7 +188,7 @@ namespace limber
       }
     std::sort(gaps.begin(), gaps.end());
     gaps.erase(std::unique(gaps.begin(), gaps.end()), gaps.end());
-    // What another body fills is no gap.
+    // Cells that hold another body are no gaps.
     body.gaps =
       std::count_if(gaps.begin(), gaps.end(), [&](const std::uint64_t place) {
         return std::all_of(counts.begin(),
@@ -207,7 +209,7 @@ namespace limber
           const std::function<bool(std::uint64_t)> &is_open,
           const std::size_t                         b)
   {
-    constexpr unsigned int least_cells = 16; // fewer tell chance
+    constexpr unsigned int least_cells = 16; // fewer are not significant
     const CellCounts      &own         = counts[b];
     unsigned long          cells       = 0;
     double                 volume      = 0;
@@ -243,7 +245,7 @@ namespace limber
     for (std::size_t b = 0; b < bodies.size(); ++b)
       look_at_counts<dim>(counts, state.problem.grid.cells, b, bodies[b]);
 
-    // Of liquids, whether their points stand closer than their volume
+    // Of liquids: clumping, whether points are denser than their volumes
     const GridDescription<dim>     &grid        = state.problem.grid;
     double                          cell_volume = 1;
     std::vector<ObstaclePlace<dim>> obstacles;

@@ -71,9 +71,9 @@ namespace limber
 
 
     /**
-     * By which angle the points of a body have turned since the start, rms by
-     * mass: in the plane that of the polar decomposition of F, in space by
-     * tan = |axial(F)| / (tr F - 1), which is exact where they only turn.
+     * Angle by which the points of a body have rotated since the start, rms by
+     * mass: in the plane that of the polar decomposition of F, in space by tan
+     * = |axial(F)| / (tr F - 1), which is exact for pure rotations.
      */
     template <int dim>
     double
@@ -129,10 +129,8 @@ namespace limber
 
 
 
-  /**
-   * What part of the strain of each point is elastic, as creep takes of that
-   * alone: all, but for soil. There most of it is plastic in a flow.
-   */
+  /** Elastic share of the strain of each point, which alone creeps: all of it,
+   * except in soil, where most of the strain is plastic in a flow. */
   template <int dim>
   class ElasticShare
   {
@@ -147,8 +145,8 @@ namespace limber
         plastic_strain = body.variable(*variable);
     }
 
-    /** Of point @p p with the strain @p energy: that of a wave would be half
-     * the mass times (c strain)^2. */
+    /** Of point @p p with the strain @p energy. The elastic strain is that of a
+     * wave with this energy, half the mass times (c strain)^2. */
     double
     operator()(const std::size_t p, const double energy) const
     {
@@ -167,8 +165,8 @@ namespace limber
 
 
 
-  // Under strain: points that bear nothing, as the tip of a beam, may cross
-  // what they like.
+  // Crossings are weighted by strain energy: those of points without stress, as
+  // at the tip of a beam, cause no creep.
   template <int dim>
   void
   look_at_crossings(const State<dim> &state, std::vector<BodyFigures> &bodies)
@@ -181,7 +179,8 @@ namespace limber
           continue;
         const ElasticShare<dim> elastic_share(own);
         double                  all = 0, most = 0;
-        // energy, by crossings, by these and the elastic share, in tension
+        // energy; energy times crossings, times these and the elastic share;
+        // energy in tension
         std::array<double, 4> strained{};
         for (std::size_t p = 0; p < points.size; ++p)
           {

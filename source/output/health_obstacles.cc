@@ -9,14 +9,16 @@ namespace limber
 {
   namespace
   {
-    // Share of the edge of a cell: what is less deep lies in the surface.
+    // Share of the edge of a cell up to which a point counts as on the surface.
     constexpr double in_surface = 1e-3;
 
 
 
-    /** What of a batch lies in an obstacle; cells that are further off than
-     * their diagonal, twice, as a formula tells the distance to first order
-     * only, are not asked for their points. */
+    /**
+     * Penetration of the points of a batch into an obstacle. Cells at more than
+     * twice their diagonal from it are skipped without a look at their points;
+     * twice, as the distance of a formula is right to first order only.
+     */
     template <int dim>
     void
     look_at_batch(const State<dim>         &state,

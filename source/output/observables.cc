@@ -31,8 +31,8 @@ namespace limber
 
 
 
-    /** How far in from the end of a cell its outermost points are seeded, as a
-     * share of its edge. */
+    /** Distance of the outermost points from the end of a cell at the start, as
+     * a share of its edge. */
     template <int dim>
     double
     depth_of_points(const Body<dim> &body, const unsigned int axis)
@@ -90,7 +90,7 @@ namespace limber
 
 
 
-    /** Of a point; nothing where it has been lost. */
+    /** Of a point; empty if it has been lost. */
     template <int dim>
     Seen<dim>
     see(const PointSample<dim>   &point,
@@ -192,7 +192,7 @@ namespace limber
     for (unsigned int b = 0; b < problem.bodies.size(); ++b)
       if (problem.bodies[b].name == name)
         return b;
-    // Without a name all bodies are meant; of a point, the only one.
+    // An empty name means all bodies or, for a point, the only one.
     return name.empty() && problem.bodies.size() == 1 ? 0 : not_one_body;
   }
 

@@ -31,7 +31,7 @@ namespace limber
 
 
 
-    /** Whether nothing is in it, or it is not there at all. */
+    /** Whether it is empty or missing. */
     bool
     is_free(const std::string &folder)
     {
@@ -107,7 +107,8 @@ namespace limber
 
 
 
-    /** Files have to be files and folders folders; links are neither. */
+    /** Under the names of files there have to be files, under those of folders
+     * folders; links are neither. */
     void
     check_types(const std::string &folder,
                 const FolderKind  &kind,
@@ -145,7 +146,7 @@ namespace limber
 
 
 
-    /** Nothing, if somebody is at work in one of the folders. */
+    /** Throws if a process is at work in one of the folders. */
     void
     remove_all_of(const OwnPaths &own)
     {
@@ -231,8 +232,8 @@ namespace limber
   {
     FolderLock lock;
     with_file_errors(folder, [&]() {
-      // The mark must not come into a folder that is none of ours, so it is
-      // looked at before the lock, and again when nobody else can change it.
+      // The mark must not get into a folder that is not ours, so this is
+      // checked before the lock, and again when nobody else can change it.
       examine(folder, kind, use);
       lock = FolderLock(folder);
       examine(folder, kind, use);

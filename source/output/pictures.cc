@@ -12,7 +12,7 @@ namespace limber
 {
   namespace
   {
-    /** A body as the fields of its points see it. */
+    /** A body as the fields of its points need it. */
     template <int dim>
     struct SeenBody
     {
@@ -38,7 +38,7 @@ namespace limber
 
 
 
-    /** A field that a scene may name, and how a point fills it. */
+    /** A field that a scene may name, and how it is filled for a point. */
     template <int dim>
     struct PointField
     {
@@ -133,7 +133,7 @@ namespace limber
 
 
 
-    /** After von Mises. */
+    /** Equivalent stress by von Mises. */
     template <int dim>
     void
     fill_equivalent_stress(const SeenBody<dim> &seen,
@@ -221,7 +221,7 @@ namespace limber
 
 
 
-    /** Those of them that are named variables of laws. */
+    /** The chosen fields that are named variables of laws. */
     std::vector<std::string>
     chosen_variables(const std::vector<std::string> &names)
     {
@@ -235,7 +235,7 @@ namespace limber
 
 
 
-    /** By name: where the body keeps it; null where it does not. */
+    /** By name: where the body stores it; null where it does not. */
     template <int dim>
     std::vector<const double *>
     arrays_of(const MaterialBody<dim>        &body,

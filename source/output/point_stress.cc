@@ -9,7 +9,7 @@ namespace limber
 {
   namespace
   {
-    /** From the independent components, in their order (n_deviator). */
+    /** The tensor of its independent components, in the order of n_deviator. */
     template <int dim, class Component>
     dealii::SymmetricTensor<2, 3>
     full_deviator(const Component &component)

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <map>
 
-/** @file What the points of a run show. */
+/** @file Symptoms of numerical failures, from the points of a run. */
 namespace limber
 {
   namespace
   {
-    /** Place in the lattice of the grid, of a cell or of a node. */
+    /** Indices of a cell or node in the lattice of the grid. */
     template <int dim>
     using Lattice = std::array<int, dim>;
 
@@ -30,7 +30,7 @@ namespace limber
       }
     };
 
-    /** Mass and momentum that a node gets. */
+    /** Nodal mass and momentum (P2G with linear functions). */
     template <int dim>
     struct NodeSymptoms
     {
@@ -45,7 +45,7 @@ namespace limber
 
 
 
-    /** What one rank sees; the maps of all are merged on the first one. */
+    /** What one rank finds; the maps of all are merged on the first one. */
     template <int dim>
     struct Sighting
     {
@@ -133,7 +133,7 @@ namespace limber
 
 
 
-    /** Bodies in a fixed order; numbers only, so that ranks can send them. */
+    /** Serialised for other ranks; bodies are in a fixed order. */
     template <int dim>
     std::vector<double>
     packed(const Sighting<dim> &seen)
@@ -262,7 +262,7 @@ namespace limber
                 symptoms.filling = std::min(symptoms.filling, at);
               if (before == nullptr && behind != nullptr)
                 symptoms.filling = std::min(symptoms.filling, 1 - at);
-              // neighbours of half a cell or less say little
+              // cells with less than half the points tell little
               if (before != nullptr && behind != nullptr &&
                   std::min({sums.count, before->count, behind->count}) >=
                     0.5 * fullest)

@@ -10,8 +10,8 @@ namespace limber
 {
   namespace
   {
-    // Of a cell: a liquid at rest that is lifted by so little, as points find
-    // their places, does not drift.
+    // Of a cell: lower bound of the energy scale, so that a liquid at rest does
+    // not count as drifting when it is lifted by so little while points settle.
     constexpr double least_lift = 1e-4;
   } // namespace
 
@@ -118,8 +118,8 @@ namespace limber
 
 
 
-    /** Whether points move by the velocity at the end of a step, and not by
-     * that of its middle. */
+    /** Whether points move by the velocity of the end of a step (leapfrog), and
+     * not by that of its middle. */
     bool
     moves_by_new_velocity(const Method &method)
     {
@@ -129,7 +129,7 @@ namespace limber
 
 
 
-    /** Everything that is a sum over points and not a balance. */
+    /** Totals that are sums over points, without the balances. */
     template <int dim>
     Totals<dim>
     totals_from(RowSums<dim> &sums, const State<dim> &state)
@@ -242,10 +242,10 @@ namespace limber
 
 
 
-  // What strains and velocities of the size of round-off hold, where each step
-  // adds its own: a body at rest that nothing has moved yet does not drift. And
-  // Newton's method leaves forces of that size out of balance, which do work
-  // where a side carries the body along.
+  // Energy of strains and velocities of the size of round-off, to which each
+  // step adds its own: below it a body at rest does not drift. And Newton's
+  // method leaves residual forces of that size, which do work where a side
+  // moves the body.
   template <int dim>
   double
   Balance<dim>::energy_of_round_off(const State<dim> &state) const
@@ -268,7 +268,7 @@ namespace limber
     const BodyTotals<dim> &all = totals.all;
     totals.removed_by_transfer = ledger.transfer;
 
-    // Differences from the start first: potentials can be large numbers.
+    // Subtract the initial values first: potentials can be large numbers.
     const double potential_change =
       all.gravitational_energy - start.gravitational_energy;
     const double gain =
@@ -282,14 +282,14 @@ namespace limber
                all.kinetic_energy + std::abs(all.strain_energy) +
                  std::abs(potential_change) + std::abs(ledger.boundary_work) +
                  std::abs(ledger.load_work));
-    // Potentials are known to round-off only, and what each step has found of
-    // them: at rest that is more than all that moves.
+    // Round-off of the potentials, added up over the steps: of a body at rest
+    // that is more than all of its motion.
     const double round_off =
       (64. + state.step) * std::numeric_limits<double>::epsilon() *
       (std::abs(all.gravitational_energy) + std::abs(all.strain_energy));
-    // Where the velocity is that of the middle of a step and the place that of
-    // its end, so much of the potential is the one's or the other's: a fall
-    // from rest would have lost 1 / (2 n + 1) of its energy after n steps.
+    // In a leapfrog scheme velocities belong to the middle of a step and places
+    // to its end, which leaves this part of the potential undetermined: a fall
+    // from rest would seem to lose 1 / (2 n + 1) of its energy after n steps.
     const double of_half_a_step =
       moves_by_new_velocity(state.problem.method) ?
         0.5 * state.step_size *
@@ -315,8 +315,8 @@ namespace limber
     dealii::Tensor<1, dim> unexplained =
       totals.all.momentum - start.momentum + ledger.lost_momentum -
       ledger.gravity_impulse - ledger.load_impulse;
-    // Loads in balance have no sum to compare with, but they strain; what that
-    // stores could move the bodies.
+    // Balanced loads have no resultant to scale with, but they strain the body:
+    // use the momentum that its strain energy could give it.
     const double of_strain =
       std::sqrt(2 * totals.all.mass * std::abs(totals.all.strain_energy));
     double     scale   = std::max({absolute_momentum,

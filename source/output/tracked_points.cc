@@ -9,7 +9,7 @@ namespace limber
 {
   namespace
   {
-    /** What the owner of a tracked point tells the others, as doubles. */
+    /** What the owner of a tracked point sends to the others, as doubles. */
     template <int dim>
     struct Telegram
     {
@@ -210,7 +210,7 @@ namespace limber
           .first->second.compute(*state.bodies[tracked[t].body]);
     std::vector<double> records = collect(state, stresses, with_stress);
 
-    // A point that nobody has told about has changed its rank, or is lost.
+    // A point whose owner has not reported it has changed its rank, or is lost.
     bool looked_again = false;
     for (unsigned int t = 0; t < tracked.size(); ++t)
       if (!tracked[t].lost && records[t * T::stride + T::found] == 0)

@@ -11,9 +11,10 @@ namespace limber
   namespace
   {
     /**
-     * The functions of the grid that come nearest to values at the points, in
-     * the norm of their masses: conjugate gradients for the normal equations
-     * with lumped masses before them. A step is one projection on nodes.
+     * Weighted least squares: the functions of the grid that are closest to
+     * values at the points, in the norm of their masses. Conjugate gradients
+     * for the normal equations (consistent mass matrix), preconditioned by the
+     * lumped mass. One iteration costs one projection on nodes (P2G).
      */
     template <int dim>
     class FitByGrid
@@ -34,7 +35,9 @@ namespace limber
           }
       }
 
-      /** Leaves of the component @p d of the velocity what does not fit. */
+      /**
+       * The residual of component @p d of the velocity: its null-space part.
+       */
       const std::vector<std::vector<double>> &
       residual_of(const unsigned int d)
       {
@@ -65,7 +68,7 @@ namespace limber
     private:
       using Layout = NodalMeanLayout;
 
-      // Full cells need five; what more would find is less than is asked.
+      // Full cells need five; more accuracy than this is not needed.
       static constexpr unsigned int most_steps   = 30;
       static constexpr double       small_enough = 1e-4;
 
@@ -123,7 +126,7 @@ namespace limber
         return dealii::Utilities::MPI::sum(result, state.grid.communicator);
       }
 
-      // The next direction, on nodes and then at the points.
+      // The next search direction, on nodes (P2G) and interpolated to points.
       void
       turn(const double share_of_former)
       {

@@ -50,7 +50,7 @@ namespace limber
 
 
 
-    /** What a run has left that was killed while it wrote. */
+    /** Removes what a run left that was killed while it wrote. */
     void
     remove_unfinished(const std::string &folder, const std::string &series)
     {
@@ -66,7 +66,7 @@ namespace limber
 
 
 
-    /** Without the pieces behind the last one of the series. */
+    /** Removes pieces of the series beyond the last one. */
     void
     shorten_series(const std::string                                 &folder,
                    const std::string                                 &series,

@@ -14,7 +14,7 @@
 
 namespace limber
 {
-  /** CRC-32 as zlib has it; @p before: that of what stands in front. */
+  /** CRC-32 as by zlib; @p before: the checksum of the preceding bytes. */
   std::uint32_t
   checksum(const void         *bytes,
            const std::size_t   n_bytes,
@@ -33,7 +33,7 @@ namespace limber
 
 
 
-  /** A file that cannot be read, or is not what once was written. */
+  /** A file that cannot be read, or whose content has changed (checksum). */
   class DamagedFile : public FileError
   {
   public:

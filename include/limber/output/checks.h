@@ -25,7 +25,8 @@ namespace limber
 
 
 
-  /** The row nearest to the time of a check so far; plain, for checkpoints. */
+  /** The row nearest to the time of a check so far; plain data, for
+   * checkpoints. */
   struct CheckedValue
   {
     double distance = std::numeric_limits<double>::infinity(); // s
@@ -34,7 +35,7 @@ namespace limber
 
 
 
-  /** Compares observables with what the scene expects of them. */
+  /** Compares observables with the reference values of the scene. */
   class Checks
   {
   public:
@@ -50,7 +51,7 @@ namespace limber
     void
     add(const double time, const std::vector<double> &values);
 
-    /** In the order of the scene. What is not a number has not passed. */
+    /** In the order of the scene. NaN does not pass. */
     std::vector<CheckResult>
     results() const;
 

@@ -9,14 +9,14 @@
 
 namespace limber
 {
-  /** Numbers of one body that tell the ways of going wrong apart. */
+  /** Indicators for one body that tell failure modes apart. */
   struct BodySymptoms
   {
     std::string body;
-    double      smallest_volume = 1; // of all J
-    // Smallest mean distance of the points of a cell from the side on which
-    // they enter it, in edges, where the cell beyond the opposite side is
-    // empty: the filling of a cut cell
+    double      smallest_volume = 1; // smallest J of the points
+    // Filling of the smallest cut cell: smallest mean distance of the points of
+    // a cell from the side on which they enter it, in edges, where the cell
+    // beyond the opposite side is empty
     double filling = 1;
     // Rms of the pressures of points about the mean of their cell, over the
     // rms of these means; before any averaging
@@ -25,40 +25,39 @@ namespace limber
     // neighbours along an axis, over the rms of the pressures: 0 for a linear
     // field, 2 for a checkerboard
     double checkerboard = 0;
-    // Share of the occupied cells that share no node with another one
+    // Share of occupied cells that share no node with another occupied one
     double isolated_cells = 0;
   };
 
-  /** Those of a run at one moment. */
+  /** Indicators for a run at one moment. */
   struct Symptoms
   {
     double courant_number = 0;                // of the last step
-    double unseen_energy  = 0;                // share of kinetic energy
-                                              // that the nodes do not see
+    double unseen_energy  = 0;                // null-space share of the kinetic
+                                              // energy, which the nodes do not
+                                              // see
     unsigned long             not_finite = 0; // points
     std::vector<BodySymptoms> bodies;
   };
 
-  /** What a run has most likely fallen into. */
+  /** The failure mode that a run has most likely run into. */
   struct Diagnosis
   {
     std::string mode; // "small cut cell", ...; empty: nothing stands out
     std::string text; // the numbers that show it and the entry to change
-    bool        is_unstable = false; // which ends runs and throws points away
+    bool        is_unstable = false; // stops runs and ejects points
   };
 
   /**
-   * Look at the points; @p signal_speed: wave speed plus speed of the points,
+   * Evaluates the points; @p signal_speed: wave speed plus speed of the points,
    * m/s. Costs as much as some steps. Collective; only rank 0 gets an answer.
    */
   template <int dim>
   Symptoms
   find_symptoms(const State<dim> &state, const double signal_speed);
 
-  /**
-   * The likeliest mode; @p unstable: the run was stopped, else it finished but
-   * missed a check. Thresholds stand beside the code.
-   */
+  /** The likeliest failure mode; @p unstable: the run was stopped, else it
+   * finished but missed a check. Thresholds stand beside the code. */
   template <int dim>
   Diagnosis
   diagnose(const Symptoms     &symptoms,

@@ -9,15 +9,16 @@
 namespace limber
 {
   /**
-   * The frequency of a quantity that swings about zero, from the times at
-   * which it changes its sign, interpolated linearly between rows: the mean
-   * over all half periods so far. Noise may take a quantity over zero several
-   * times in a row: these count once, half way between the first and the last,
-   * and not at all if it stays on its side. Plain, for checkpoints.
+   * Frequency of a quantity that oscillates about zero, from its zero
+   * crossings, interpolated linearly between rows: the mean over all half
+   * periods so far. Noise may cause several crossings in a row: these count
+   * once, half way between the first and the last, and not at all if the sign
+   * does not change in the end. Plain data, for checkpoints.
    */
   struct ZeroCrossings
   {
-    /** Of the largest value of a half swing: beyond, the next has begun. */
+    /** Share of the largest value of a half period above which the next one has
+     * begun. */
     static constexpr double share_of_swing = 0.2;
 
     double       last_time   = 0; // of the last row, s

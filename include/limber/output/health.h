@@ -8,16 +8,17 @@
 #include <vector>
 
 /**
- * @file How far a run can be trusted: figures of its end, each with a verdict,
+ * @file Quality assessment of a run: figures of its end, each with a verdict,
  * what it means and the entry to change (doc/guide/health.md).
  */
 namespace limber
 {
+  /** How good a figure is. */
   enum class Verdict
   {
     good,
     look, // may be meant; the text says what to look at
-    bad   // results are wrong by about as much as the value says
+    bad   // results have errors of about this size
   };
 
   const char *
@@ -25,12 +26,12 @@ namespace limber
 
 
 
-  /** One answer. */
+  /** One figure with its verdict. */
   struct HealthLine
   {
     std::string name; // a word: "energy"
     Verdict     verdict = Verdict::good;
-    double      value   = 0; // without dimension; not finite: not to be had
+    double      value   = 0; // dimensionless; not finite: unknown
     std::string text;        // the figure with its unit, and what it means
     std::string entry;       // to be changed, as "Section/Name"
   };
@@ -44,7 +45,7 @@ namespace limber
     bool         is_liquid       = false;
     bool         is_plastic      = false; // may flow plastically
     bool         keeps_surface   = true;  // see Body
-    bool         is_split        = false; // where it is stretched
+    bool         is_split        = false; // splits stretched points
     bool         stays_in_cells  = false; // 'Frame = initial'
     unsigned int points_per_edge = 2;     // the smallest of all directions
     KernelKind   kernel          = KernelKind::linear;
@@ -60,30 +61,30 @@ namespace limber
     unsigned long gaps_at_start = 0;
 
     // At the end
-    double unseen_energy          = 0; // kinetic, that the grid does not hold
+    double unseen_energy          = 0; // kinetic, in the null space of P2G
     double strain_energy          = 0;
     double crossings              = 0; // cells entered, mean over the points
-    double crossings_under_strain = 0; // the mean by strain energy
+    double crossings_under_strain = 0; // weighted by strain energy
     double most_crossings         = 0; // of one point
-    double elastic_share          = 1; // of the strain where they count
+    double elastic_share          = 1; // of the strain at these
     double share_in_tension       = 0; // of its strain energy, if it is plastic
     unsigned long cells           = 0; // that hold points of it
-    unsigned long inner_cells     = 0; // of them, amid others along all axes
+    unsigned long inner_cells     = 0; // with neighbours along all axes
     unsigned long single_cells    = 0; // of these, with one point
     unsigned long gaps            = 0; // empty cells between two of the body
     double        smallest_volume = 1, largest_volume = 1; // of all J
-    // Of a liquid: volume of points in inner cells over that of these cells
+    // Clumping of a liquid: volume of points in inner cells over that of these
     double filling    = 1;
     bool   is_shifted = false; // by 'Particle shifting'
-    // Whether its law is for small rotations, in the initial frame; and the
-    // angle by which its points have turned since the start, rms
+    // Whether its law is for small strains, in the initial frame; and the angle
+    // by which its points have rotated since the start, rms
     bool   stays_upright = false;
     double rotation      = 0;
   };
 
 
 
-  /** Of one obstacle at the end. */
+  /** Penetration into one obstacle at the end. */
   struct ObstacleFigures
   {
     std::string   name;
@@ -93,7 +94,7 @@ namespace limber
 
 
 
-  /** Those of a run; energies in J. */
+  /** Figures of a run; energies in J. */
   struct HealthFigures
   {
     std::vector<BodyFigures>     bodies;
@@ -109,13 +110,13 @@ namespace limber
     double        put_back_way = 0; // of all of them, cells
     // Points of liquids that were put out of obstacles, each time
     double put_out = 0;
-    // Taken or given on record
+    // Energy contributions in the ledger
     double transfer = 0, viscous = 0, history = 0, plastic = 0, friction = 0,
            contact = 0, adaptation = 0, sides = 0, loads = 0;
-    // Of what viscosity has taken, what semi-implicit steps have lost
+    // Part of 'viscous' that is lost by semi-implicit steps
     bool   is_semi_implicit = false;
     double lost_by_steps    = 0;
-    // The entry that sets the length of steps
+    // The entry that determines the time step
     std::string step_entry = "Method/Courant number";
   };
 
@@ -125,13 +126,14 @@ namespace limber
   std::vector<HealthLine>
   judge(const HealthFigures &figures);
 
-  /** For the screen: what is good in one line, all else in one line each. */
+  /** For the screen: good figures in one line, all others in one line each. */
   std::string
   health_text(const std::vector<HealthLine> &lines);
 
   /**
-   * The share of elastic strain that becomes permanent for each cell that a
-   * point enters, by kernel and points along the edge of a cell.
+   * Numerical creep: share of the elastic strain that becomes permanent with
+   * each cell crossing of a point, by kernel and points along the edge of a
+   * cell.
    */
   double
   creep_per_crossing(const BodyFigures &body);

@@ -8,23 +8,21 @@
 #include <cstdint>
 #include <functional>
 
-/** @file What the points themselves say about the health of a run. */
+/** @file Figures for the health of a run, computed from its points. */
 namespace limber
 {
   /**
-   * The kinetic energy of each body that no motion of the grid holds, J: that
-   * of v - sum N_i w_i with the nodal velocities w, common to all bodies, for
-   * which it is smallest. Collective; as many passes over the points as
-   * it takes to find w, at most some thirty for each component.
+   * Kinetic energy of the null space of P2G in each body, J: that of v - sum
+   * N_i w_i with the nodal velocities w, common to all bodies, for which it is
+   * smallest. Collective; as many passes over the points as it takes to find w,
+   * at most some thirty for each component.
    */
   template <int dim>
   std::vector<double>
   unseen_energy(const State<dim> &state);
 
-  /**
-   * What of volume and shape of the bodies can be told at the start only, for
-   * their points have not moved yet. Collective.
-   */
+  /** Figures of volume and shape of the bodies that need the points at their
+   * initial places. Collective. */
   template <int dim>
   void
   look_at_seeding(const State<dim> &start, std::vector<BodyFigures> &bodies);
@@ -44,14 +42,14 @@ namespace limber
 
 
 
-  /** Which points are inside obstacles, of all bodies. Collective. */
+  /** Penetration of the points of all bodies into each obstacle. Collective. */
   template <int dim>
   std::vector<ObstacleFigures>
   look_at_obstacles(const State<dim> &state);
 
 
 
-  /** What a cell of a lattice holds of a body. */
+  /** Points and volume of a body in one cell of a lattice. */
   struct CellCount
   {
     std::uint64_t place; // in the lattice, x fastest
@@ -83,8 +81,8 @@ namespace limber
                  BodyFigures                         &body);
 
   /**
-   * The volume of all points in inner cells of the body @p b, over that of
-   * these cells; cells of @p is_open alone count. 1 if there are less than
+   * Clumping: volume of all points in inner cells of the body @p b, over that
+   * of these cells; only cells of @p is_open count. 1 if there are less than
    * sixteen.
    */
   template <int dim>
@@ -97,12 +95,12 @@ namespace limber
 
 
 
-  /** From a run's start to its end. */
+  /** Assesses a run from its start to its end. */
   template <int dim>
   class Health
   {
   public:
-    /** Looks at the points where the scene has put them; collective. */
+    /** With the points where the scene has placed them; collective. */
     explicit Health(const State<dim> &start);
 
     /**

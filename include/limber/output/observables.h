@@ -10,7 +10,8 @@
 
 namespace limber
 {
-  /** What observables remember between two rows; plain, for checkpoints. */
+  /** What observables keep from one row to the next; plain data, for
+   * checkpoints. */
   template <int dim>
   struct ObservablesState
   {
@@ -29,18 +30,18 @@ namespace limber
 
 
   /**
-   * The numbers that the scene asks for in every row, in its order. What
-   * cannot be told is not a number: the displacement of a lost point, the
-   * extreme of no point, a frequency before the second crossing of zero.
+   * The observables of the scene in every row, in its order. Unknown values are
+   * NaN: the displacement of a lost point, the extreme of no point, a frequency
+   * before the second crossing of zero.
    */
   template <int dim>
   class Observables
   {
   public:
-    /** Choose the points to be followed; after seeding, collective. */
+    /** Chooses the points to be tracked; after seeding, collective. */
     explicit Observables(const State<dim> &start);
 
-    /** Continue those of a checkpoint. */
+    /** Restores those of a checkpoint. */
     void
     restore(const ObservablesState<dim> &former);
 

@@ -23,7 +23,7 @@ namespace limber
 
 
 
-  /** Whether the kind follows the material of a place. */
+  /** Whether the kind follows a material point. */
   template <int dim>
   bool
   looks_at_place(const Observable<dim> &observable)

@@ -10,7 +10,7 @@
 
 namespace limber
 {
-  /** What is there under the names that a run or a study writes. */
+  /** File names that a run or a study writes. */
   struct OwnPaths
   {
     // Files, and then the folders that hold them, inner ones first

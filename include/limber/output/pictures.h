@@ -5,7 +5,7 @@
 #include <limber/output/vtu.h>
 #include <limber/state/material_body.h>
 
-/** @file What is seen in a picture, as patches for write_vtu(). */
+/** @file Contents of a picture, as patches for write_vtu(). */
 namespace limber
 {
   template <int patch_dim, int dim>

@@ -9,8 +9,8 @@
 #include <vector>
 
 /**
- * @file From the Kirchhoff stress that points store to the Cauchy stress that
- * users see: pressure positive in compression, stress positive in tension.
+ * @file Converts the Kirchhoff stress that points store to the Cauchy stress
+ * that users see: pressure positive in compression, stress positive in tension.
  */
 namespace limber
 {
@@ -38,11 +38,11 @@ namespace limber
 
 
   /**
-   * The Cauchy stress at the points of a body as the treatment of locking
-   * sees it, with volumes as weights: what is averaged over cells is that
-   * average (sum of V sigma over sum of V of all points now in the cell); a
-   * pressure that is averaged around nodes is what these have of it; all else
-   * is the value of the point. To be made anew after a change of the mesh.
+   * The Cauchy stress at the points of a body as the locking treatment computes
+   * it, weighted by volume: the mean of the cell where that averages over cells
+   * (sum of V sigma over sum of V of all points now in the cell); the
+   * interpolated nodal pressure where it averages around nodes; otherwise the
+   * value of the point. Has to be constructed anew after a change of the mesh.
    */
   template <int dim>
   class PointStress
@@ -52,7 +52,7 @@ namespace limber
 
     explicit PointStress(const State<dim> &state);
 
-    /** Turn to this body in its present state; collective. */
+    /** Evaluates this body in its present state; collective. */
     void
     compute(const MaterialBody<dim> &body);
 
@@ -63,7 +63,7 @@ namespace limber
     Tensor
     deviator(std::size_t p) const;
 
-    /** Before the average. */
+    /** Of the point itself, without averaging. */
     double
     point_pressure(const std::size_t p) const
     {
@@ -79,7 +79,7 @@ namespace limber
       return volume_ratios[p];
     }
 
-    /** Whether the pressure is averaged around nodes. */
+    /** Whether the pressure is an average around nodes. */
     bool
     is_nodal() const
     {

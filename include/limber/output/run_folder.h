@@ -11,7 +11,7 @@
 
 namespace limber
 {
-  /** The texts by which a run folder explains itself. */
+  /** The texts in a run folder that document the run. */
   struct RunTexts
   {
     std::string original; // the scene as given, with its comments
@@ -22,7 +22,7 @@ namespace limber
 
 
 
-  /** The folder of a run or of a reference. */
+  /** The output folder of a run or of a reference. */
   const FolderKind &
   run_folder_kind();
 

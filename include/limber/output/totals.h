@@ -71,7 +71,8 @@ namespace limber
 
 
 
-  /** What a balance remembers between two rows; plain, for checkpoints. */
+  /** What the balance keeps from one row to the next; plain data, for
+   * checkpoints. */
   template <int dim>
   struct BalanceState
   {
@@ -89,21 +90,21 @@ namespace limber
 
 
   /**
-   * Holds the present state against that at the start. The ledger knows what
-   * the sides, obstacles, loads, damping transfers, viscosity, plastic flow,
-   * friction, adaptation and lost points have done to energy and momentum; what
-   * it cannot account for is
+   * Energy and momentum balance of the present state against the initial one.
+   * The ledger has the contributions of sides, obstacles, loads, damping
+   * transfers, viscosity, plastic flow, friction, adaptation and lost points;
+   * the unexplained rest is
    *
    *   drift = (E - E_0) / scale,
    *   E = T + U + V + transfer + viscous + plastic + history + friction
    *       + contact + adaptation + lost - W_sides - W_loads
    *
-   * with T kinetic, U strain and V gravitational energy: the error of the
-   * integration in time and of points that cross cells, beyond round-off and
-   * what gravity does in half a step where points move by the velocity at the
-   * end of the step, which is that of its middle. The scale is the
-   * largest T + |U| + |V - V_0| + |W_sides| + |W_loads| so far, and at least
-   * what lifts the liquids by 1e-4 of a cell.
+   * with T kinetic, U strain and V gravitational energy: the error of time
+   * integration and cell crossings. Round-off is subtracted, as is the work of
+   * gravity in half a step where points move by the velocity at the end of the
+   * step, which belongs to its middle (leapfrog). The scale is the largest T +
+   * |U| + |V - V_0| + |W_sides| + |W_loads| so far, and at least what lifts the
+   * liquids by 1e-4 of a cell.
    */
   template <int dim>
   class Balance

@@ -42,10 +42,9 @@ namespace limber
 
 
   /**
-   * Follows single points wherever they go: they change their place in the
-   * arrays with each sort and their rank with each synchronisation. The
-   * owner notices the first itself; only where no rank has a point do all of
-   * them look for it.
+   * Follows single points: they change their position in the arrays with each
+   * sort and their rank with each synchronisation. The owner notices the former
+   * itself; only where no rank has a point do all of them search for it.
    */
   template <int dim>
   class TrackedPoints
@@ -55,9 +54,9 @@ namespace limber
     explicit TrackedPoints(const std::vector<TrackedPoint<dim>> &points);
 
     /**
-     * Follow the point of the body that is nearest to the place, of several
-     * the first by coordinates, whatever the number of ranks. Returns its
-     * number here; a point that is followed already keeps its own. Collective.
+     * Tracks the point of the body that is nearest to the place, of several the
+     * first by coordinates, whatever the number of ranks. Returns its number
+     * here; a point that is tracked already keeps its own. Collective.
      */
     unsigned int
     follow_nearest(const State<dim>         &state,
@@ -65,7 +64,7 @@ namespace limber
                    const dealii::Point<dim> &place);
 
     /**
-     * Look at all of them. Pressure and stress are filled for those of
+     * Evaluates all tracked points. Pressure and stress are filled for those of
      * @p with_stress only, since averages cost a pass over the points of the
      * body. Collective: one reduction, another after a point has changed its
      * rank, and what averages need.
