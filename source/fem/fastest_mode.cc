@@ -10,7 +10,7 @@ namespace limber
     : model(model)
     , mode(model.make_vector())
   {
-    // the same on any number of ranks
+    // an oscillating start vector, the same on any number of ranks
     model.for_each_owned_node([&](const auto &place, const auto &dofs) {
       double phase = 0;
       for (unsigned int d = 0; d < dim; ++d)
@@ -47,7 +47,7 @@ namespace limber
         ahead -= behind;
         ahead *= 0.5;
         model.held().clear(ahead);
-        // Rayleigh's quotient in the metric of the lumped masses
+        // Rayleigh quotient in the metric of the lumped masses
         double mass = 0;
         for (const auto i : mode.locally_owned_elements())
           mass += mode[i] * mode[i] * model.nodal_masses()[i];

@@ -30,7 +30,7 @@ namespace limber
 
 
 
-    /** As many elements along each edge as make them about square. */
+    /** Numbers of elements along the edges that make these about square. */
     template <int dim>
     std::array<unsigned int, dim>
     square_elements(const BlockCorners<dim> &corners,
@@ -88,7 +88,9 @@ namespace limber
 
 
 
-    /** Number boundaries as the faces of the body; 2 dim: none of them. */
+    /**
+     * Boundary identifiers as the faces of the body; 2 dim: on none of them.
+     */
     template <int dim>
     void
     mark_faces(const std::optional<BlockCorners<dim>> &corners, Mesh<dim> &mesh)

@@ -42,8 +42,8 @@ namespace limber
 
 
 
-  // A node lies in every side of the box that one of the faces that it belongs
-  // to lies in.
+  // A node belongs to each side of the box in which a face of the body lies
+  // that contains the node.
   template <int dim>
   void
   HeldNodes<dim>::find(const dealii::DoFHandler<dim> &dof_handler)
@@ -83,7 +83,7 @@ namespace limber
            held_components(problem.sides, node.sides))
         if (held.component == node.component)
           {
-            // where two sides meet, the later one holds
+            // where two sides prescribe a component, the later one counts
             const bool is_new = all.empty() || all.back().dof != dof;
             if (is_new)
               {
@@ -156,7 +156,8 @@ namespace limber
           const double before = prescribed_velocity(h, former_time);
           const double middle = prescribed_velocity(h, former_time + step / 2);
           const double after  = prescribed_velocity(h, time);
-          // Simpson's rule, and a parabola through the three
+          // displacement by Simpson's rule, acceleration from the parabola
+          // through the three velocities
           displacement[h.dof] = former_displacement[h.dof] +
                                 step / 6 * (before + 4 * middle + after);
           velocity[h.dof]     = after;

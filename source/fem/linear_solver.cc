@@ -83,7 +83,8 @@ namespace limber
     if (direct)
       {
         using Direct = dealii::TrilinosWrappers::SolverDirect;
-        // MUMPS works on all ranks; on one, KLU starts quicker.
+        // MUMPS factorises on all ranks; on one, KLU is faster for small
+        // systems.
         const bool alone = dealii::Utilities::MPI::n_mpi_processes(
                              matrix.get_mpi_communicator()) == 1;
         methods->factors = std::make_unique<Direct>(

@@ -12,13 +12,13 @@ namespace limber
   namespace
   {
     constexpr unsigned int most_iterations = 500;
-    // vectors that are kept; iterations start again beyond
+    // of the Krylov space; GMRES restarts beyond
     constexpr unsigned int most_vectors = 150;
-    // of the preconditioned residual
+    // relative, of the preconditioned residual
     constexpr double accuracy = 1e-10;
-    // All by counting iterations and seconds. The degree of the polynomial is
-    // over the square root of its range of eigenvalues: an eighth of the error
-    // is left.
+    // All tuned by counting iterations and seconds. The degree of the Chebyshev
+    // polynomial is this times the square root of its range of eigenvalues: an
+    // eighth of the error is left.
     constexpr double    chebyshev_degree = 1.4;
     const MultigridForm multigrid_form{3, "MGV", 1.5};
     constexpr double    weight_of_pressure = 0.6;
@@ -32,7 +32,7 @@ namespace limber
 
 
 
-    /** Preconditioned equations for scaled unknowns. */
+    /** Preconditioned equations for scaled unknowns (GMRES works on these). */
     struct ScaledEquations
     {
       ScaledEquations(
@@ -61,8 +61,8 @@ namespace limber
       const MixedSolver::Equations                    &equations;
       const dealii::TrilinosWrappers::PreconditionAMG &multigrid;
       const Chebyshev                                 &of_pressure;
-      // the residual is nearly the energy of the error, as the diagonal tells
-      // it: both kinds of unknowns in the same unit
+      // with this scaling by the diagonal the residual is nearly the energy of
+      // the error, with both kinds of unknowns in the same unit
       Vector scale, inverse_scale;
 
     private:
@@ -108,8 +108,8 @@ namespace limber
 
 
 
-    // First the displacements without a change of pressure, then the pressures
-    // that the volumes, as these leave them, need
+    // Block triangular: first the displacements without a change of pressure,
+    // then the pressures that their change of volume needs (Schur complement)
     void
     ScaledEquations::precondition(Vector       &unknowns,
                                   const Vector &right_sides) const

@@ -15,12 +15,15 @@ namespace limber
   {
     using Vector = dealii::TrilinosWrappers::MPI::Vector;
 
-    // Squares of circular frequencies below this share of the shift are zero.
+    // Eigenvalues (squares of circular frequencies) below this share of the
+    // shift are zero: rigid motions.
     constexpr double round_off = 1e-5;
 
 
 
-    /** Masses, or the inverse of K + s M, on components that are not held. */
+    /**
+     * Mass matrix, or the inverse of K + s M, on components that are not held.
+     */
     template <int dim>
     class Operator
     {
@@ -61,7 +64,8 @@ namespace limber
   NaturalFrequencies
   natural_frequencies(const SolidModel<dim> &model, const unsigned int count)
   {
-    // Of the order of the lowest modes, and positive: nothing is singular.
+    // The shift is of the order of the lowest eigenvalues, and positive so that
+    // K + s M is regular in spite of rigid motions.
     const double shift =
       std::pow(model.element->shear_wave_speed /
                  model.problem.grid.lower.distance(model.problem.grid.upper),

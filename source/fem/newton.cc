@@ -10,8 +10,9 @@
 #include <sstream>
 
 /**
- * @file Which forces are not in balance, Newton's method, and the steps of a
- * reference that need it: of load, and in time by Hilber, Hughes and Taylor.
+ * @file Residual forces, Newton's method, and the steps of a reference that
+ * need it: load steps, and time steps of the HHT-alpha method (Hilber, Hughes
+ * and Taylor 1977).
  */
 namespace limber
 {
@@ -19,20 +20,20 @@ namespace limber
   {
     constexpr double       infinite = std::numeric_limits<double>::infinity();
     constexpr unsigned int most_iterations = 25;
-    // of a load step, before Newton's method is given up
+    // of a load step, before it is given up
     constexpr double       smallest_part = 1. / 256;
     constexpr unsigned int most_halvings = 8; // of a time step, likewise
     // alpha of Hilber, Hughes and Taylor (1977): the share of the forces of the
     // step before. It damps what the step does not resolve, by 10 % a step.
     constexpr double delay = 0.05;
-    // A kept tangent has to reduce the residual to this share at least.
+    // Modified Newton: a kept tangent has to reduce the residual to this share.
     constexpr double good_reduction = 0.1;
   } // namespace
 
 
 
-  // Stresses know a strain to some last bits of one: what they hold against a
-  // body at rest, whose loads may just begin to grow, is noise, N.
+  // Stresses have an error of some last bits of a strain of one: a residual of
+  // a body at rest below this is round-off, N.
   template <int dim>
   double
   ReferenceSolver<dim>::round_off_of_forces() const
@@ -46,9 +47,8 @@ namespace limber
 
 
 
-  // Forces at the present displacement; what is left over relative to the
-  // largest of them, zero within round-off, infinite where an element is
-  // turned inside out.
+  // Residual forces at the present displacement, relative to the largest force:
+  // zero within round-off, infinite where an element is inverted.
   template <int dim>
   double
   ReferenceSolver<dim>::unbalance(const double time, const double mass_factor)
@@ -76,7 +76,8 @@ namespace limber
     model.held().clear(of_free);
     support -= of_free;
 
-    // with a share of the forces of the step before, over that of the new ones
+    // HHT-alpha: with a share of the forces of the step before, over that of
+    // the new ones
     if (mass_factor != 0)
       unbalanced.add(delay / (1 - delay),
                      former_net_force,
@@ -127,7 +128,7 @@ namespace limber
         before = state.displacement;
         linear_solver.solve(correction, unbalanced);
         ++state.newton_steps;
-        // Where forces nearly vanish, round-off of large ones remains.
+        // Where forces nearly cancel, round-off of large ones remains.
         if (rest <= 1e-4 &&
             correction.l2_norm() <= 1e-11 * state.displacement.l2_norm())
           return true;
@@ -173,8 +174,9 @@ namespace limber
 
 
 
-  // What held nodes move is put on the others by the tangent at the start,
-  // so that no element is crushed before Newton's method begins.
+  // Predictor: the increment of prescribed displacements is spread to the other
+  // nodes by the tangent at the start, so that no element inverts before
+  // Newton's method begins.
   template <int dim>
   void
   ReferenceSolver<dim>::follow_held(const NodalVector &former)
@@ -206,9 +208,9 @@ namespace limber
 
 
 
-  // A scene in equilibrium says which loads act at a time. Those of one in
-  // motion are not taken on their way, which inertia is part of, but from
-  // nothing to what they are at the end.
+  // Loads of an equilibrium. A quasi-static scene says which loads act at a
+  // time. For a scene in motion its history of loads is not followed, as
+  // inertia is part of it; they grow from zero to what they are at the end.
   template <int dim>
   void
   ReferenceSolver<dim>::choose_loads(const double time)
@@ -224,7 +226,7 @@ namespace limber
 
 
 
-  // A load step that Newton's method does not manage is taken in parts.
+  // A load step in which Newton's method fails is divided (adaptive steps).
   template <int dim>
   void
   ReferenceSolver<dim>::load_step(const double step)
@@ -256,7 +258,7 @@ namespace limber
 
 
 
-  // A step that Newton's method does not manage is taken in halves.
+  // A time step in which Newton's method fails is halved.
   template <int dim>
   void
   ReferenceSolver<dim>::newmark_step(const double       step,
@@ -299,7 +301,7 @@ namespace limber
                   state.velocity,
                   (0.5 - beta) * step * step,
                   state.acceleration);
-    // begin with the acceleration of the step before
+    // predictor: the acceleration of the step before
     state.displacement = predicted;
     state.displacement.add(1 / factor, state.acceleration);
     NodalVector held_acceleration = model.make_vector();
@@ -309,7 +311,8 @@ namespace limber
                            state.displacement,
                            state.velocity,
                            held_acceleration);
-    // such that displacement and acceleration of held components agree
+    // so that the Newmark formulas give the prescribed displacement and
+    // acceleration of held components
     NodalVector held_predicted = state.displacement;
     held_predicted.add(-1 / factor, held_acceleration);
     model.held().replace(predicted, held_predicted);

@@ -10,15 +10,15 @@
 #include <string>
 
 /**
- * @file How a reference begins, its explicit steps, and what every step adds
- * up. The steps that need Newton's method are in newton.cc.
+ * @file Initialisation of a reference, its explicit steps, and the sums over
+ * every step. Steps by Newton's method are in newton.cc.
  */
 namespace limber
 {
   namespace
   {
     constexpr double share_of_longest_step = 0.8;
-    // Explicit steps between two looks at the longest stable one
+    // Explicit steps between two estimates of the stability limit
     constexpr unsigned int steps_between_looks = 200;
 
 
@@ -39,7 +39,7 @@ namespace limber
 
 
 
-    /** Division by the sums of the rows of the mass matrix. */
+    /** Multiplication by the inverse of the lumped mass matrix (row sums). */
     struct LumpedMass
     {
       const NodalVector &masses;
@@ -107,7 +107,7 @@ namespace limber
         return;
       }
 
-    // accelerations: those of held components are known
+    // initial accelerations: those of held components are prescribed
     unbalance(0, 0);
     NodalVector  ignored = model.make_vector(), held = model.make_vector();
     const double moment =
@@ -152,7 +152,8 @@ namespace limber
 
 
 
-  // Two over the circular frequency of the fastest motion is the limit.
+  // Stability limit of central differences: two over the highest circular
+  // frequency.
   template <int dim>
   double
   ReferenceSolver<dim>::explicit_step_limit(const unsigned int n_iterations)
@@ -243,8 +244,8 @@ namespace limber
 
 
 
-  // Work and impulse of the forces that act from outside, by the trapezoidal
-  // rule: of second order.
+  // Work and impulse of external forces by the trapezoidal rule, which is of
+  // second order.
   template <int dim>
   void
   ReferenceSolver<dim>::account(const NodalVector &former, const double step)

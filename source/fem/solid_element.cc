@@ -87,7 +87,7 @@ namespace limber
 
             const auto   s    = tensor_of<dim>(states[q].deviator);
             const double J    = Law::finite_strain ? deformations[q].J : 1;
-            const double mean = conjugate[q] * J; // -J p
+            const double mean = conjugate[q] * J; // mean Kirchhoff stress
             for (unsigned int i = 0; i < n; ++i)
               {
                 const unsigned int c = component(values, i);
@@ -139,8 +139,8 @@ namespace limber
         std::vector<MaterialState> result(ratio.size());
         for (unsigned int q = 0; q < ratio.size(); ++q)
           {
-            // The law has no answer where a corner is turned inside out; the
-            // quadrature points may be all right.
+            // The law is undefined where a corner is inverted, even if the
+            // quadrature points are not.
             if (Law::finite_strain && !(there[q].J > 0 && ratio[q] > 0))
               {
                 result[q] = unknown_state();
@@ -154,7 +154,7 @@ namespace limber
       }
 
     private:
-      /** All, and false if the material is turned inside out anywhere. */
+      /** Deformation at all points; false if the element is inverted at any. */
       static bool
       deform(const Values                  &values,
              const std::vector<double>     &u,
@@ -179,7 +179,7 @@ namespace limber
         return result;
       }
 
-      /** p at u to first order, from the state at other displacements. */
+      /** p at u, linearised about other displacements (see compute()). */
       std::vector<double>
       extrapolate(const Values               &values,
                   const FieldProjection<dim> &projection,
@@ -208,7 +208,8 @@ namespace limber
         return projection.project(result);
       }
 
-      /** dU/dJ: minus the Cauchy pressure; small strain does not know it. */
+      /** dU/dJ: minus the Cauchy pressure, which is that of the law at small
+       * strains. */
       static double
       slope_of_energy(const typename Law::template State<dim, double> &state,
                       const double                                     J)
@@ -255,7 +256,8 @@ namespace limber
           }
       }
 
-      /** B^T M^-1 H M^-1 B with B the moments of dJ and H those of U''. */
+      /** Volumetric stiffness after static condensation of j and p: B^T M^-1 H
+       * M^-1 B with B the moments of dJ and H those of U''. */
       void
       add_projected_tangent(const FieldProjection<dim>       &projection,
                             const std::vector<double>        &ratio,

@@ -414,7 +414,8 @@ namespace limber
 
 
 
-  // Force per initial area: a pressure follows the present face.
+  // Traction per initial area; a pressure follows the deformed face (Nanson's
+  // formula).
   template <int dim>
   dealii::Tensor<1, dim>
   SolidModel<dim>::face_traction(const FaceLoad<dim>             &load,

@@ -35,7 +35,7 @@ namespace limber
 
 
 
-    /** Samples at places of one cell, given in its unit coordinates. */
+    /** Samples at places in one cell, given in reference coordinates. */
     template <int dim>
     void
     fill_samples(
@@ -131,17 +131,15 @@ namespace limber
 
   namespace
   {
-    /**
-     * Call with each cell that holds some of the places, their unit
-     * coordinates there and their numbers; every place with one cell.
-     */
+    /** Calls function with each cell that contains some of the places, their
+     * reference coordinates and numbers; every place with one cell. */
     template <int dim, class Function>
     void
     for_each_cell_with(const SolidModel<dim>                 &model,
                        const std::vector<dealii::Point<dim>> &places,
                        const Function                        &function)
     {
-      // Places by what they lie in: the box of every cell asks for its own.
+      // R-tree of the places: the bounding box of each cell finds those in it.
       std::vector<std::pair<dealii::Point<dim>, std::size_t>> entries;
       for (std::size_t p = 0; p < places.size(); ++p)
         entries.emplace_back(places[p], p);

@@ -14,15 +14,15 @@
 #include <cmath>
 #include <vector>
 
-/** @file Fields within an element: its deformation, and projections there. */
+/** @file Fields within an element: deformation gradients and L2 projections. */
 namespace limber
 {
-  /** Deformation at one point, and what the variation of J needs. */
+  /** Deformation at a quadrature point, with what the variation of J needs. */
   template <int dim>
   struct Deformation
   {
     SquareMatrix<dim>      gradient{}; // F
-    dealii::Tensor<2, dim> inverse;    // F^-1, or 1 where the strain is small
+    dealii::Tensor<2, dim> inverse;    // F^-1; 1 for small strains
     double                 J = 1;
   };
 
@@ -62,8 +62,9 @@ namespace limber
 
 
   /**
-   * L2 projection within an element onto 1 or 1, X, Y (, Z); with no modes
-   * the identity on the quadrature points.
+   * L2 projection within an element onto constants (one mode) or linear
+   * functions 1, X, Y (, Z); without modes it is the identity on the quadrature
+   * points.
    */
   template <int dim>
   class FieldProjection
@@ -148,7 +149,7 @@ namespace limber
 
 
 
-  /** The part of a deviator within the dimensions. */
+  /** The components of a deviator within the dimensions. */
   template <int dim>
   inline dealii::Tensor<2, dim>
   tensor_of(const Deviator<dim, double> &s)
@@ -163,7 +164,7 @@ namespace limber
 
 
 
-  /** What the state of a law is in a picture: Cauchy, per start volume. */
+  /** Output of the state of a law: Cauchy stress, energy per initial volume. */
   template <int dim, class Law>
   inline MaterialState
   material_state(const Law                                       &law,
@@ -185,7 +186,7 @@ namespace limber
 
 
 
-  /** The component that a degree of freedom of an element moves. */
+  /** The displacement component of a degree of freedom of an element. */
   template <int dim>
   inline unsigned int
   component(const dealii::FEValues<dim> &values, const unsigned int i)

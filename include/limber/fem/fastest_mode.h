@@ -7,21 +7,22 @@
 namespace limber
 {
   /**
-   * The fastest motion of a body, by the power method on M^-1 K: lumped masses,
-   * and K from differences of forces. Keeps what it found, so that a few
-   * iterations are enough where the body has moved since. Collective.
+   * Highest natural frequency of a body, which limits explicit steps: power
+   * iteration on M^-1 K with lumped masses and K from differences of forces.
+   * Keeps its vector, so that a few iterations suffice after the body has
+   * deformed further. Collective.
    */
   template <int dim>
   class FastestMode
   {
   public:
-    /** Begins as rough as can be. */
+    /** Starts from a highly oscillating vector. */
     explicit FastestMode(const SolidModel<dim> &model);
 
     /**
-     * Circular frequency around @p displacement, 1/s, from below. Zero where
-     * the body resists no motion; where an element is turned inside out, what
-     * the iterations before that found.
+     * Circular frequency about @p displacement, 1/s, a lower bound (Rayleigh
+     * quotient). Zero where the body has no stiffness; where an element is
+     * inverted, the result of the iterations before that.
      */
     double
     circular_frequency(const NodalVector &displacement,

@@ -10,7 +10,7 @@
 
 #include <memory>
 
-/** @file Meshes that fit a body at the start. */
+/** @file Body-fitted meshes for the initial configuration. */
 namespace limber
 {
   template <int dim>

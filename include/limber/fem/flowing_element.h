@@ -20,13 +20,14 @@
 namespace limber
 {
   /**
-   * The element of a law that flows. A quadrature point remembers F and the
-   * projected volume ratio j at the end of the step before, and the state of
-   * the law there; in a step the law is deformed further by f = F F_n^-1, with
-   * j / j_n for its volume, and returns to its yield surface at the end, as
-   * material points do in steps by Newton's method (stress/trial_stress.h).
-   * With the treatment of such a point replaced by the projection of the
-   * element the two discretisations share every line of the law.
+   * Element for elastoplastic laws. A quadrature point stores F and the
+   * projected volume ratio j of the end of the step before, and the state of
+   * the law there; in a step the law is deformed by the increment f = F F_n^-1,
+   * with j / j_n for its volume, and returns to its yield surface at the end
+   * (return mapping), as material points do in steps by Newton's method
+   * (stress/trial_stress.h). With the treatment of such a point replaced by the
+   * projection of the element the two discretisations share every line of the
+   * law.
    */
   template <int dim, class Law>
   class FlowingElement final : public SolidElement<dim>
@@ -58,7 +59,7 @@ namespace limber
       this->shear_wave_speed = std::sqrt(law.shear_modulus / law.density);
     }
 
-    // F by rows, j, pressure, deviator, history
+    // Layout: F by rows, j, pressure, deviator, history variables
     unsigned int
     n_memory() const override
     {
@@ -66,8 +67,8 @@ namespace limber
              Law::template n_history<dim>;
     }
 
-    // Flow whose strength follows the pressure makes volume as it is given
-    // only where it is associated.
+    // With pressure-dependent yielding the tangent is symmetric only for an
+    // associated flow rule.
     bool
     has_symmetric_tangent() const override
     {
@@ -198,7 +199,7 @@ namespace limber
     }
 
   private:
-    /** What a quadrature point remembers. */
+    /** The stored state of a quadrature point. */
     struct Point
     {
       SquareMatrix<dim> F{};
@@ -208,7 +209,7 @@ namespace limber
 
 
 
-    /** A quadrature point in a trial. */
+    /** The trial state of a quadrature point within a step. */
     struct Trial
     {
       Deformation<dim>  deformation;
@@ -222,7 +223,8 @@ namespace limber
 
 
 
-    /** Derivatives of the stress of a point by strain and by j. */
+    /** Algorithmic moduli: derivatives of the stress at a point by strain and
+     * j. */
     struct Rates
     {
       FlowRates<dim> of_step;
@@ -233,8 +235,9 @@ namespace limber
 
 
     /**
-     * The derivative of the forces. j follows D_j = M^-1 B_j in the modes of
-     * the projection; where there are none a point has its own mode.
+     * Consistent tangent, the derivative of the forces. The projected ratio has
+     * the derivative D_j = M^-1 B_j in its modes; without modes each point has
+     * its own ratio.
      */
     class Tangent
     {
@@ -361,7 +364,7 @@ namespace limber
       std::copy(point.state.history.begin(), point.state.history.end(), to);
     }
 
-    /** False where the material is turned inside out anywhere. */
+    /** False where the element is inverted at any point. */
     bool
     deform(const Values               &values,
            const std::vector<double>  &u,

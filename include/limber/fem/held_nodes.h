@@ -15,10 +15,11 @@
 namespace limber
 {
   /**
-   * The components of nodes that the sides of the box hold: at a slip side the
-   * normal one, at others all. A side holds the nodes of those faces of the
-   * body that lie in it at the start. Functions change the held components
-   * that this rank owns, and leave ghosts and all others as they are.
+   * Dirichlet conditions: the displacement components of nodes that the sides
+   * of the box hold, the normal one at a slip side, all at others. A side holds
+   * the nodes of those faces of the body that lie in it at the start. Functions
+   * change the held components that this rank owns, and leave ghosts and all
+   * others as they are.
    */
   template <int dim>
   class HeldNodes
@@ -31,11 +32,8 @@ namespace limber
     HeldNodes(const Problem<dim>            &problem,
               const dealii::DoFHandler<dim> &dof_handler);
 
-    /**
-     * What the sides prescribe at @p time, s, after a step from
-     * @p former_time: displacements, m, velocities, m/s, and accelerations,
-     * m/s^2.
-     */
+    /** Prescribed values at @p time, s, after a step from @p former_time:
+     * displacements, m, velocities, m/s, and accelerations, m/s^2. */
     void
     prescribe(const double       former_time,
               const NodalVector &former_displacement,
@@ -48,23 +46,24 @@ namespace limber
     void
     prescribe_velocity(const double time, NodalVector &velocity) const;
 
-    /** Set to zero. */
+    /** Sets held components to zero. */
     void
     clear(NodalVector &vector) const;
 
-    /** Take from another vector. */
+    /** Copies held components from another vector. */
     void
     replace(NodalVector &vector, const NodalVector &from) const;
 
-    /** Nodal masses, kg, times accelerations, m/s^2; zero where not held. */
+    /** Inertia of held components, N: nodal masses, kg, times accelerations,
+     * m/s^2; zero elsewhere. */
     NodalVector
     inertia(const NodalVector &masses, const NodalVector &acceleration) const;
 
-    /** The forces in held components, N, by side of the box. Collective. */
+    /** Reaction forces, N, by side of the box. Collective. */
     std::array<dealii::Tensor<1, dim>, 2 * dim>
     sum_over_sides(const NodalVector &forces) const;
 
-    /** Homogeneous, for the rows and columns of a matrix. */
+    /** Homogeneous constraints, for the rows and columns of a matrix. */
     const dealii::AffineConstraints<double> &
     constraints() const
     {

@@ -28,8 +28,8 @@ namespace limber
   class IterationsFailed : public ComputationError
   {
   public:
-    /** @p method: of what kind the iterations are, as the subject of a
-     * sentence; @p residual: what is left, as a share of that at the start. */
+    /** @p method: name of the iteration, as the subject of a sentence; @p
+     * residual: relative to that at the start. */
     IterationsFailed(const std::string &method,
                      unsigned int       iterations,
                      double             residual,
@@ -42,10 +42,10 @@ namespace limber
 
 
   /**
-   * Solves with a symmetric positive definite matrix of elasticity, again and
-   * again with the same one: small systems by factorisation (Amesos), large
-   * ones by conjugate gradients with algebraic multigrid (ML), which is told
-   * the rigid motions of the body.
+   * Solver for symmetric positive definite elasticity matrices, for many
+   * right-hand sides with one matrix: small systems by factorisation (Amesos),
+   * large ones by conjugate gradients with algebraic multigrid (ML), whose near
+   * null space is the rigid motions of the body.
    */
   class LinearSolver
   {

@@ -9,26 +9,27 @@
 namespace limber
 {
   /**
-   * Solves (A + B^T C^-1 B) u = f, the equations of a solid whose rows b of B
-   * tell the growth of the volume of a cell, as
+   * Solves the displacement form of a nearly incompressible solid, (A + B^T
+   * C^-1 B) u = f, where the rows of B are the volume changes of cells, as the
+   * saddle point problem
    *
    *   A u + B^T p = f,     B u - C p = g,      C diagonal,
    *
-   * which does not mind how little the volume gives in (C to zero). Generalised
-   * minimal residuals (GMRES; Saad and Schultz, SIAM J. Sci. Stat. Comput. 7,
-   * 1986) with a block triangular preconditioner (Bramble and Pasciak, Math.
-   * Comp. 50, 1988): one V-cycle of multigrid for A; then, with B u - g of the
-   * displacements that this gave, a polynomial of Chebyshev in a sparse matrix
-   * for the pressures. For one rank.
+   * which is robust in the incompressible limit (C to zero). GMRES (Saad and
+   * Schultz, SIAM J. Sci. Stat. Comput. 7, 1986) with a block triangular
+   * preconditioner (Bramble and Pasciak, Math. Comp. 50, 1988): one V-cycle of
+   * multigrid for A; then, with B u - g of these displacements, a Chebyshev
+   * polynomial in a sparse matrix for the Schur complement of the pressures.
+   * For one rank.
    *
-   * A may keep the part B^T D B of the stiffness of the volumes, D diagonal.
-   * With A0 what is in it besides, the pressures then have, in terms of
-   * Q = (C^-1 + D)^-1 + B A0^-1 B^T and a = D / (C^-1 + D), the exact inverse
+   * A may keep the part B^T D B of the volumetric stiffness, D diagonal. With
+   * its remainder A0, Q = (C^-1 + D)^-1 + B A0^-1 B^T and the diagonal matrix a
+   * = D / (C^-1 + D), the Schur complement has the exact inverse
    *
    *   (C + B A^-1 B^T)^-1 = (1 - a) (Q^-1 (1 - a) + D)
    *
-   * (Woodbury's formula), where a is diagonal; the preconditioner is this with
-   * the caller's approximation of Q.
+   * (Woodbury's formula); the preconditioner is this with the caller's
+   * approximation of Q.
    */
   class MixedSolver
   {
@@ -54,8 +55,9 @@ namespace limber
     ~MixedSolver();
 
     /**
-     * The displacements u for the right sides f and g. Returns the iterations
-     * it took; throws IterationsFailed where they do not converge.
+     * Solves for the displacements u with the right-hand sides f and g. Returns
+     * the number of iterations; throws IterationsFailed where they do not
+     * converge.
      */
     unsigned int
     solve(NodalVector               &solution,

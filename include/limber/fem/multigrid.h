@@ -19,10 +19,10 @@ namespace limber
 
 
   /**
-   * One cycle of smoothed aggregation (ML) for a matrix of elasticity.
-   * @p rigid_motions: values of each motion on the locally owned degrees of
-   * freedom, one motion after the other, needed during this call alone;
-   * @p dim: components of a node.
+   * One cycle of smoothed aggregation multigrid (ML) for an elasticity matrix.
+   * @p rigid_motions (near null space): values of each motion on the locally
+   * owned degrees of freedom, one motion after the other, needed during this
+   * call alone; @p dim: components of a node.
    */
   void
   make_multigrid(dealii::TrilinosWrappers::PreconditionAMG    &multigrid,

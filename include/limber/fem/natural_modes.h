@@ -8,7 +8,7 @@
 
 namespace limber
 {
-  /** Natural frequencies, and how many motions need no strain. */
+  /** Natural frequencies, and the number of rigid (zero-energy) motions. */
   struct NaturalFrequencies
   {
     unsigned int        n_rigid_motions = 0;
@@ -18,10 +18,11 @@ namespace limber
 
 
   /**
-   * The lowest natural frequencies of a body at rest, held as the sides of the
-   * box hold it: K x = w^2 M x by Lanczos' method on (K + s M)^-1 M (ARPACK),
-   * with consistent masses. Throws InputError where the mesh has fewer modes,
-   * ComputationError where the iteration does not converge. Collective.
+   * The lowest natural frequencies of a body at rest, held by the sides of the
+   * box: K x = w^2 M x by the Lanczos method with shift and invert, (K + s
+   * M)^-1 M (ARPACK), and consistent masses. Throws InputError where the mesh
+   * has fewer modes, ComputationError where the iteration does not converge.
+   * Collective.
    */
   template <int dim>
   NaturalFrequencies

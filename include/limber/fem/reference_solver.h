@@ -12,7 +12,7 @@
 
 namespace limber
 {
-  /** A body in motion, or in equilibrium, at some time. */
+  /** State of a body in motion, or in equilibrium, at some time. */
   template <int dim>
   struct SolidMotion
   {
@@ -36,22 +36,20 @@ namespace limber
 
 
   /**
-   * Leads a SolidModel through time: by load steps in equilibrium, by
-   * the method of Hilber, Hughes and Taylor (Newton's method in both, with the
-   * tangent kept as long as it serves in the latter), or by central
-   * differences.
-   * Collective.
+   * Time integration of a SolidModel: load steps in equilibrium, the HHT-alpha
+   * method (both by Newton's method, the latter with the tangent kept as long
+   * as it converges fast), or central differences. Collective.
    */
   template <int dim>
   class ReferenceSolver
   {
   public:
-    /** The material of @p model follows accepted steps. */
+    /** History variables of @p model are updated by accepted steps. */
     explicit ReferenceSolver(SolidModel<dim> &model);
 
     ~ReferenceSolver();
 
-    /** The step that the scene or, where it says none, the elements ask for. */
+    /** The step that the scene prescribes or else the elements allow. */
     double
     longest_step() const
     {

@@ -17,7 +17,7 @@
 
 namespace limber
 {
-  /** What the material of an element is in at some place. */
+  /** The state of the material at a place in an element. */
   struct MaterialState
   {
     double                        volume_ratio = 1;  // J, of the element's kind
@@ -31,19 +31,19 @@ namespace limber
 
 
   /**
-   * A total Lagrangian element of a solid, of one field (Q1, Q2) or
-   * three: displacement u, volume ratio j and its conjugate p, the latter two
-   * polynomials within the element and eliminated there (Simo, Taylor and
-   * Pister 1985),
+   * A total Lagrangian element of a solid, with one field (Q1, Q2) or three
+   * (mixed): displacement u, volume ratio j and its conjugate p, the latter two
+   * polynomials within the element and eliminated there by static condensation
+   * (Simo, Taylor and Pister 1985),
    *
    *   Pi = int W_dev(F) + U(j) + p (J(F) - j) dV.
    *
-   * A law that flows has no such energy, but the same stationarity in each
-   * step; its points remember where the one before has left them.
+   * An elastoplastic law has no such energy, but the same stationarity in each
+   * step; its points store the state at the end of the step before.
    *
-   * Stationarity makes j the L2 projection of J(F), and p that of U'(j). So
-   * the element without the two fields is the one whose projection is the
-   * identity, and both are computed by the same lines. theory/reference.md.
+   * Stationarity makes j the L2 projection of J(F), and p that of U'(j). So the
+   * element without the two fields is the one whose projection is the identity,
+   * and both are computed by the same lines. theory/reference.md.
    */
   template <int dim>
   class SolidElement
@@ -54,11 +54,11 @@ namespace limber
     virtual ~SolidElement() = default;
 
     /**
-     * Forces by which an element resists the displacements @p u of its nodes,
-     * N, and, where @p tangent is not null, their derivative, N/m. False where
-     * the element is turned inside out; the results are then of no use. All
-     * in the numbering of the degrees of freedom of a cell; @p values has
-     * shape gradients, places and weights of the initial configuration.
+     * Internal forces at the nodal displacements @p u, N, and, where @p tangent
+     * is not null, their derivative (tangent stiffness), N/m. False where the
+     * element is inverted; the results are then of no use. All in the numbering
+     * of the degrees of freedom of a cell; @p values has shape gradients,
+     * places and weights of the initial configuration.
      *
      * With @p former displacements, those of the iterate before, p in the
      * tangent is the one that they and their linearisation lead to, instead of
@@ -75,10 +75,10 @@ namespace limber
             const double               *memory = nullptr) const = 0;
 
     /**
-     * The states at the points of @p places, given the fields of the element,
-     * which follow from the points of @p values. Both may be the same. Of a
-     * law that flows they are those that the @p memory holds, between the
-     * points by the polynomial through them.
+     * States at the points of @p places from the fields of the element, which
+     * the points of @p values determine. Both may be the same. With plasticity
+     * they are those stored in @p memory, interpolated by the polynomial
+     * through the quadrature points.
      */
     virtual std::vector<MaterialState>
     states(const Values              &values,
@@ -86,22 +86,20 @@ namespace limber
            const std::vector<double> &u,
            const double              *memory = nullptr) const = 0;
 
-    /** Numbers that a quadrature point remembers of its past; elastic: none. */
+    /** Number of history values of a quadrature point; elastic: none. */
     virtual unsigned int
     n_memory() const
     {
       return 0;
     }
 
-    /** Memory of the points of @p values before anything has moved. */
+    /** Initial history values of the points of @p values. */
     virtual void
     begin(const Values & /*values*/, double * /*memory*/) const
     {}
 
-    /**
-     * Let the @p memory of the points follow to the displacements @p u, at
-     * which compute() has succeeded. Returns the work on plastic strain, J.
-     */
+    /** Updates the history values in @p memory to the displacements @p u, at
+     * which compute() has succeeded. Returns the plastic work, J. */
     virtual double
     accept(const Values & /*values*/,
            const std::vector<double> & /*u*/,
@@ -117,7 +115,7 @@ namespace limber
       return true;
     }
 
-    /** Whether forces act on the deformed body. */
+    /** Whether equilibrium is that of the deformed body. */
     bool finite_strain = true;
 
     /** rho, kg/m^3, and wave speeds at rest, m/s. */
@@ -126,10 +124,8 @@ namespace limber
 
 
 
-  /**
-   * The element of a scene. Throws InputError where the law of the body is
-   * that of a liquid, or flows at a rate.
-   */
+  /** The element of a scene. Throws InputError where the law of the body is
+   * that of a liquid, or depends on the rate. */
   template <int dim>
   std::unique_ptr<const SolidElement<dim>>
   make_solid_element(const Body<dim> &body, const ReferenceElement kind);

@@ -23,11 +23,12 @@
 namespace limber
 {
   /**
-   * The body of a scene in finite elements: mesh, degrees of freedom, masses,
-   * forces and their derivative, and the nodes that the sides of the box hold.
-   * Nodal vectors have the displacements of all nodes of this rank's elements
-   * (ghosted); forces are complete for those it owns. Member functions are
-   * collective unless they return what is known already or ask for one cell.
+   * Finite element model of the body of a scene: mesh, degrees of freedom,
+   * masses, forces and their derivative, and Dirichlet conditions by the sides
+   * of the box. Nodal vectors have the displacements of all nodes of this
+   * rank's elements (ghosted); forces are complete for those it owns. Member
+   * functions are collective unless they return what is known already or ask
+   * for one cell.
    */
   template <int dim>
   class SolidModel
@@ -46,7 +47,7 @@ namespace limber
     NodalVector
     make_vector() const;
 
-    /** What the sides of the box hold. */
+    /** The nodes held by the sides of the box (Dirichlet conditions). */
     const HeldNodes<dim> &
     held() const
     {
@@ -57,7 +58,7 @@ namespace limber
     NodalVector
     initial_velocity() const;
 
-    /** N; false where an element is turned inside out. */
+    /** Internal forces, N; false where an element is inverted. */
     bool
     internal_forces(const NodalVector &displacement, NodalVector &forces) const;
 
@@ -82,8 +83,8 @@ namespace limber
     }
 
     /**
-     * Stiffness + @p mass_factor M, one on the diagonal of held components;
-     * false where an element is turned inside out. @p former: as that of
+     * Tangent stiffness + @p mass_factor M, with one on the diagonal of held
+     * components; false where an element is inverted. @p former: as that of
      * SolidElement::compute().
      */
     bool
@@ -93,9 +94,9 @@ namespace limber
              const NodalVector *former = nullptr) const;
 
     /**
-     * Let what the material remembers follow to @p displacement, at which the
-     * internal forces have been computed; nothing where it is elastic. Returns
-     * the work on plastic strain, J.
+     * Updates the history variables to @p displacement, at which the internal
+     * forces have been computed; nothing if elastic. Returns the plastic work,
+     * J.
      */
     double
     accept(const NodalVector &displacement);
@@ -107,18 +108,18 @@ namespace limber
            const dealii::FEValues<dim>                                  &places,
            const NodalVector &displacement) const;
 
-    /** A matrix with the right pattern. */
+    /** A matrix with the sparsity pattern of the stiffness. */
     void
     reinit(Matrix &matrix) const;
 
-    /** Consistent, kg; all components, also held ones. */
+    /** Consistent mass matrix, kg; all components, also held ones. */
     const Matrix &
     mass_matrix() const
     {
       return *masses;
     }
 
-    /** Sums of its rows, kg. */
+    /** Lumped masses, its row sums, kg. */
     const NodalVector &
     nodal_masses() const
     {
@@ -135,7 +136,7 @@ namespace limber
       const typename dealii::DoFHandler<dim>::active_cell_iterator &cell,
       const NodalVector &vector) const;
 
-    /** Values of the rigid motions, as LinearSolver wants them. */
+    /** Rigid motions, the near null space for LinearSolver. */
     std::vector<double>
     rigid_motions() const;
 
@@ -193,7 +194,7 @@ namespace limber
 
 
 
-  /** Up to here a factorisation is quicker than the iteration. */
+  /** Up to this size a factorisation is faster than the iteration. */
   template <int dim>
   bool
   is_small(const SolidModel<dim> &model)

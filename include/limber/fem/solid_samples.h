@@ -6,7 +6,7 @@
 
 #include <vector>
 
-/** @file What a solution in finite elements says at places and at nodes. */
+/** @file Evaluates a finite element solution at places and at nodes. */
 namespace limber
 {
   /** Displacement, velocity and state of the material at a place. */
@@ -43,13 +43,13 @@ namespace limber
             const NodalVector                     &displacement,
             const NodalVector                     &velocity);
 
-  /** Pressure and stress (xx yy zz xy yz zx) of a node, Cauchy, Pa. */
+  /** Cauchy pressure and stress (xx yy zz xy yz zx) of a node, Pa. */
   using NodalStress = std::array<double, 7>;
 
   /**
-   * What nodes say at many places, by the shape functions; zero outside of the
-   * body. Nodes in the order of SolidModel::for_each_owned_node(). For one
-   * rank.
+   * Interpolates nodal values at many places by the shape functions; zero
+   * outside of the body. Nodes in the order of
+   * SolidModel::for_each_owned_node(). For one rank.
    */
   template <int dim>
   std::vector<NodalStress>

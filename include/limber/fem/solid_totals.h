@@ -10,7 +10,7 @@
  */
 namespace limber
 {
-  /** Energy of the strain and extremes over the quadrature points. */
+  /** Strain energy and extremes over the quadrature points. */
   struct StrainTotals
   {
     double strain_energy   = 0; // J
