@@ -65,7 +65,9 @@ namespace limber
 
 
 
-    /** The first bytes of a file, if it is one; more than a note has. */
+    /**
+     * The first bytes of a file, more than a note has; empty if there is none.
+     */
     std::string
     start_of_file(const std::string &path)
     {
@@ -114,7 +116,9 @@ namespace limber
 
 
 
-    /** Put what can be read of a slot among the candidates, or say why not. */
+    /**
+     * Adds a slot to the candidates if its seal can be read, or notes why not.
+     */
     void
     look_at(const std::string &name, Survey &survey, bool &other_format)
     {
@@ -137,7 +141,7 @@ namespace limber
 
 
 
-    /** Take out the candidates of other runs than this one. */
+    /** Removes candidates of other runs than this one. */
     void
     drop_other_runs(const std::uint64_t run, Survey &survey)
     {
@@ -338,7 +342,7 @@ namespace limber
              const std::string &slot,
              const Seal        &seal)
   {
-    // Not write_whole_file(), as the text has to arrive before the name.
+    // Not write_whole_file(): the text has to be on the disk before its name.
     const std::string path = folder + "/" + note_name, partial = path + ".part";
     errno = 0;
     std::ofstream file(partial, std::ios::binary);

@@ -10,10 +10,11 @@ namespace limber
 {
   namespace
   {
-    // So many points are read at once.
+    // Number of points that are read at once.
     constexpr std::size_t portion = 1 << 18;
 
-    // Round-off of a place against the edges of its cell, of their length.
+    // Tolerance of a place in its cell for round-off, over the edges of the
+    // cell.
     constexpr double tolerance = 1e-6;
 
 
@@ -91,7 +92,7 @@ namespace limber
 
 
 
-    /** What of a portion of points belongs to this rank. */
+    /** The points of a portion that belong to this rank. */
     struct OwnPoints
     {
       std::vector<std::size_t>   place; // in the portion
@@ -100,7 +101,7 @@ namespace limber
 
 
 
-    /** Reads the points of a body in portions, and trusts none of them. */
+    /** Reads the points of a body in portions and validates all of them. */
     template <int dim>
     class PointReader
     {
@@ -215,7 +216,7 @@ namespace limber
           if (id >= n_at_start)
             refuse("id", "numbers beyond those of the start");
         check_places(own.cell, fields);
-        // Behind positions and velocities, see MaterialPoints
+        // Masses come behind positions and velocities, see MaterialPoints
         for (const double mass : fields[2 * dim])
           if (!(mass > 0))
             refuse(names[2 * dim], "values that are not positive");

@@ -220,8 +220,8 @@ namespace limber
                   [&]() { survey = survey_checkpoints(folder); });
     for (;;)
       {
-        // One rank decides, lest others see another state of the disk. None
-        // gives a file to HDF5 before all of it has been checked.
+        // One rank decides for all, as others might see another state of the
+        // disk. No file is opened by HDF5 before all of it has been checked.
         Candidate candidate;
         on_first_rank(grid.communicator,
                       [&]() { candidate = next_candidate(survey); });

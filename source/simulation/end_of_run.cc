@@ -9,7 +9,7 @@
 #include <iomanip>
 #include <sstream>
 
-/** @file The end of a run, as it may come about, and what is said of it. */
+/** @file How a run may end, and the messages about that. */
 namespace limber
 {
   namespace
@@ -24,7 +24,7 @@ namespace limber
 
 
 
-    /** Where no cause has been found: the usual one, and what to change. */
+    /** Where no cause has been found: the usual one and its remedy. */
     std::string
     usual_cause(const FailureKind     kind,
                 const TimeIntegration integration,
@@ -58,7 +58,7 @@ namespace limber
             return "Usually a point is compressed to nothing, see 'smallest "
                    "volume ratio' in the statistics. Refine 'Grid/Cells' or "
                    "load more slowly.";
-          case FailureKind::passed_side: // says it all
+          case FailureKind::passed_side: // its message is complete
           case FailureKind::other:
             break;
         }
@@ -118,7 +118,7 @@ namespace limber
   {
     integrator->synchronise();
     Diagnosis suspected = look_for_cause(/*unstable=*/true);
-    // A body that is wrong inside goes through an open side like others.
+    // Points of a body that has gone unstable leave through open sides as well.
     if (failure.kind == FailureKind::lost_points && lost_through_open_side &&
         !suspected.is_unstable)
       suspected = {};
@@ -152,7 +152,8 @@ namespace limber
   Diagnosis
   Simulation<dim>::look_for_cause(const bool unstable)
   {
-    // The speeds of a run that has blown up say nothing about its step.
+    // The speeds of a run that has become unstable do not tell its Courant
+    // number.
     const Method &method = problem.method;
     const auto    speeds = integrator->state();
     Symptoms      symptoms =
@@ -164,9 +165,9 @@ namespace limber
 
 
 
-  // Where nodes have shown the step to be impossible, points are what they
-  // were before it (with 'usf', but for the stress); else what the step has
-  // made of them.
+  // If the nodes have shown that the step is impossible, points are in the
+  // state before it (with 'usf', except for the stress); otherwise in that
+  // after it.
   template <int dim>
   std::string
   Simulation<dim>::describe_last_state()

@@ -13,10 +13,10 @@ namespace limber
   namespace
   {
     /**
-     * The stress s >= s_0 under a head rho_0 g z of material, Pa: ds/dz =
-     * rho_0 g / J(s), integrated by Runge and Kutta's classical method. For
-     * a real liquid it is rho_0 g z; a soft one is denser at the bottom, and
-     * would start to bounce without this.
+     * Lithostatic or hydrostatic stress s >= s_0 of a compressible material
+     * under a head rho_0 g z, Pa: ds/dz = rho_0 g / J(s), by the classical
+     * Runge-Kutta method. For a stiff liquid it is rho_0 g z; a soft one is
+     * denser at the bottom and would otherwise oscillate from the start.
      */
     template <class VolumeRatio>
     double
@@ -170,7 +170,7 @@ namespace limber
 
 
 
-  // Along gravity the weight of what is above, across it K0 times that.
+  // Geostatic stress: along gravity the weight above, across it K0 times that.
   template <int dim>
   void
   InitialState<dim>::set_geostatic(const dealii::Point<dim> &place,

@@ -11,26 +11,29 @@ namespace limber
 {
   namespace
   {
-    // A side may be overstepped by that share of an edge: by round-off, or by
-    // a body that vibrates in touch with it.
+    // Share of an edge by which any point may pass a side: by round-off, or in
+    // the vibrations of a body in contact with it.
     constexpr double chance_overstep = 1e-3;
-    // And by that share of an edge by what was so many edges from it at the
-    // start: next to what is held a body that is bent or pressed bulges.
+    // The same for points that were within 'neighbourhood' edges of the side at
+    // the start: a body that is bent or pressed bulges next to where it is
+    // held.
     constexpr double widest_bulge = 0.5, neighbourhood = 2;
-    // And by that share by points at a surface that feels the side.
+    // The same for bodies with contact at their surface.
     constexpr double deepest_dent = 0.5;
 
 
 
-    /** How far points of a body are from a side, outward, m. */
+    /**
+     * Signed distance of a body's points beyond a side, m, outward positive.
+     */
     struct Overstep
     {
       double neighbours = -std::numeric_limits<double>::max();
       double others     = -std::numeric_limits<double>::max();
     };
 
-    /** Of all points on all ranks, by sides; the places are those of the start.
-     */
+    /** Largest over all points on all ranks, by sides; neighbours are those
+     * that were next to the side at the start. */
     template <int dim>
     std::array<Overstep, 2 * dim>
     farthest(const State<dim> &state, const PointView<dim> &points)
@@ -81,7 +84,8 @@ namespace limber
             const Overstep  &by     = beyond[side];
             const double     most   = std::max(by.neighbours, by.others);
             const Side<dim> &wall   = state.problem.sides[side];
-            // A side that moves takes along what it holds, and the rest behind.
+            // A moving side takes along what it holds, so all else is compared
+            // with that.
             const bool moves =
               !wall.velocity.empty() && !wall.velocity.is_zero();
             const double taken_along = moves ? std::max(0., by.neighbours) : 0;

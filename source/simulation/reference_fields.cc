@@ -61,7 +61,7 @@ namespace limber
   {
     const auto arrays = read_point_arrays<dim>(path);
 
-    // Ranks number nodes as they like; their places tell which is which.
+    // Ranks may number nodes in any order; they are identified by their places.
     const double unit = 1e-6 * model.smallest_edge;
     const auto   key  = [&](const dealii::Point<dim> &place) {
       std::array<long long, dim> result;

@@ -11,10 +11,8 @@ namespace limber
 {
   namespace
   {
-    /**
-     * J: laws take the difference of numbers of the size of one, so energies
-     * are known to some last bits of the stiffness.
-     */
+    /** Round-off of the energy, J: laws take differences of numbers of order
+     * one, so it is some last bits of the stiffness. */
     template <int dim>
     double
     energy_of_round_off(const SolidModel<dim> &model)
@@ -144,7 +142,7 @@ namespace limber
                  motion.plastic_work +
                  std::abs(result.gravitational_energy - gravity_at_start) +
                  std::abs(motion.boundary_work) + std::abs(motion.load_work));
-    // Gravity that grows with the load steps has no potential.
+    // Gravity that grows with the load steps has no potential, so no drift.
     result.energy_drift =
       problem.reference.method == ReferenceMethod::quasi_static ?
         not_known :
@@ -226,7 +224,8 @@ namespace limber
         case ObservedPart::side:
           seen.force = -motion.side_force[observable.side];
           return seen;
-        case ObservedPart::obstacle: // which scenes of references lack
+        case ObservedPart::obstacle: // not in references, whose scenes have no
+                                     // obstacles
         case ObservedPart::column:
           break;
       }

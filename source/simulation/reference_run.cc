@@ -31,12 +31,13 @@ namespace limber
   {
     constexpr double same_time = 1e-9; // relative to a step
 
-    // Of the energy over its scale: what grows by more is no reference.
+    // Energy drift up to which a reference is accepted.
     constexpr double admitted_growth = 0.01;
 
 
 
-    /** What a reference depends on: all but where it goes and how it speaks. */
+    /** The entries on which the result of a reference depends: all but those of
+     * output and messages. */
     std::vector<std::pair<std::string, std::string>>
     deciding_entries(const SceneFile &scene)
     {
@@ -183,7 +184,7 @@ namespace limber
               continue;
             while (motion.time < target * (1 - same_time))
               {
-                // As many equal steps as bring it to the target
+                // Equal steps, as many as it takes to reach the target
                 const double remaining = target - motion.time;
                 const double n =
                   std::ceil(remaining / solver.longest_step() - same_time);

@@ -7,7 +7,7 @@
 
 #include <sstream>
 
-/** @file The two ways between a Simulation and a RunState. */
+/** @file Conversion of a Simulation to a RunState and back. */
 namespace limber
 {
   template <int dim>
@@ -29,7 +29,7 @@ namespace limber
     state.step = saved_step = resumed->step;
     state.time              = resumed->time;
     state.step_size         = resumed->step_size;
-    // A sum over ranks may stand on any of them.
+    // Ledgers are summed over ranks, so one of them gets all.
     state.ledger = {};
     if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
       state.ledger = resumed->ledger;
@@ -41,7 +41,8 @@ namespace limber
       balance(grid, bodies);
     integrator->restore(resumed->integrator);
 
-    // The scales of the balance grow with rows only.
+    // evaluate() may raise the scales of the balance, which only rows should
+    // do.
     balance_of_start.restore(resumed->balance);
     totals = balance_of_start.evaluate(state);
     balance_of_start.restore(resumed->balance);

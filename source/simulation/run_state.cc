@@ -15,8 +15,8 @@
 
 namespace limber
 {
-  // One list of members for all ways: in and out of a file, and through the
-  // test for finite numbers.
+  // One list of members for all purposes: written to a file, read from it, and
+  // tested for finite numbers.
 
   template <class Archive>
   void

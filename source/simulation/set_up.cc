@@ -18,10 +18,10 @@ namespace limber
   namespace
   {
     /**
-     * C = grad v of a point that carries an affine velocity: the slopes of the
-     * formula over @p half_edge (m) to either side, as a point stands for that
-     * much material. A formula that has no value on one side gives its slope to
-     * the other.
+     * Affine velocity (APIC) C = grad v of a point at the start: difference
+     * quotients of the formula over @p half_edge (m) to either side, as a point
+     * stands for that much material; one-sided where the formula is undefined
+     * on the other side.
      */
     template <int dim>
     void
@@ -91,7 +91,7 @@ namespace limber
 
 
 
-    /** Of the points of a body with that kernel. */
+    /** Form of the points' domains with a kernel. */
     DomainForm
     domain_form(const KernelKind kernel)
     {
@@ -112,7 +112,8 @@ namespace limber
 
 
 
-    /** Whether it matters where the material of points ends. */
+    /** Whether there is contact at points, so that the extent of their material
+     * matters. */
     template <int dim>
     bool
     presses_at_points(const Problem<dim> &problem)
@@ -134,8 +135,8 @@ namespace limber
               const Body<dim>           &body,
               const BackgroundGrid<dim> &grid)
     {
-      // A liquid shears its points' domains without end, and what controls its
-      // checkerboards is for linear functions.
+      // Liquids have linear functions: they would shear domains without end,
+      // and checkerboard control is for linear functions.
       const KernelKind kernel =
         is_for_solids(problem.grid.kernel) && body.is_liquid ?
           KernelKind::linear :
@@ -175,8 +176,8 @@ namespace limber
 
 
 
-    // Of the points of a lattice one in each row has its end of the row next to
-    // the surface: its material ends there.
+    // Depth below the surface of points that are the last in a row of their
+    // lattice: so far their material reaches.
     template <int dim>
     void
     set_reach(const Shape<dim>                                        &shape,
@@ -211,8 +212,8 @@ namespace limber
 
 
 
-    // Of a cut part, which is smaller than the spacing, or of a point of a
-    // lattice of the body's own, by its volume.
+    // Edges of a point with 'cut', whose volume is smaller than that of the
+    // spacing, or of a point of a 'fitted' lattice, from its volume.
     template <int dim>
     void
     set_edges(const GridDescription<dim>                              &box,
@@ -272,10 +273,8 @@ namespace limber
 
 
 
-    /**
-     * A body that a coarse cell is wider than has no surface for the grid, and
-     * what it weighs depends on where the cell lies.
-     */
+    /** In a cell wider than the body the surface is not resolved, and the
+     * body's weight on the grid depends on where the cell lies. */
     template <int dim>
     void
     refuse_thin_body(const BackgroundGrid<dim> &grid,
@@ -306,8 +305,8 @@ namespace limber
 
 
 
-    // Points follow the size of cells, and criteria may look at points; a
-    // change of the mesh divides cells once at most.
+    // An iteration: points are seeded to fit the cells, and refinement criteria
+    // may look at points; each change of the mesh refines cells by one level.
     template <int dim>
     void
     seed_on_wanted_mesh(const Problem<dim>  &problem,
@@ -320,7 +319,7 @@ namespace limber
             fill_with_points(problem, grid, *body);
           if (!grid.has_levels())
             return;
-          // What has been divided stays, so that this comes to an end.
+          // Refined cells stay refined, so that the iteration ends.
           const RefinedCells<dim> present = grid.divided_cells();
           RefinedCells<dim> wanted = wanted_mesh(problem, grid, bodies, 0);
           wanted.join(present);
@@ -333,7 +332,7 @@ namespace limber
       for (const auto &body : bodies)
         refuse_thin_body(grid, *body);
     }
-    /** Whether a place and those next to it lie in a shape. */
+    /** Whether a place is in a shape, by more than a margin along each axis. */
     template <int dim>
     bool
     is_well_inside(const Shape<dim>         &shape,
@@ -356,9 +355,9 @@ namespace limber
 
 
     /**
-     * What a contact would throw apart; points in a face that bodies share are
-     * in neither. Bodies that share their nodes may overlap a little: health
-     * tells how much.
+     * Refuses overlaps, which contact would push apart violently; points in a
+     * common face of two bodies are in neither. Bodies that share their nodes
+     * may overlap a little: health tells how much.
      */
     template <int dim>
     void

@@ -23,11 +23,12 @@ namespace limber
 {
   namespace
   {
-    // The mesh is partitioned anew, which costs about as much as so many
-    // steps, when ranks have waited for that long for the one with most points.
+    // Load balance: the mesh is partitioned anew, which costs about as much as
+    // so many steps, when ranks have waited for that long for the one with most
+    // points.
     constexpr double steps_to_balance = 200;
 
-    // So many bytes for empty cells are worth a line.
+    // Bytes for empty cells from which a note is made.
     constexpr double worth_telling = 2e8;
 
     // Points of a full cell
@@ -41,7 +42,7 @@ namespace limber
       return result;
     }
 
-    // A step shorter than this share of the first one will never arrive.
+    // With a step below this share of the first one the run would never end.
     constexpr double smallest_step = 1e-6;
 
     // Times closer than this, relative to the step, are one time.
@@ -76,7 +77,7 @@ namespace limber
   {
     targets.push_back(problem.end_time);
     std::sort(targets.begin(), targets.end());
-    // Seeding and sorting have needed more than stays.
+    // Seeding and sorting have needed memory that can be returned.
     malloc_trim(0);
   }
 
@@ -245,14 +246,14 @@ namespace limber
 
 
 
-  // As long as the integrator admits, but not past a time to land on; two
-  // equal steps rather than a long one and a sliver.
+  // The longest stable step, shortened to end at the next target; two equal
+  // steps rather than a long and a very short one.
   template <int dim>
   double
   Simulation<dim>::next_step() const
   {
     double longest = integrator->longest_step();
-    // Sound holds the steps of others down.
+    // In other schemes the speed of sound limits the step more than this.
     if (problem.method.integration == TimeIntegration::semi_implicit &&
         problem.method.time_step == 0)
       longest = step_that_obstacles_allow(problem, state.time, longest);
@@ -351,7 +352,7 @@ namespace limber
   Simulation<dim>::report_lost_points()
   {
     std::vector<std::string> own;
-    std::string              first; // of them, without its velocity
+    std::string              first; // the first of them, without its velocity
     int                      through_open = 0;
     for (const auto &[body, point] : integrator->lost_points())
       {
@@ -419,8 +420,8 @@ namespace limber
 
 
 
-  // Ranks that have got many more points than others wait for these no longer
-  // than until here.
+  // Repartitions the mesh where adaptation leaves a rank with many more points
+  // than others, which would wait for it.
   template <int dim>
   void
   Simulation<dim>::adapt_if_due()
@@ -452,7 +453,7 @@ namespace limber
 
 
 
-  // Those of the start, and those that others have become.
+  // Points of the start, and those from splitting, less merged ones.
   template <int dim>
   unsigned long
   Simulation<dim>::points_ever() const

@@ -7,10 +7,8 @@
 
 namespace limber
 {
-  /**
-   * The stress of a body at time 0, and what its points have been through, by
-   * the formulas of the scene or in balance with gravity.
-   */
+  /** Initial stress and history of the points of a body, by the formulas of the
+   * scene or in equilibrium with gravity. */
   template <int dim>
   class InitialState
   {
@@ -23,7 +21,7 @@ namespace limber
     PointStart<dim>
     at(const dealii::Point<dim> &place) const;
 
-    /** That the law does not admit what at() gives there. */
+    /** Throws where the law does not admit the state of at() there. */
     [[noreturn]] void
     refuse(const dealii::Point<dim> &place) const;
 

@@ -8,12 +8,11 @@
 namespace limber
 {
   /**
-   * A body that is computed in its initial frame feels a side of the box only
-   * where it touched it at the start. Throws ComputationError where a point
-   * has passed a side that is not free. What was next to that side at the start
-   * may bulge by half a cell, with a warning; or go where it wants if the side
-   * moves, which takes it along. A body that feels the side at its surface
-   * must not be pressed through it by half a cell.
+   * A body in its initial frame detects a side of the box only where it touched
+   * it at the start. Throws ComputationError where a point has passed a side
+   * that is not free. Points that were next to that side may bulge by half a
+   * cell, with a warning, or move freely with a side that moves. A body with
+   * contact at its surface must not be pressed through a side by half a cell.
    * Collective, a pass over the points of such bodies.
    */
   template <int dim>

@@ -13,14 +13,13 @@
 namespace limber
 {
   /**
-   * Sums over the body and how well energy is conserved; as Totals.
-   *
-   * A body at rest whose loads begin to grow has no energy to hold a gain
-   * against: the balance of the first step by central differences is all
-   * kinetic energy, dt f.v / 4 with the forces f from outside, and no work. So
-   * where they have the power f.v, a gain of 0.3 dt |f.v| is not resolved. It
-   * is a share of 1.2 / n of the energy after n steps of a load that grows
-   * evenly, and grows but with the amplitude of a motion that is unstable.
+   * Sums over the body and its energy balance, as Totals. A body at rest whose
+   * loads begin to grow has no energy yet to compare a drift with: after the
+   * first step of central differences the balance is all kinetic energy, dt f.v
+   * / 4 with the external forces f, and no work. So where these have the power
+   * f.v, a drift of 0.3 dt |f.v| is not resolved. It is a share of 1.2 / n of
+   * the energy after n steps of a load that grows evenly; of an unstable motion
+   * it grows with the amplitude only.
    */
   template <int dim>
   struct ReferenceTotals
@@ -39,10 +38,10 @@ namespace limber
 
 
   /**
-   * The rows of the statistics of a reference: what those of a run have as
-   * far as it makes sense, and the observables of the scene. A material point
-   * of an observable is the very place that the scene names or, outside the
-   * body, the nearest node. Every member function is collective.
+   * Rows of statistics of a reference: those of a run, as far as they make
+   * sense, and the observables of the scene. An observable of a material point
+   * is evaluated at the very place that the scene names or, outside the body,
+   * at the nearest node. Every member function is collective.
    */
   template <int dim>
   class ReferenceObservables

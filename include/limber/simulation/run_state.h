@@ -14,7 +14,7 @@
 
 namespace limber
 {
-  /** What a run is made of at the end of a step, besides its points. */
+  /** The state of a run at the end of a step, besides its points. */
   template <int dim>
   struct RunState
   {
@@ -43,10 +43,8 @@ namespace limber
   RunState<dim>
   to_run_state(const std::vector<char> &bytes);
 
-  /**
-   * Why a state cannot be one of the run whose state at the start is @p start:
-   * "has values in 'run' that are not finite"; mostly nothing.
-   */
+  /** Why a state cannot belong to the run whose initial state is @p start: "has
+   * values in 'run' that are not finite"; empty: it can. */
   template <int dim>
   std::string
   fault_of(const RunState<dim> &state, const RunState<dim> &start);

@@ -15,10 +15,10 @@ namespace limber
 
 
   /**
-   * What stands, as text, in front of the HDF5 file of a checkpoint: what it
-   * is, and the sizes and checksums of all that it holds, itself included. So
-   * every byte of the file is covered, and damage is noticed before HDF5 looks
-   * at the file.
+   * Header of a checkpoint: a text in front of the HDF5 file with its kind, and
+   * the sizes and checksums of all its content, including the text itself. So
+   * every byte of the file is covered, and damage is detected before HDF5 opens
+   * the file.
    */
   struct Seal
   {

@@ -7,11 +7,11 @@
 namespace limber
 {
   /**
-   * Turn the bodies of a scene into points with mass, velocity and initial
-   * stress; make the mesh what the scene wants at the start, and balance it
-   * over ranks by the number of points. Throws InputError for a body without
-   * points, and for one that is thinner than the cells that hold it where
-   * these could be finer.
+   * Seeds the points of the bodies of a scene with mass, velocity and initial
+   * stress; refines the mesh as the scene wants it at the start, and balances
+   * it over ranks by the number of points. Throws InputError for a body without
+   * points, and for one that is thinner than the cells that hold it where these
+   * could be finer.
    */
   template <int dim>
   std::vector<std::unique_ptr<MaterialBody<dim>>>
