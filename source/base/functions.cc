@@ -135,7 +135,7 @@ namespace limber
 
 
 
-    // The parser calls itself for every bracket that is opened.
+    // The parser recurses for every bracket that is opened.
     constexpr std::size_t longest_formula = 10000; // letters
 
 

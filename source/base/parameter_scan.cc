@@ -20,7 +20,7 @@ namespace limber
 {
   namespace
   {
-    // Deeper than any scene; what takes a file apart calls itself.
+    // Deeper than any scene; limits the recursion of the parser.
     constexpr std::size_t deepest = 16;
 
 
@@ -47,7 +47,7 @@ namespace limber
 
 
 
-    /** Neither a text editor nor Python writes these unasked. */
+    /** Characters that neither a text editor nor Python writes by itself. */
     void
     check_letters(const std::string &text, const std::string &origin)
     {
@@ -227,7 +227,7 @@ namespace limber
 
 
 
-    /** Before it is read by calls that nest as deep as the text does. */
+    /** Limits the nesting of a text before recursive functions parse it. */
     void
     check_depth_of_json(const std::string &text, const std::string &origin)
     {

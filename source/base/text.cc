@@ -12,10 +12,8 @@ namespace limber
 {
   namespace
   {
-    /**
-     * Damerau and Levenshtein's distance: how many letters have to be
-     * changed, added, removed or swapped with their neighbour.
-     */
+    /** Damerau-Levenshtein distance: how many letters have to be changed,
+     * added, removed or swapped with their neighbour. */
     std::size_t
     edit_distance(const std::string &a, const std::string &b)
     {

@@ -100,8 +100,8 @@ namespace limber
         if (n <= 0)
           {
             const int reason = n < 0 ? errno : ENOSPC;
-            // Half a row would be taken for a whole one. If this fails as
-            // well, the first failure is the one to tell.
+            // Take out an incomplete row, which would be read as a whole one.
+            // If this fails as well, the first failure is the one to report.
             const bool cut =
               S_ISREG(before.st_mode) && ftruncate(file, before.st_size) == 0;
             static_cast<void>(cut);

@@ -41,7 +41,7 @@ namespace limber
 
 
 
-    // In one call, as what mpirun says of the end would come in between.
+    // In one call, as messages of mpirun would come in between otherwise.
     void
     write_error(const char *const text)
     {
@@ -50,7 +50,7 @@ namespace limber
 
 
 
-    // Without memory of its own.
+    // Does not allocate.
     template <std::size_t n>
     void
     tell_memory(char (&text)[n])
@@ -70,8 +70,8 @@ namespace limber
 
 
 
-    // What a rank that comes second does until the first has ended it. Signals
-    // wake it, so it counts.
+    // A rank that is not the first waits here until that one has ended it.
+    // Signals interrupt the sleep, so it counts.
     void
     wait_for_the_end()
     {

@@ -7,12 +7,15 @@
 #include <cmath>
 #include <sstream>
 
-/** @file What a scene may do without: fluids, points, treatments, steps. */
+/**
+ * @file Where a scene may be made cheaper: stiffness of liquids, number of
+ * points, locking treatments, time steps.
+ */
 namespace limber
 {
   namespace
   {
-    /** Stiffness of a body after @p setting; 0 where it cannot be told. */
+    /** Bulk modulus of a body after @p setting; 0 where it is unknown. */
     template <int dim>
     double
     bulk_modulus_with(const SceneFile   &scene,
@@ -32,7 +35,7 @@ namespace limber
               return body.material[1];
         }
       catch (const InputError &)
-        {} // no velocity to go by
+        {} // 'auto' has no velocity to choose a modulus by
       return 0;
     }
 
@@ -66,7 +69,8 @@ namespace limber
 
 
 
-    /** Solids are told by creep, liquids by their surface and their rest. */
+    /** Points matter for creep in solids, for the surface and the state of rest
+     * in liquids. */
     template <int dim>
     void
     advise_points(const Body<dim>     &body,
@@ -77,7 +81,7 @@ namespace limber
       const unsigned int most =
         *std::max_element(body.points_per_cell_edge.begin(),
                           body.points_per_cell_edge.end());
-      // Below that, refinement is what is wanted, not points.
+      // For smaller errors cells should be refined instead.
       if (most <= enough || error < 0.005)
         return;
       Advice found;
@@ -101,8 +105,8 @@ namespace limber
 
 
     /**
-     * Relative error of a bending frequency without treatment, as the
-     * effective stiffness of Q1 cells says (doc/theory/locking.md): EI_eff /
+     * Relative error of a bending frequency without locking treatment, from the
+     * effective bending stiffness of Q1 cells (doc/theory/locking.md): EI_eff /
      * EI = 1 - 1/n^2 + (1 - 1/p^2) k / (n^2 E'), with k = C11 + G.
      */
     double
@@ -154,7 +158,7 @@ namespace limber
           found.longest_way = 0.25;
           return found;
         }
-      // of these the third entry is Poisson's ratio
+      // the third parameter of these is Poisson's ratio
       if (body.law != "linear elastic" && body.law != "neo hookean")
         return found;
       const double depth = smallest_depth_in_cells(grid, body);
@@ -255,7 +259,8 @@ namespace limber
 
 
 
-    /** The limit of 'usl' tends to zero with the filling of a cell. */
+    /** No advice for 'usl': its stability limit tends to zero with the filling
+     * of a cell (small cut). */
     void
     advise_step(const Method &method, std::vector<Advice> &advice)
     {

@@ -10,7 +10,9 @@
 #include <cstdio>
 #include <sstream>
 
-/** @file Advice on the grid: an axis that nothing needs, and empty cells. */
+/**
+ * @file Advice on the grid: plane problems in three dimensions, empty cells.
+ */
 namespace limber
 {
   namespace
@@ -37,7 +39,8 @@ namespace limber
 
 
 
-    /** No component changes along the axis, and its own one is zero. */
+    /** Whether a formula is constant along the axis, with a zero component
+     * there. */
     template <int dim>
     bool
     is_even_along(const Formula<dim> &formula,
@@ -66,7 +69,7 @@ namespace limber
 
 
 
-    /** Likewise, without shear stress. */
+    /** Likewise for initial stress, which must have no shear. */
     template <int dim>
     bool
     is_even_along(const InitialStress<dim> &stress,
@@ -83,8 +86,8 @@ namespace limber
 
 
 
-    /** Bodies from side to side, slip on both, nothing that changes along it.
-     */
+    /** Whether the problem is plane: bodies reach from side to side along the
+     * axis, both sides slip, and nothing varies along it. */
     template <int dim>
     bool
     is_plane_along(const Problem<dim> &problem, const unsigned int axis)
@@ -120,7 +123,7 @@ namespace limber
 
 
 
-    /** The farthest that anything may get in a direction, m: an upper bound. */
+    /** Upper bound of the distance that any body moves in a direction, m. */
     template <int dim>
     double
     reach(const Problem<dim> &problem)
@@ -134,7 +137,7 @@ namespace limber
               speed =
                 std::max(speed, body.initial_velocity.vector(place, 0).norm());
         }
-      // down the whole box, and then away along the floor
+      // a fall through the whole box, then the same speed along the floor
       for (unsigned int d = 0; d < dim; ++d)
         fall =
           std::max(fall,
@@ -145,7 +148,7 @@ namespace limber
 
 
 
-    /** The axis along which nothing changes; dim where there is none. */
+    /** The axis along which the problem is plane; dim where there is none. */
     template <int dim>
     unsigned int
     even_axis(const Problem<dim> &problem)
@@ -187,8 +190,8 @@ namespace limber
               lower = std::min(lower, body.shape->bounding_box().first[d]);
               upper = std::max(upper, body.shape->bounding_box().second[d]);
             }
-          // Two free layers, so that nothing feels the side; whole cells, so
-          // that points lie in them as before.
+          // Two free layers, so that no side is felt; a whole number of cells,
+          // so that points keep their places in them.
           const double low   = (lower - way - grid.lower[d]) / h - 2;
           const double high  = (grid.upper[d] - upper - way) / h - 2;
           const auto   whole = [&](const double layers) {
@@ -226,10 +229,8 @@ namespace limber
 
 
 
-    /**
-     * How often the lattice can be made coarser by a factor of two: as often as
-     * all counts are even, and no cell becomes wider than a body.
-     */
+    /** How many times the lattice can be coarsened by a factor of two: all
+     * numbers of cells stay even, and no cell becomes wider than a body. */
     template <int dim>
     unsigned int
     possible_levels(const Problem<dim> &problem)
@@ -258,12 +259,13 @@ namespace limber
 
 
 
-    /** Cells with so many levels and all bodies in the finest: an estimate. */
+    /** Estimated number of cells with so many levels and all bodies in the
+     * finest. */
     template <int dim>
     double
     cells_with_levels(const Problem<dim> &problem, const unsigned int levels)
     {
-      // the rim on both sides, and what has not been joined yet
+      // fine cells around the body on both sides, with those not yet coarsened
       constexpr double around = dim == 2 ? 30 : 18;
       double           cells  = number_of_cells(problem.grid);
       for (unsigned int n = 0; n < levels; ++n)
@@ -282,7 +284,7 @@ namespace limber
 
 
 
-    /** The scene with other entries, where it is one. */
+    /** The scene with other entries, if these are admissible. */
     template <int dim>
     std::optional<Problem<dim>>
     problem_with(const SceneFile                &scene,
@@ -304,7 +306,7 @@ namespace limber
 
 
 
-    /** Whether another grid leaves the discrete equations what they are. */
+    /** Whether the discrete equations are the same on another grid. */
     template <int dim>
     bool
     solve_alike(const Problem<dim> &one, const Problem<dim> &other)
@@ -322,8 +324,7 @@ namespace limber
 
 
 
-    /** Whether a body may get into the box of a refinement, by an upper bound.
-     */
+    /** Whether a body may reach the box of a refinement, by an upper bound. */
     template <int dim>
     bool
     may_be_reached(const Corners<dim> &part, const Problem<dim> &problem)

@@ -51,7 +51,7 @@ namespace limber
 
 
 
-    /** Between rows; a row that is there is met up to round-off. */
+    /** Linear interpolation between rows; exact at a row up to round-off. */
     double
     at_time(const std::vector<double> &times,
             const std::vector<double> &values,
@@ -64,7 +64,7 @@ namespace limber
         return values.back();
       const std::size_t i = next - times.begin();
       const double share  = (time - times[i - 1]) / (times[i] - times[i - 1]);
-      // A value that is not known yet must not make one unknown that is.
+      // NaN in the row before must not spoil a value that is known.
       return share == 1 ? values[i] :
                           (1 - share) * values[i - 1] + share * values[i];
     }
@@ -104,7 +104,7 @@ namespace limber
     void
     note(const double change, const std::string &quantity, Effect &effect)
     {
-      // what is not finite is the largest of all
+      // NaN counts as the largest
       if (std::isnan(effect.change) || change <= effect.change)
         return;
       effect.change   = change;
@@ -167,8 +167,8 @@ namespace limber
 
 
 
-    /** Energies may stay what they are; others are held against their change.
-     */
+    /** Energies are compared with their largest value, as they may be constant;
+     * other quantities with their change. */
     double
     scale_of(const std::string &unit, const std::vector<double> &values)
     {
@@ -193,8 +193,8 @@ namespace limber
 
 
 
-    /** Whether it changes by nothing but round-off, held against all that are
-     * measured in the same unit: what has no change has no relative one. */
+    /** Whether it is constant up to round-off, relative to all quantities of
+     * the same unit: then it has no change to compare with. */
     template <int dim>
     bool
     stays(const Problem<dim>        &problem,

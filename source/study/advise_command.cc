@@ -50,7 +50,7 @@ stopped by signal n.
 
 
 
-    /** After a run: who has sent a signal wants no more of them. */
+    /** After a signal during a run no more runs are started. */
     void
     stop_if_asked()
     {
@@ -193,15 +193,15 @@ stopped by signal n.
 
 
 
-    /** What the runs that support an advice have in common. */
+    /** What the trial runs of all advice have in common. */
     template <int dim>
     struct Trials
     {
       const std::string             &path;
       const Problem<dim>            &problem;
       const std::vector<std::string> overrides;
-      // Those of a scene with the same equations at all points that is built
-      // sooner, where the scene as it is takes long
+      // Overrides for a scene that has the same equations at all points and is
+      // built faster, where the scene as it is takes long
       const std::vector<std::string> lean;
       const AdviseOptions           &options;
       std::optional<Trial>           base;
@@ -218,7 +218,8 @@ stopped by signal n.
         return result;
       }
 
-      /** Runs the scene as it is before the first, and then with the advice. */
+      /** Judges an advice by a run with it; the first call also runs the scene
+       * as it is. */
       void
       weigh(const Advice &advice)
       {
@@ -231,7 +232,7 @@ stopped by signal n.
               edge = std::min(edge, problem.grid.finest_edge(d));
             way = longest_way(base->table, edge);
           }
-        // Another box or lattice takes the place of that of the lean scene.
+        // Advice on the grid replaces the settings of the lean scene.
         const bool sets_grid =
           std::any_of(advice.settings.begin(),
                       advice.settings.end(),

@@ -26,7 +26,8 @@ namespace limber
 
 
 
-    /** Sums over points and times of one quantity. */
+    /** L2 and maximum norm of the difference of one quantity over points and
+     * times. */
     struct Difference
     {
       double squared = 0, squared_scale = 0; // weighed by mass
@@ -56,7 +57,7 @@ namespace limber
         return *this;
       }
 
-      /** Not a number where nothing is known or the other is zero. */
+      /** NaN where nothing is known or the reference is zero. */
       double
       relative() const
       {
@@ -124,7 +125,7 @@ namespace limber
 
 
 
-    /** By straight lines between rows; not a number outside. */
+    /** Linear interpolation between rows; NaN outside. */
     double
     interpolate(const std::vector<double> &times,
                 const std::vector<double> &values,

@@ -120,7 +120,7 @@ namespace limber
         const auto  nodal =
           read_reference_fields(file_at(this->files, time), model, u, v);
         const auto samples = sample_at(model, places, u, v);
-        // what has flowed is known to the nodes alone
+        // with plasticity stresses are stored at nodes only
         const auto stresses = model.element->n_memory() > 0 ?
                                 interpolate_at(model, places, nodal) :
                                 std::vector<NodalStress>();
@@ -199,16 +199,17 @@ namespace limber
       }
 
     private:
-      /** Twice as many as a plane needs, and their like beyond it. */
+      /** Twice as many neighbours as a linear fit needs. */
       static constexpr unsigned int n_neighbours = dim == 2 ? 8 : 16;
 
-      // Square of the distance, in mean ones, at which a point lies there
+      // Square of the distance, over the mean one, below which a point counts
+      // as at the place
       static constexpr double interpolating = 1e-8;
 
       /**
-       * Of the values at the neighbours in that of the plane at @p place, for
-       * least squares weighed by the inverse square of the distance: a point
-       * that lies there has its own value.
+       * Weights of the neighbours' values for the value at @p place of a moving
+       * least squares fit by a plane, weighted with the inverse square of the
+       * distance: at a point it has the value of that point.
        */
       static std::vector<double>
       weights_at(const dealii::Point<dim>              &place,
@@ -235,7 +236,8 @@ namespace limber
               for (unsigned int j = 0; j <= dim; ++j)
                 normal(i, j) += share[k] * rows(k, i) * rows(k, j);
           }
-        // points in one line say nothing across it: a plane without slope
+        // collinear points do not determine a slope across their line:
+        // regularised to zero slope
         for (unsigned int i = 1; i <= dim; ++i)
           normal(i, i) += 1e-10 * normal(0, 0);
         normal.gauss_jordan();

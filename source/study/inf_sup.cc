@@ -112,7 +112,8 @@ namespace limber
 
 
 
-    /** Laplacian of one component, divergence, and mass of the pressure. */
+    /** Stiffness (H1 seminorm) of one velocity component, divergence, and
+     * pressure mass matrix. */
     struct Matrices
     {
       Matrix S, B, M; // B: rows velocity (component by component), pressures
@@ -168,7 +169,8 @@ namespace limber
 
 
 
-    /** B^T S^-1 B with the same S for both components. */
+    /** Pressure Schur complement B^T S^-1 B, with the same S for both
+     * components. */
     Matrix
     schur_complement(const Spaces &spaces, Matrices &matrices)
     {

@@ -260,7 +260,7 @@ namespace limber
 
 
 
-    /** The value of a comparison is its error, as that of several checks. */
+    /** The error of a comparison is its value, as is that of several checks. */
     bool
     has_value_and_error(const Measure &measure)
     {
@@ -435,7 +435,7 @@ namespace limber
 
 
 
-    /** What one error of one problem costs, in words. */
+    /** Cost of one error level in one problem, in words. */
     std::string
     findings_for(const StudyReport &report,
                  const std::string &problem,

@@ -91,7 +91,7 @@ namespace limber
 
 
 
-    /** The rows that count: from the first to the one behind the last. */
+    /** Range of rows within the times of the measure. */
     std::pair<std::size_t, std::size_t>
     rows_of(const Measure &measure, const Table &table)
     {
@@ -135,7 +135,7 @@ namespace limber
       const auto values = sum_columns(measure, table);
       if (values.empty())
         return nothing;
-      // what is not a number must not hide behind a comparison
+      // NaN must not be hidden by a comparison
       for (const double value : values)
         if (std::isnan(value) && measure.reduction != Reduction::last)
           return nothing;
@@ -198,7 +198,8 @@ namespace limber
           if (std::isnan(error))
             break;
         }
-      // a value now of one check, now of another would say nothing
+      // the worst of several checks may be another one in each run, so it has
+      // no value
       return measure.of.size() == 1 ? worst :
                                       Measured{worst.error, worst.error};
     }

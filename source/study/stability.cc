@@ -42,7 +42,7 @@ namespace limber
 
 
 
-    /** Seeks the largest stable value of an entry for one variant. */
+    /** Bisection for the largest stable value of an entry in one variant. */
     class Bisection
     {
     public:
@@ -58,7 +58,7 @@ namespace limber
       {
         StudyRow row{variant, "finished", "", 0, {}, {}};
         double   stable = request.lower, unstable = request.upper;
-        // The upper end first: where it is stable there is nothing to seek.
+        // The upper end first: if it is stable, no search is needed.
         if (is_stable(unstable))
           return found(row, unstable, "stable up to " + brief(unstable));
         if (interrupted)

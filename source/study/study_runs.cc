@@ -147,13 +147,14 @@ namespace limber
       if (const auto former = former_end(done, depends))
         return former;
 
-    // Nothing of a former run may be taken for a result of this one.
+    // Remove results of a former run, which could be taken for those of this
+    // one.
     remove_run_of_study(folder);
     std::vector<std::string> command = {this_program()};
     if (variant.runner == Runner::reference)
       command.push_back("reference");
     command.push_back(study.scene);
-    // Nobody extends the runs of a study, unless it says so itself.
+    // Runs of a study are not extended, unless it says so itself.
     command.insert(command.end(), {"--set", "Checkpoint/At the end=false"});
     for (const auto *const list : {&variant.settings, &settings})
       for (const std::string &setting : *list)

@@ -37,7 +37,9 @@ namespace limber
 
 
 
-    /** Count on as an odometer does; false when all have been seen. */
+    /**
+     * Next combination of the choices, like an odometer; false after the last.
+     */
     bool
     next(std::vector<std::size_t>     &choices,
          const std::vector<Variation> &variations)
@@ -74,7 +76,7 @@ namespace limber
 
 
 
-    /** What the run is going to do first, done here; the entries it uses. */
+    /** Checks what the run would check first; returns the entries it uses. */
     std::string
     check_scene(const StudyFile &study, const Variant &variant)
     {

@@ -31,10 +31,8 @@ namespace limber
 
 
 
-  /**
-   * A number that a point of a law keeps and that a scene may name: it is
-   * drawn, observed and given at the start.
-   */
+  /** A state variable of a law at a point that a scene may name: it is drawn,
+   * observed and given at the start. */
   struct StateVariable
   {
     const char *name;
@@ -52,9 +50,10 @@ namespace limber
     // Whether a body may start under pressure: its volume ratio then says
     // all there is to say about its initial state.
     bool takes_pressure;
-    // Whether the stress follows from the deformation alone.
+    // Whether the stress is a function of the deformation alone (hyperelastic).
     bool is_elastic;
-    // Whether it flows, so that no elastic coefficients hold for its strain.
+    // Whether it is plastic, so that no elastic coefficients hold for its
+    // strain.
     bool                       is_plastic;
     std::vector<LawParameter>  parameters; // the first is the density
     std::vector<StateVariable> variables;

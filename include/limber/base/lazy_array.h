@@ -12,9 +12,9 @@
 namespace limber
 {
   /**
-   * Numbers that are zero at first, in pages straight from the system: one
-   * that nobody has written to takes no memory. For tables over the whole box
-   * of which a step only meets the part with material. Aligned to a page.
+   * Array of zeros that the system maps page by page: pages that nobody has
+   * written to take no memory. For tables over the whole box of which a step
+   * needs only the part with material. Aligned to a page.
    */
   template <typename Number>
   class LazyArray

@@ -17,10 +17,10 @@ namespace limber
 
 
   /**
-   * A file that is written piece by piece and never through a symbolic link.
-   * A piece is in the file, as far as the system tells, or a FileError is
-   * thrown and the piece is taken out again. It is an error, too, if the file
-   * has been removed meanwhile: what is written would be lost.
+   * A file that is written piece by piece and never through a symbolic link. A
+   * piece is completely in the file, as far as the system tells, or a FileError
+   * is thrown and the piece is removed. It is an error, too, if the file has
+   * been removed meanwhile: what is written would be lost.
    */
   class TextFile
   {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-/** @file An advice is given where runs with and without it support it. */
+/** @file Judges an advice by runs with and without it. */
 namespace limber
 {
   /** One run of a scene, cut off after some time where it is long. */
@@ -28,7 +28,7 @@ namespace limber
             const std::vector<std::string> &settings,
             const double                    seconds);
 
-  /** How a run differs from that of the scene as it is. */
+  /** Differences of a run from that of the scene as it is. */
   struct Effect
   {
     double      factor = 1;       // CPU time of the scene over that of the run
@@ -51,14 +51,12 @@ namespace limber
                  const Trial        &scene,
                  const Trial        &changed);
 
-  /**
-   * Cells that a point can have passed at most: the largest velocity, summed
-   * over time, over @p edge of a cell.
-   */
+  /** Upper bound of the number of cells that a point has crossed: the largest
+   * velocity, integrated over time, over @p edge of a cell. */
   double
   longest_way(const Table &table, const double edge);
 
-  /** What may be said. */
+  /** Verdict on an advice. */
   enum class Judgement
   {
     advised, // saves time or memory, changes less than the error asked for
@@ -66,7 +64,7 @@ namespace limber
     refused  // fails, misses a check, or saves nothing
   };
 
-  /** With the ground on which it stands. */
+  /** A verdict with its reason. */
   struct JudgedAdvice
   {
     Judgement   judgement = Judgement::refused;

@@ -11,7 +11,7 @@
 
 namespace limber
 {
-  /** Fields of a body that can be asked for at initial places. */
+  /** Fields of a body that can be evaluated at initial places. */
   template <int dim>
   class FieldSource
   {
@@ -22,17 +22,13 @@ namespace limber
     virtual std::string
     description() const = 0;
 
-    /**
-     * Times that can be asked for, s, ascending; empty: all. Asking for
-     * another one is an error of the program.
-     */
+    /** Times at which there are fields, s, ascending; empty: any time. Asking
+     * for another one is an error of the program. */
     virtual std::vector<double>
     times() const = 0;
 
-    /**
-     * The fields at @p places, in their order; of a place that the source does
-     * not reach, and of a quantity that it does not know, not a number.
-     */
+    /** The fields at @p places, in their order; NaN at places that the source
+     * does not reach and for quantities that it does not know. */
     virtual PointArrays<dim>
     evaluate(const double                           time,
              const std::vector<dealii::Point<dim>> &places) = 0;
@@ -49,8 +45,9 @@ namespace limber
   make_reference_source(const std::string &folder);
 
   /**
-   * The material points of a run folder: a plane is laid through the points
-   * nearest to a place by least squares, exact for linear fields.
+   * The material points of a run folder, interpolated by moving least squares:
+   * a plane is fitted to the points nearest to a place, exact for linear
+   * fields.
    */
   template <int dim>
   std::unique_ptr<FieldSource<dim>>

@@ -19,7 +19,7 @@ namespace limber
     node  // Q1
   };
 
-  /** One mesh and how it is filled. */
+  /** A mesh and its quadrature points. */
   struct InfSupCase
   {
     unsigned int  cells    = 8; // per edge

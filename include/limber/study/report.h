@@ -10,9 +10,9 @@
 #include <vector>
 
 /**
- * @file What becomes of the results: a table for programs (study.csv), one for
- * people (study.md), what a drawing program needs beside the first
- * (study.json), and sentences.
+ * @file Results of a study: a table for programs (study.csv), one for people
+ * (study.md), what a drawing program needs beside the first (study.json), and
+ * sentences.
  */
 namespace limber
 {
@@ -38,7 +38,8 @@ namespace limber
   double
   expected(const StudyReport &report, const StudyRow &row);
 
-  /** Rows that no other one beats in both cost and error, by measure. */
+  /** Pareto front: rows that no other one beats in both cost and error, by
+   * measure. */
   std::vector<bool>
   pareto_front(const StudyReport &report, const std::size_t measure);
 

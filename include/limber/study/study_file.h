@@ -11,9 +11,10 @@
 #include <vector>
 
 /**
- * @file What a study asks, as plain data: a scene, what is varied, what is
- * measured, what it costs. `limber study` measures every variant; `limber
- * stability` seeks for each the largest stable value of an entry.
+ * @file The description of a study, as plain data: a scene, what is varied,
+ * measured and compared, and the measure of cost. `limber study` measures every
+ * variant; `limber stability` seeks for each the largest stable value of an
+ * entry.
  */
 namespace limber
 {
@@ -41,7 +42,7 @@ namespace limber
     Formula<2> closed_form;
   };
 
-  /** Entries and the values that they take, one choice after the other. */
+  /** Entries and the values that they take in turn. */
   struct Variation
   {
     std::string         name;
