@@ -578,24 +578,24 @@ namespace limber
 
     // The one list of checks, in the order of their lines. Bounds:
     // unseen     A tenth of the energy is a twentieth of the speed; above three
-    //            tenths, energies and heights are those of noise.
+    //            tenths, energies and heights are dominated by noise.
     // energy     Scenes with a reference keep 1 %; above 5 % amplitudes and
-    //            deflections err by as much.
-    // impacts    Elastic scenes with a reference lose up to 3 %; of what is
-    //            created see created_bounds.
+    //            deflections have errors of that size.
+    // impacts    Elastic scenes with a reference lose up to 3 %; bounds for
+    //            energy that is created: see created_bounds.
     // put back   Scenes with a reference have none.
-    // mass       A frequency changes by half of it; 'cut' errs by < 1 %.
-    // overlap    Rounding of surfaces by parts of cells comes to some 0.1 %.
-    // crossings  Deflections err by as much, see creep_per_crossing().
+    // mass       A frequency has half of this error; with 'cut' it is < 1 %.
+    // overlap    Rounding of surfaces to whole parts of cells is some 0.1 %.
+    // crossings  Error of deflections, see creep_per_crossing().
     // gaps       One cell in a hundred may be a crack that is meant.
-    // points     The gradient of one point alone carries no rotation.
-    // volume     Laws are measured to about a third and three; e^2.3 = 10.
-    // clumping   The level of water errs by as much; scenes with a reference
-    //            have up to 2 %.
+    // points     The gradient from one point alone has no rotation.
+    // volume     Laws are measured for ratios of about 1/3 to 3; e^2.3 = 10.
+    // clumping   Error of the level of a liquid; scenes with a reference have
+    //            up to 2 %.
     // dissipation Dam breaks lose 1 to 4 %, a drop that falls flat 14 %.
-    // rotation   Laws for small rotations take its square for twice a strain.
-    // obstacles  Flow past a convex surface cuts its corners by less; what is
-    //            half a cell inside has gone through the surface.
+    // rotation   Small-strain laws take its square for twice a strain.
+    // obstacles  Flow past a convex surface cuts its corners by less; points
+    //            half a cell inside have gone through the surface.
     constexpr HealthCheck checks[] = {
       {"unseen", 0.1, 0.3, judge_unseen},
       {"energy", 0.01, 0.05, judge_energy},
@@ -636,13 +636,13 @@ namespace limber
   double
   creep_per_crossing(const BodyFigures &body)
   {
-    // The bar of tests/unit/time/creep.cc: 1e-5 in any order of the stress
-    // update; bars at 45 degrees more, see creep.prm of prm/studies.
+    // From the bar of tests/unit/time/creep.cc: 1e-5 with any stress update;
+    // bars at 45 degrees creep more, see creep.prm of prm/studies.
     if (body.kernel == KernelKind::cpdi || body.kernel == KernelKind::cpdi2)
       return body.points_per_edge < 3 ? 4e-4 : 2e-4;
-    // prm/verification/slow_cantilever.prm with splines and boxes: what its tip
-    // sinks beyond that of the initial frame, over the cells that are entered;
-    // with boxes that bar where it creeps more, as it does if 3 x 3 boxes
+    // Splines and boxes (GIMP): from prm/verification/slow_cantilever.prm, the
+    // excess of the sag over that in the initial frame per cell crossing; with
+    // boxes from the bar above where it creeps more, as it does if 3 x 3 boxes
     // follow the stretch.
     if (body.kernel == KernelKind::gimp)
       return body.points_per_edge < 3 ? 4.3e-3 : 1.1e-3;
@@ -650,18 +650,18 @@ namespace limber
       return body.points_per_edge < 3 ? 4.3e-3 : 2.8e-3;
     if (body.kernel == KernelKind::quadratic)
       return body.points_per_edge < 3 ? 4e-3 : 5e-4;
-    // There 1e-4 and none; bars under tension more, see creep.prm of
-    // prm/studies.
+    // In the same scene 1e-4 and none; bars under tension creep more, see
+    // creep.prm of prm/studies.
     if (body.kernel == KernelKind::cubic)
       return body.points_per_edge < 3 ? 5e-4 : 2e-4;
-    // That bar again. Bodies that are bent are too soft from the start, which
+    // From the bar again. Bodies in bending are too soft from the start, which
     // is no creep.
     if (body.kernel == KernelKind::ddmp)
       return body.points_per_edge < 3 ? 1.2e-2 : 2.7e-3;
-    // tests/runs/health/slow_cantilever.prm with 2, 3 and 4 points along an
-    // edge: what its tip sinks beyond 0.498 m, over the cells that its points
-    // enter, are 1.5, 1.2 and 1.0 %. Bent strips that are only carried through
-    // the grid creep by half of that, bars under tension by 4 to 23 %.
+    // Linear functions: from tests/runs/health/slow_cantilever.prm with 2, 3
+    // and 4 points along an edge, whose sag beyond 0.498 m is 1.5, 1.2 and 1.0
+    // % per cell crossing. Bent strips that are merely carried through the grid
+    // creep by half of that, bars under tension by 4 to 23 %.
     return 0.021 / std::sqrt(body.points_per_edge);
   }
 

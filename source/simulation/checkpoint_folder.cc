@@ -25,7 +25,7 @@ namespace limber
 
 
 
-    /** What the note says of the good slot. */
+    /** Content of the note: which slot is good. */
     struct Note
     {
       std::string   slot;
@@ -159,7 +159,7 @@ namespace limber
 
 
 
-    /** What the note tells of before others of the same step. */
+    /** Latest step first; of equal steps the slot that the note names. */
     void
     order_by_step(Survey &survey, const std::uint32_t noted_seal = 0)
     {

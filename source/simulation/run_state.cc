@@ -219,7 +219,7 @@ namespace limber
       look_at(const std::map<std::string, unsigned int> &)
       {}
 
-      // What has not been looked at yet is infinitely far and not a number.
+      // Not tested: initial values of checks are infinite and NaN.
       void
       look_at(const CheckedValue &)
       {}
@@ -246,7 +246,9 @@ namespace limber
 
 
 
-    /** As many of everything, and the same points followed. */
+    /**
+     * Whether all arrays have equal lengths, and the same points are tracked.
+     */
     template <int dim>
     bool
     same_shape(const RunState<dim> &state, const RunState<dim> &start)

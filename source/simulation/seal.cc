@@ -313,7 +313,7 @@ namespace limber
     const std::string text  = bytes_of(file, begin, seal.room - begin);
     if (seal.own != own_checksum(seal, text))
       throw DamagedFile(path, "has changed in its first lines");
-    // Another format may go on in other ways.
+    // Other formats may differ from here on.
     if (seal.format != checkpoint_format)
       return seal;
     if (!read_text(text, seal))

@@ -9,6 +9,7 @@
 
 namespace limber
 {
+  /** Parameters of a multigrid cycle. */
   struct MultigridForm
   {
     int         sweeps  = 2;     // of the smoother (Chebyshev)

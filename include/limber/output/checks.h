@@ -10,6 +10,7 @@
 
 namespace limber
 {
+  /** A check of the scene at the end of a run. */
   struct CheckResult
   {
     std::string name, observable;

@@ -44,11 +44,12 @@ namespace limber
     bool (*looks_made)(const std::string &folder);
   };
 
+  /** What happens to results that a folder already has. */
   enum class FolderUse
   {
     fresh,   // none of the names may be taken
-    replace, // what stands under them is removed
-    resume   // it is gone on with
+    replace, // existing results are removed
+    resume   // existing results are continued
   };
 
   /** Whether a folder was made by one of this kind. */

@@ -8,6 +8,7 @@
 /** @file Contents of a picture, as patches for write_vtu(). */
 namespace limber
 {
+  /** Patches with their fields, as write_vtu() writes them. */
   template <int patch_dim, int dim>
   struct Picture
   {

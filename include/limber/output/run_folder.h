@@ -50,7 +50,7 @@ namespace limber
   FolderLock
   lock_for_comparison(const std::string &folder);
 
-  /** Those of a scene. */
+  /** The texts of a scene. */
   RunTexts
   run_texts(const SceneFile &scene);
 

@@ -12,6 +12,7 @@
 
 namespace limber
 {
+  /** Header of a column of a table. */
   struct Column
   {
     std::string name, unit; // unit: empty for numbers without one

@@ -12,6 +12,7 @@
  */
 namespace limber
 {
+  /** Mass, momentum and energies of a body, summed over its points. */
   template <int dim>
   struct BodyTotals
   {
@@ -34,6 +35,10 @@ namespace limber
 
 
 
+  /**
+   * Totals of a run at one moment: sums over points, and contributions to the
+   * balances of energy and momentum since the start.
+   */
   template <int dim>
   struct Totals
   {

@@ -6,7 +6,7 @@
 
 namespace limber
 {
-  /** What a shape is besides, if it comes from a file. */
+  /** Base class of shapes that come from a file. */
   class FromFile
   {
   public:
@@ -14,7 +14,7 @@ namespace limber
       : checksum(checksum)
     {}
 
-    // What a resumed run must find in the file again
+    // Checksum that the file must still have when a run is resumed
     const std::string checksum;
   };
 } // namespace limber

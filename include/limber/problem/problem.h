@@ -387,6 +387,7 @@ namespace limber
     double spectral_radius = 1;
   };
 
+  /** What is written to the run folder, and how often. */
   struct OutputRequest
   {
     std::string              directory     = "output";
@@ -398,6 +399,7 @@ namespace limber
     double                   progress_interval   = 5; // s of wall time
   };
 
+  /** When checkpoints are written, and when a run stops to be resumed. */
   struct CheckpointRequest
   {
     double       interval        = 3600; // s of wall time; 0: none
@@ -406,6 +408,10 @@ namespace limber
     bool         at_the_end      = true; // of a run that has finished
   };
 
+  /**
+   * Finite elements of the reference: displacement alone, or mixed (three
+   * fields).
+   */
   enum class ReferenceElement
   {
     q1,
@@ -414,10 +420,11 @@ namespace limber
     q2_p1_p1
   };
 
+  /** Time integration of the reference. */
   enum class ReferenceMethod
   {
     quasi_static,   // load steps without inertia
-    implicit_steps, // Newmark's method
+    implicit_steps, // HHT-alpha (Newmark's formulas)
     explicit_steps  // central differences
   };
 
@@ -455,6 +462,7 @@ namespace limber
     double                tolerance = 0;
   };
 
+  /** All that a scene asks for; SI units. */
   template <int dim>
   struct Problem
   {

@@ -34,6 +34,7 @@ namespace limber
     unsigned int seed = 1;
   };
 
+  /** Inf-sup constant beta, and the number of pressure modes without energy. */
   struct InfSup
   {
     double       beta       = 0; // 0 where all modes are zero

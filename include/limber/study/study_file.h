@@ -51,6 +51,7 @@ namespace limber
     bool is_problem = false;
   };
 
+  /** Where a measure is taken from. */
   enum class MeasureSource
   {
     check,
@@ -59,6 +60,7 @@ namespace limber
     comparison // relative L2 error against what the study compares with
   };
 
+  /** How a column over time becomes one number. */
   enum class Reduction
   {
     last,
@@ -126,6 +128,7 @@ namespace limber
     double       growth    = 100;   // of energy; more is not stable
   };
 
+  /** A study with all its variations, measures and options. */
   struct StudyFile
   {
     std::string              path; // as the user typed it
