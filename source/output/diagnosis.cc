@@ -230,8 +230,7 @@ namespace limber
         if (body.is_liquid && body.treatment != Treatment::none &&
             body.hourglass_control == 0 && !is_spline(problem.grid.kernel))
           return "Body " + body.name + "/Hourglass control = 0.2'.";
-      constexpr double share = 0.05; // twenty oscillations in the time of the
-                                     // run
+      constexpr double share = 0.05; // twenty periods in the run
       return "Method/Blend time = " + brief(share * problem.end_time) +
              "' or the shortest time of interest.";
     }

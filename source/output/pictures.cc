@@ -357,7 +357,8 @@ namespace limber
 
 
 
-    /** Of a node, kg and m/s; where bodies touch, of all their fields. */
+    /** Mass, kg, and velocity, m/s, at a node over all velocity fields (of
+     * bodies in contact). */
     template <int dim>
     std::pair<double, std::array<double, dim>>
     motion_of(const State<dim> &state, const std::uint32_t node)

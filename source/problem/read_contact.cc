@@ -10,7 +10,7 @@ namespace limber
 {
   namespace
   {
-    /** What a word means for a pair. */
+    /** The contact law that a word stands for. */
     struct ContactKind
     {
       ContactLaw law;

@@ -18,7 +18,7 @@ namespace limber
 
 
 
-    /** What a word makes of a side. */
+    /** The boundary condition that a word stands for. */
     struct SideKind
     {
       HeldComponents held;

@@ -11,7 +11,7 @@ namespace limber
   class BallShape : public Shape<dim>
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "ball", *section = "Ball";
     static constexpr const char *text = "disc or ball, by centre and radius";
 

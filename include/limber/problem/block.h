@@ -21,7 +21,7 @@ namespace limber
   class BlockShape : public Shape<dim>
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "block", *section = "Block";
     static constexpr const char *text =
       "quadrilateral or hexahedron, by its corners";

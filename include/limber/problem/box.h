@@ -11,7 +11,7 @@ namespace limber
   class BoxShape : public BlockShape<dim>
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "box", *section = "Box";
     static constexpr const char *text = "between two corners";
 

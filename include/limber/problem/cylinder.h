@@ -14,7 +14,7 @@ namespace limber
   class CylinderShape : public Shape<dim>
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "cylinder", *section = "Cylinder";
     static constexpr const char *text = "along x, y or z; only in 3D";
 

@@ -11,7 +11,7 @@ namespace limber
   class FormulaShape : public Shape<dim>
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "formula", *section = "Formula";
     static constexpr const char *text = "where a formula is positive";
 

@@ -81,7 +81,7 @@ namespace limber
   class ImageShape : public Shape<dim>, public FromFile
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "image", *section = "Image";
     static constexpr const char *text =
       "pixels or voxels of a file with values in an interval";

@@ -25,12 +25,12 @@ namespace limber
 
 
 
-  /** What the elements of a mesh from a file cover. */
+  /** The region that the elements of a mesh from a file cover. */
   template <int dim>
   class MeshShape : public Shape<dim>, public FromFile
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "mesh", *section = "Mesh";
     static constexpr const char *text =
       "what the elements of a mesh file cover";

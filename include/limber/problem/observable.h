@@ -91,9 +91,9 @@ namespace limber
     double                 potential_energy = 0; // of gravity, J
     // The largest coordinate in the direction with its sign, m
     double extent = not_known;
-    // Of the material on the side or obstacle, N
+    // Force of the material on the side or obstacle, N
     dealii::Tensor<1, dim> force;
-    // On the obstacle about its centre, N m; in the plane the last of three
+    // Moment on the obstacle about its centre, N m; in the plane the last entry
     dealii::Tensor<1, 3> moment;
     double               frequency = not_known; // of the column, Hz
   };

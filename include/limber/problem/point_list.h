@@ -59,7 +59,7 @@ namespace limber
   class PointListShape : public Shape<dim>, public FromFile
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "point list", *section = "Point list";
     static constexpr const char *text =
       "points with their own volume or mass, from CSV or HDF5";

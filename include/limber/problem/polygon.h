@@ -26,7 +26,7 @@ namespace limber
   class PolygonShape : public Shape<dim>, public FromFile
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "polygon", *section = "Polygon";
     static constexpr const char *text =
       "closed polygon with holes, from a file of vertices";

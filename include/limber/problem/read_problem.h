@@ -59,11 +59,8 @@ namespace limber
 
 
 
-  /**
-   * The whole question, read and checked. Throws InputError for what
-   * contradicts itself, for names that lead nowhere, and for formulas that
-   * cannot be evaluated.
-   */
+  /** The whole scene, read and checked. Throws InputError for contradictions,
+   * for names that lead nowhere, and for formulas that cannot be evaluated. */
   template <int dim>
   Problem<dim>
   read_problem(const SceneFile &scene);

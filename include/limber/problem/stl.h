@@ -22,12 +22,12 @@ namespace limber
 
 
 
-  /** What the closed surface of an STL file encloses; only in space. */
+  /** The region in the closed surface of an STL file; in space only. */
   template <int dim>
   class StlShape : public Shape<dim>, public FromFile
   {
   public:
-    // As the scene knows it, see ShapeList
+    // Word, section and help text in the scene, see ShapeList
     static constexpr const char *word = "stl", *section = "STL";
     static constexpr const char *text =
       "within the closed surface of an STL file; only in 3D";
