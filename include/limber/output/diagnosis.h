@@ -14,9 +14,9 @@ namespace limber
   {
     std::string body;
     double      smallest_volume = 1; // smallest J of the points
-    // Filling of the smallest cut cell: smallest mean distance of the points of
-    // a cell from the side on which they enter it, in edges, where the cell
-    // beyond the opposite side is empty
+    // Half the filling of the smallest cut cell: smallest mean distance of the
+    // points of a cell from the side on which they enter it, in edges, where
+    // the cell beyond the opposite side is empty
     double filling = 1;
     // Rms of the pressures of points about the mean of their cell, over the
     // rms of these means; before any averaging
