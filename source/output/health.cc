@@ -476,26 +476,31 @@ namespace limber
         return b.is_liquid ? b.filling : 0;
       });
       HealthLine         line;
-      line.value   = std::max(0., body.filling - 1);
-      line.verdict = check.verdict(line.value);
-      line.entry   = body.kernel == KernelKind::linear ?
-                       of_body(body, "Particle shifting") :
-                       "Method/Kernel";
-      line.text    = "points in inner cells of liquid '" + body.name +
+      line.value           = std::max(0., body.filling - 1);
+      line.verdict         = check.verdict(line.value);
+      const bool may_shift = body.kernel == KernelKind::linear ||
+                             body.kernel == KernelKind::quadratic;
+      line.entry =
+        may_shift ? of_body(body, "Particle shifting") : "Method/Kernel";
+      line.text = "points in inner cells of liquid '" + body.name +
                   "' stand for " + brief(body.filling) + " times their volume";
       if (line.verdict != Verdict::good)
         line.text +=
           ": they clump, so that it takes less room than it should. " +
-          std::string(body.kernel != KernelKind::linear ?
-                        "With 'linear' functions 'Particle shifting' keeps "
-                        "the volume" :
+          std::string(!may_shift ?
+                        "With 'linear' or 'quadratic' functions 'Particle "
+                        "shifting' keeps the volume" :
                       figures.is_semi_implicit ?
                         "Three points per cell edge or smaller cells keep it "
                         "better" :
-                      body.is_shifted ?
+                      !body.is_shifted ?
+                        "Set 'Particle shifting = auto' and 'Locking treatment "
+                        "= cell'" :
+                      body.kernel == KernelKind::linear ?
                         "Three points per cell edge, smaller cells or "
                         "'Time integration = semi-implicit' keep it better" :
-                        "Set 'Particle shifting = auto'");
+                        "Three points per cell edge, smaller cells or "
+                        "'Transfer = apic' keep it better");
       return line;
     }
 

@@ -96,8 +96,9 @@ namespace limber
         "C, dimensionless: points of a liquid that have gathered move apart by "
         "C s h^2 times the gradient of what nodes hold beyond their room, and "
         "towards free surfaces where that is even, each time the fastest point "
-        "has moved by s cells; 'auto' is 2 for liquids with "
-        "'cell' and linear functions, and 0 for all others.");
+        "has moved by s cells, and what cells hold evens out; 'auto' is 2 for "
+        "liquids with 'cell' and linear functions, or 'cell' or 'node' and "
+        "quadratic ones, and 0 for all others.");
       parameters.declare(
         "Density control",
         "auto",

@@ -115,19 +115,32 @@ namespace limber
 
 
     /**
-     * Particle shifting is for volume ratios averaged over cells, with linear
-     * functions: only there points that gather (clumping) weigh more than their
-     * pressure balances.
+     * Particle shifting is for volume ratios averaged over cells, or around
+     * nodes: only there points that gather (clumping) weigh more than their
+     * pressure balances. With domains that cover several cells nothing gathers
+     * within one.
      */
+    template <int dim>
+    bool
+    may_shift(const Problem<dim> &problem, const Body<dim> &body)
+    {
+      return body.is_liquid &&
+             (problem.grid.kernel == KernelKind::linear ?
+                body.treatment == Treatment::cell :
+                problem.grid.kernel == KernelKind::quadratic &&
+                  (body.treatment == Treatment::cell ||
+                   body.treatment == Treatment::node));
+    }
+
+
+
     template <int dim>
     void
     read_particle_shifting(const Section      &section,
                            const Problem<dim> &problem,
                            Body<dim>          &body)
     {
-      const bool possible = body.is_liquid &&
-                            body.treatment == Treatment::cell &&
-                            problem.grid.kernel == KernelKind::linear;
+      const bool possible    = may_shift(problem, body);
       body.particle_shifting = section.text("Particle shifting") != "auto" ?
                                  section.number("Particle shifting") :
                                possible ? particle_shifting :
@@ -137,8 +150,9 @@ namespace limber
                          section.text("Particle shifting") + " in " +
                          section.where("Particle shifting") +
                          " is for liquids with 'Locking treatment = cell' and "
-                         "'Kernel = linear'. Usually one of them was changed "
-                         "alone. Set 'Particle shifting = auto'.");
+                         "'Kernel = linear' or 'quadratic'. Usually one of "
+                         "them was changed alone. Set 'Particle shifting = "
+                         "auto'.");
     }
   } // namespace
 

@@ -129,6 +129,7 @@ namespace limber
     surroundings.reinit();
     potential.reinit();
     records.reinit(std::size_t(parts.grid.vertices.n()) * Record::stride);
+    holders.reinit(parts.grid.n_cells());
     rooms.reinit();
   }
 
@@ -159,13 +160,24 @@ namespace limber
 
 
   template <int dim>
-  bool
-  ParticleShifting<dim>::holds(const std::vector<MaterialBody *> &bodies,
-                               const std::uint32_t                cell) const
+  void
+  ParticleShifting<dim>::find_holders(const Group &group)
   {
-    return std::any_of(bodies.begin(), bodies.end(), [&](auto *const body) {
-      return body->cell_sums && body->cell_sums->present_mass(cell) > 0;
-    });
+    for (const std::uint32_t cell :
+         parts.nodes.vertices().owned_occupied_cells())
+      holders[cell] = 0;
+    const auto mark = [&](const std::vector<MaterialBody *> &bodies,
+                          const Holder                       holder) {
+      for (const MaterialBody *const body : bodies)
+        {
+          const PointView<dim> points = body->points.view();
+          for (std::size_t p = 0; p < points.size; ++p)
+            holders[points.cell[p]] |= holder;
+        }
+    };
+    mark(group.liquids, of_liquids);
+    mark(group.neighbours, of_neighbours);
+    mark(group.others, of_others);
   }
 
 
@@ -187,12 +199,10 @@ namespace limber
   {
     const NodalFields<dim> &vertices = parts.nodes.vertices();
     const NodeTable<dim>   &table    = parts.grid.vertices;
+    find_holders(group);
     surroundings.find(
       vertices,
-      [&](const std::uint32_t cell) {
-        return holds(group.liquids, cell) || holds(group.neighbours, cell) ||
-               holds(group.others, cell);
-      },
+      [&](const std::uint32_t cell) { return holders[cell] != 0; },
       cut_cells ? cut_cells->covered_corners() : nullptr);
 
     for (const auto *const all : {&vertices.active_nodes(), &table.masters})
@@ -203,7 +213,7 @@ namespace limber
     for (const auto *const bodies : {&group.liquids, &group.neighbours})
       for (MaterialBody *const body : *bodies)
         add_volumes(*body);
-    mark_cells(group);
+    mark_nodes();
     table.give_to_masters(records.data(), Record::stride, 0, Record::parts);
     exchange.start(vertices.node_plan(), records.data(), 0, Record::fillings);
     exchange.finish(records.data());
@@ -221,7 +231,7 @@ namespace limber
           excess = 0;
         of_node[Record::excess] = excess;
       }
-    make_room(group);
+    make_room();
     table.take_from_masters(records.data(),
                             Record::stride,
                             Record::excess,
@@ -292,14 +302,14 @@ namespace limber
   // sizes differ: a dam break with coarse cells inside rose.
   template <int dim>
   void
-  ParticleShifting<dim>::make_room(const Group &group)
+  ParticleShifting<dim>::make_room()
   {
     if (parts.grid.has_levels())
       return;
     const NodalFields<dim> &vertices = parts.nodes.vertices();
     potential.clear(vertices);
     for (const std::uint32_t cell : vertices.owned_occupied_cells())
-      if (holds(group.liquids, cell))
+      if (holders[cell] & of_liquids)
         {
           const auto *const cut = cut_cells ? cut_cells->cell(cell) : nullptr;
           potential.add_cell(cell,
@@ -352,7 +362,7 @@ namespace limber
 
   template <int dim>
   void
-  ParticleShifting<dim>::mark_cells(const Group &group)
+  ParticleShifting<dim>::mark_nodes()
   {
     const auto mark = [&](const std::uint32_t cell, const unsigned int slot) {
       for (unsigned int a = 0; a < n_corners; ++a)
@@ -360,15 +370,11 @@ namespace limber
     };
     for (const std::uint32_t cell :
          parts.nodes.vertices().owned_occupied_cells())
-      if (holds(group.liquids, cell) && !surroundings.is_inside(cell))
-        mark(cell, Record::at_surface);
-    for (const MaterialBody *const body : group.others)
       {
-        const PointView<dim> points = body->points.view();
-        std::uint32_t        last   = invalid_cell;
-        for (std::size_t p = 0; p < points.size; ++p)
-          if (points.cell[p] != last)
-            mark(last = points.cell[p], Record::shared);
+        if (holders[cell] & of_liquids && !surroundings.is_inside(cell))
+          mark(cell, Record::at_surface);
+        if (holders[cell] & of_others)
+          mark(cell, Record::shared);
       }
   }
 

@@ -105,6 +105,14 @@ namespace limber
       std::vector<MaterialBody *> liquids, neighbours, others;
     };
 
+    /** Whose points a cell holds, bit by bit. */
+    enum Holder : std::uint8_t
+    {
+      of_liquids    = 1,
+      of_neighbours = 2,
+      of_others     = 4
+    };
+
     /** By direction, at both ends. */
     using Faces = std::array<std::array<double, 2>, dim>;
 
@@ -129,11 +137,13 @@ namespace limber
     void
     find_excess(const Group &group);
     void
-    make_room(const Group &group);
+    find_holders(const Group &group);
+    void
+    make_room();
     void
     add_volumes(MaterialBody &body);
     void
-    mark_cells(const Group &group);
+    mark_nodes();
     void
     add_parts(std::uint32_t                  cell,
               const std::array<double, dim> &xi,
@@ -144,8 +154,6 @@ namespace limber
     shifts_at_faces(std::uint32_t cell, double factor);
     void
     move_points(MaterialBody &body);
-    bool
-    holds(const std::vector<MaterialBody *> &bodies, std::uint32_t cell) const;
 
     double
     room_at(std::uint32_t node) const;
@@ -164,6 +172,7 @@ namespace limber
     NodeRooms<dim>             rooms;
     RoomPotential<dim>         potential;
     LazyArray<double>          records; // by vertex
+    LazyArray<std::uint8_t>    holders; // by cell
     RecordExchange             exchange{Record::stride};
     std::vector<double>        volume_ratios; // of the points of a body
     double                     travelled = 0; // in cells

@@ -571,7 +571,7 @@ namespace limber::test
     water.filling = 1.25;
     EXPECT_EQ(line("clumping", figures).verdict, Verdict::bad);
     EXPECT_EQ(line("clumping", figures).entry, "Body water/Particle shifting");
-    water.kernel = KernelKind::quadratic;
+    water.kernel = KernelKind::gimp;
     EXPECT_EQ(line("clumping", figures).entry, "Method/Kernel");
   }
 
