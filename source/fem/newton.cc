@@ -51,7 +51,8 @@ namespace limber
   // zero within round-off, infinite where an element is inverted.
   template <int dim>
   double
-  ReferenceSolver<dim>::unbalance(const double time, const double mass_factor)
+  ReferenceSolver<dim>::evaluate_residual(const double time,
+                                          const double mass_factor)
   {
     state.displacement.update_ghost_values();
     if (!model.internal_forces(state.displacement, internal))
@@ -89,8 +90,8 @@ namespace limber
 
     const double scale =
       std::max({external, internal.l2_norm(), inertia.l2_norm()});
-    const double left = unbalanced.l2_norm();
-    return left <= round_off_of_forces() ? 0 : left / scale;
+    const double residual_norm = unbalanced.l2_norm();
+    return residual_norm <= round_off_of_forces() ? 0 : residual_norm / scale;
   }
 
 
@@ -117,33 +118,36 @@ namespace limber
   {
     NodalVector correction = model.make_vector(), before = correction;
     double      former = infinite;
-    rest               = unbalance(time, mass_factor);
-    for (unsigned int k = 0; k < most_iterations && std::isfinite(rest); ++k)
+    relative_residual  = evaluate_residual(time, mass_factor);
+    for (unsigned int k = 0;
+         k < most_iterations && std::isfinite(relative_residual);
+         ++k)
       {
-        if (rest <= model.problem.reference.tolerance)
+        if (relative_residual <= model.problem.reference.tolerance)
           return true;
         if (!keep_tangent || !matrix_serves(mass_factor) ||
-            rest > good_reduction * former)
+            relative_residual > good_reduction * former)
           renew_tangent(mass_factor, k > 0 ? &before : nullptr);
         before = state.displacement;
         linear_solver.solve(correction, unbalanced);
         ++state.newton_steps;
         // Where forces nearly cancel, round-off of large ones remains.
-        if (rest <= 1e-4 &&
+        if (relative_residual <= 1e-4 &&
             correction.l2_norm() <= 1e-11 * state.displacement.l2_norm())
           return true;
 
-        former = rest;
+        former = relative_residual;
         state.displacement += correction;
-        rest = unbalance(time, mass_factor);
-        for (unsigned int half = 0; half < 8 && rest == infinite; ++half)
+        relative_residual = evaluate_residual(time, mass_factor);
+        for (unsigned int half = 0; half < 8 && relative_residual == infinite;
+             ++half)
           {
             correction *= 0.5;
             state.displacement -= correction;
-            rest = unbalance(time, mass_factor);
+            relative_residual = evaluate_residual(time, mass_factor);
           }
       }
-    return rest <= model.problem.reference.tolerance;
+    return relative_residual <= model.problem.reference.tolerance;
   }
 
 
@@ -163,8 +167,8 @@ namespace limber
   ReferenceSolver<dim>::fail(const double time, const std::string &entry) const
   {
     std::ostringstream text;
-    text << "Newton's method of the finite element reference ends with " << rest
-         << " of the forces unbalanced at time " << time
+    text << "Newton's method of the finite element reference ends with "
+         << relative_residual << " of the forces unbalanced at time " << time
          << " s. Usually the step is too long, the body buckles or its flow "
             "bears no more load, or the tolerance is finer than round-off. "
             "Set 'Reference/"
@@ -333,7 +337,7 @@ namespace limber
 
 
   template double
-  ReferenceSolver<2>::unbalance(const double, const double);
+  ReferenceSolver<2>::evaluate_residual(const double, const double);
   template void
   ReferenceSolver<2>::choose_loads(const double);
   template void
@@ -341,7 +345,7 @@ namespace limber
   template void
   ReferenceSolver<2>::newmark_step(const double, const unsigned int);
   template double
-  ReferenceSolver<3>::unbalance(const double, const double);
+  ReferenceSolver<3>::evaluate_residual(const double, const double);
   template void
   ReferenceSolver<3>::choose_loads(const double);
   template void

@@ -100,7 +100,7 @@ namespace limber
       {
         step_limit = model.problem.end_time / request.load_steps;
         choose_loads(0);
-        unbalance(time_of_loads, 0);
+        evaluate_residual(time_of_loads, 0);
         former_load      = load;
         former_support   = support;
         state.side_force = model.held().sum_over_sides(support);
@@ -108,7 +108,7 @@ namespace limber
       }
 
     // initial accelerations: those of held components are prescribed
-    unbalance(0, 0);
+    evaluate_residual(0, 0);
     NodalVector  ignored = model.make_vector(), held = model.make_vector();
     const double moment =
       1e-6 * model.smallest_edge / model.element->pressure_wave_speed;
@@ -194,8 +194,9 @@ namespace limber
                            state.velocity,
                            state.acceleration);
     inertia = model.held().inertia(model.nodal_masses(), state.acceleration);
-    const double rest = unbalance(time, 0);
-    if (!std::isfinite(rest) || !std::isfinite(state.velocity.linfty_norm()))
+    const double relative_residual = evaluate_residual(time, 0);
+    if (!std::isfinite(relative_residual) ||
+        !std::isfinite(state.velocity.linfty_norm()))
       throw ComputationError(
         "An element of the explicit finite element reference is turned inside "
         "out or not finite at time " +

@@ -84,9 +84,9 @@ namespace limber
     for (std::size_t k = 0; k < equations.size(); ++k)
       if (equations.is_held(k))
         ahead[k] = question.held[k];
-    Values left;
-    if (unbalance(question, ahead, left) <
-        unbalance(question, displacement, left))
+    Values residual;
+    if (evaluate_residual(question, ahead, residual) <
+        evaluate_residual(question, displacement, residual))
       displacement = ahead;
   }
 
@@ -94,38 +94,40 @@ namespace limber
 
   template <int dim>
   double
-  NewtonMethod<dim>::unbalance(const StepQuestion &question,
-                               const Values       &displacement,
-                               Values             &left)
+  NewtonMethod<dim>::evaluate_residual(const StepQuestion &question,
+                                       const Values       &displacement,
+                                       Values             &residual)
   {
     const bool admissible = equations.evaluate(displacement, nullptr);
     clock.lap(NewtonVerb::evaluate_forces);
     if (!admissible)
       return infinite;
-    left.resize(equations.size());
+    residual.resize(equations.size());
     double of_inertia = 0, of_momentum = 0;
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const double inertia =
           question.inertia[k] *
           (displacement[k] - question.inertial_displacement[k]);
-        left[k] = equations.is_held(k) ?
-                    0 :
-                    question.external[k] + equations.follower_forces()[k] -
-                      equations.forces()[k] - inertia;
+        residual[k] = equations.is_held(k) ?
+                        0 :
+                        question.external[k] + equations.follower_forces()[k] -
+                          equations.forces()[k] - inertia;
         of_inertia += inertia * inertia;
         const double momentum =
           question.inertia[k] * question.inertial_displacement[k];
         of_momentum += momentum * momentum;
       }
-    const double scale = std::max({norm(question.external),
-                                   norm(equations.follower_forces()),
-                                   norm(equations.forces()),
-                                   std::sqrt(of_inertia),
-                                   known_share * std::sqrt(of_momentum),
-                                   question.largest_former_force});
-    const double rest  = norm(left);
-    return rest <= equations.round_off(displacement) ? 0 : rest / scale;
+    const double scale         = std::max({norm(question.external),
+                                           norm(equations.follower_forces()),
+                                           norm(equations.forces()),
+                                           std::sqrt(of_inertia),
+                                           known_share * std::sqrt(of_momentum),
+                                           question.largest_former_force});
+    const double residual_norm = norm(residual);
+    return residual_norm <= equations.round_off(displacement) ?
+             0 :
+             residual_norm / scale;
   }
 
 
@@ -158,11 +160,11 @@ namespace limber
                            const bool          search,
                            Values             &displacement)
   {
-    Values       left, correction, former, of_held(equations.size());
+    Values       residual, correction, former, of_held(equations.size());
     unsigned int renewals = 0;
     n_iterations          = 0;
     equations.count_jumps_from(Values(equations.size(), 0.));
-    rest = unbalance(question, displacement, left);
+    relative_residual = evaluate_residual(question, displacement, residual);
     while (true)
       {
         double remaining = 0; // of prescribed displacements
@@ -174,20 +176,22 @@ namespace limber
             }
         // Near convergence the ghost penalty is relaxed: nodes of small cuts
         // are about where they are going to be.
-        if (remaining == 0 && rest <= nearly_found && n_iterations > 0 &&
-            renewals < most_renewals &&
+        if (remaining == 0 && relative_residual <= nearly_found &&
+            n_iterations > 0 && renewals < most_renewals &&
             equations.ghost_energy() > known_ghost_energy * equations.energy())
           {
             ++renewals;
             equations.count_jumps_from(displacement);
-            rest = unbalance(question, displacement, left);
+            relative_residual =
+              evaluate_residual(question, displacement, residual);
           }
-        if (remaining == 0 && rest <= tolerance)
+        if (remaining == 0 && relative_residual <= tolerance)
           return true;
         if (n_iterations == most_newton_iterations)
           {
             reason = "after " + std::to_string(n_iterations) + " iterations " +
-                     brief(rest) + " of the forces are out of balance";
+                     brief(relative_residual) +
+                     " of the forces are out of balance";
             return false;
           }
         ++n_iterations;
@@ -199,7 +203,7 @@ namespace limber
                            search || former.empty() ? nullptr : &former);
         former = displacement;
         clock.lap(NewtonVerb::assemble_tangent);
-        const bool solved = equations.solve(left, of_held, correction);
+        const bool solved = equations.solve(residual, of_held, correction);
         clock.lap(NewtonVerb::solve_equations);
         if (!solved)
           {
@@ -210,19 +214,20 @@ namespace limber
             return false;
           }
         // where forces nearly vanish, round-off of large ones remains
-        if (remaining == 0 && rest <= 1e-4 &&
+        if (remaining == 0 && relative_residual <= 1e-4 &&
             norm(correction) <= 1e-11 * norm(displacement))
           return true;
         const bool any = remaining > 0 || !search;
         if (!improves(question,
                       correction,
                       any ? infinite : before,
-                      any ? infinite : rest,
+                      any ? infinite : relative_residual,
                       displacement,
-                      left))
+                      residual))
           {
-            reason = rest == infinite ? "a point is turned inside out" :
-                                        "no direction lowers the energy";
+            reason = relative_residual == infinite ?
+                       "a point is turned inside out" :
+                       "no direction lowers the energy";
             return false;
           }
       }
@@ -238,11 +243,11 @@ namespace limber
   NewtonMethod<dim>::improves(const StepQuestion &question,
                               const Values       &correction,
                               const double        former_potential,
-                              const double        former_rest,
+                              const double        former_residual,
                               Values             &displacement,
-                              Values             &left)
+                              Values             &residual)
   {
-    const double expected = product(left, correction);
+    const double expected = product(residual, correction);
     const Values start    = displacement;
     double       share    = 1;
     for (unsigned int k = 0; k < most_searches; ++k, share /= 2)
@@ -251,10 +256,10 @@ namespace limber
           displacement[i] = share == 1 && equations.is_held(i) ?
                               question.held[i] :
                               start[i] + share * correction[i];
-        rest = unbalance(question, displacement, left);
-        if (rest == infinite)
+        relative_residual = evaluate_residual(question, displacement, residual);
+        if (relative_residual == infinite)
           continue;
-        if (rest < 0.5 * former_rest ||
+        if (relative_residual < 0.5 * former_residual ||
             (expected > 0 &&
              potential(question, displacement) <=
                former_potential - sufficient_decrease * share * expected))

@@ -102,7 +102,7 @@ namespace limber
     void
     choose_loads(const double time);
     double
-    unbalance(const double time, const double mass_factor);
+    evaluate_residual(const double time, const double mass_factor);
     void
     renew_tangent(const double mass_factor, const NodalVector *former);
     void
@@ -124,9 +124,9 @@ namespace limber
     NodalVector former_load, former_support;
     NodalVector net_force, former_net_force; // all but inertia
     NodalVector predicted; // displacement without the new acceleration, m
-    double      load_factor   = 1; // share of gravity and loads that acts
-    double      time_of_loads = 0; // in equilibrium, s
-    double      rest          = 0; // unbalanced share of the forces
+    double      load_factor       = 1; // share of gravity and loads that acts
+    double      time_of_loads     = 0; // in equilibrium, s
+    double      relative_residual = 0; // unbalanced share of the forces
 
     std::optional<FastestMode<dim>> fastest_mode; // where explicit steps ask
   };

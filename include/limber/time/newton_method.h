@@ -108,23 +108,23 @@ namespace limber
     bool
     solve(const StepQuestion &question, bool search, Values &displacement);
     double
-    unbalance(const StepQuestion &question,
-              const Values       &displacement,
-              Values             &left);
+    evaluate_residual(const StepQuestion &question,
+                      const Values       &displacement,
+                      Values             &residual);
     double
     potential(const StepQuestion &question, const Values &displacement) const;
     bool
     improves(const StepQuestion &question,
              const Values       &correction,
              double              former_potential,
-             double              former_rest,
+             double              former_residual,
              Values             &displacement,
-             Values             &left);
+             Values             &residual);
 
     NewtonEquations<dim> &equations;
     const double          tolerance;
     NewtonClock          &clock;
-    double                rest = 0; // relative residual
+    double                relative_residual = 0;
     std::string           reason;
     unsigned long         n_iterations = 0, n_corrections = 0;
   };
