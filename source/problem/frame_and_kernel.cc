@@ -29,7 +29,7 @@ namespace limber
     // Impact energy per volume over Young's modulus up to which 'auto' is the
     // initial frame: a disc with 0.13 from its fall bounces there, with 1.3 its
     // points invert.
-    constexpr double most_violence = 0.3;
+    constexpr double max_impact_energy_ratio = 0.3;
 
 
 
@@ -271,7 +271,7 @@ namespace limber
      */
     template <int dim>
     double
-    violence(const Body<dim> &body, const Problem<dim> &problem)
+    impact_energy_ratio(const Body<dim> &body, const Problem<dim> &problem)
     {
       constexpr unsigned int n    = 8; // along each edge
       const Corners<dim>     box  = body.shape->bounding_box();
@@ -332,7 +332,7 @@ namespace limber
                has_face_in(side, body, problem.grid)))
             return false;
         }
-      return violence(body, problem) < most_violence;
+      return impact_energy_ratio(body, problem) < max_impact_energy_ratio;
     }
 
 
