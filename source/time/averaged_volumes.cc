@@ -16,7 +16,7 @@ namespace limber
     // Share by which a node does not feel pressures around it that exert no
     // force on it. The rest accounts for the other nodes; the value was found
     // by counting iterations.
-    constexpr double unfelt_share = 0.999;
+    constexpr double filtered_share = 0.999;
 
     // In a small-cut cell the stiffness of the nodes comes from its neighbours:
     // its compliance to its pressure follows from the diagonal of A at the
@@ -49,15 +49,15 @@ namespace limber
   /**
    * Local operator on the pressures around a node, divided by scales: keeps a
    * constant pressure and those that exert a force on the node (orthonormalised
-   * by Gram-Schmidt), and reduces the rest, checkerboards, by unfelt_share.
+   * by Gram-Schmidt), and reduces the rest, checkerboards, by filtered_share.
    */
   template <int dim>
-  class AveragedVolumes<dim>::Felt
+  class AveragedVolumes<dim>::CheckerboardFilter
   {
   public:
-    Felt(const VolumesAround<dim>  &around,
-         const std::vector<Volume> &volumes,
-         const std::vector<double> &scale)
+    CheckerboardFilter(const VolumesAround<dim>  &around,
+                       const std::vector<Volume> &volumes,
+                       const std::vector<double> &scale)
     {
       std::array<double, 1 << dim> direction;
       for (int d = -1; d < dim; ++d)
@@ -78,9 +78,9 @@ namespace limber
     double
     operator()(const unsigned int i, const unsigned int j) const
     {
-      double result = i == j ? 1 - unfelt_share : 0;
+      double result = i == j ? 1 - filtered_share : 0;
       for (unsigned int k = 0; k < n_directions; ++k)
-        result += unfelt_share * directions[k][i] * directions[k][j];
+        result += filtered_share * directions[k][i] * directions[k][j];
       return result;
     }
 
@@ -248,16 +248,16 @@ namespace limber
         bound.push_back(direct + softness);
         least_share =
           std::min(least_share,
-                   (direct + (1 - unfelt_share) * softness) / bound.back());
+                   (direct + (1 - filtered_share) * softness) / bound.back());
       }
     for (const Around &of_node : all_around)
       {
-        const Felt felt(of_node, volumes, root);
+        const CheckerboardFilter filter(of_node, volumes, root);
         for (unsigned int i = 0; i < of_node.n_volumes; ++i)
           for (unsigned int j = 0; j < of_node.n_volumes; ++j)
             of_pressure.add(of_node.volumes[i],
                             of_node.volumes[j],
-                            root[of_node.volumes[i]] * felt(i, j) *
+                            root[of_node.volumes[i]] * filter(i, j) *
                               root[of_node.volumes[j]]);
       }
   }

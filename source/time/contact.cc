@@ -79,11 +79,11 @@ namespace limber
   void
   Contact<dim>::join(const unsigned int slot)
   {
-    for (const Touch &touch : touches)
-      if (law(touch.a, touch.b).law == ContactLaw::stick)
+    for (const ContactNode &contact : contact_nodes)
+      if (law(contact.a, contact.b).law == ContactLaw::stick)
         {
-          double *const        a   = parts.nodes.record(touch.a, touch.node),
-                        *const b   = parts.nodes.record(touch.b, touch.node);
+          double *const        a = parts.nodes.record(contact.a, contact.node),
+                        *const b = parts.nodes.record(contact.b, contact.node);
           const double         m_a = a[Layout::mass], m_b = b[Layout::mass];
           for (unsigned int d = slot; d < slot + dim; ++d)
             a[d] = b[d] = (m_a * a[d] + m_b * b[d]) / (m_a + m_b);

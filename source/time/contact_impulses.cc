@@ -75,7 +75,7 @@ namespace limber
     seen.clear();
     after_share.clear();
     peers.clear();
-    heeded.clear();
+    side_constraints.clear();
     held.clear();
     held_components.clear();
     any_place = holds_before = gives_some = false;

@@ -39,13 +39,13 @@ namespace limber
     find_reaches();
     impulses.reinit();
     cells_of.assign(parts.bodies.size(), {});
-    touches.clear();
+    contact_nodes.clear();
     batches.clear();
     groups.clear();
     first_of.reinit(parts.nodes.table.n());
-    rim_of.reinit(std::size_t(parts.grid.n_cells()) * n_fields);
+    cell_nodes_of.reinit(std::size_t(parts.grid.n_cells()) * n_fields);
     looked_at.clear();
-    forget_rims();
+    forget_cell_nodes();
     ranks_of_vertex.clear();
     for (const auto &neighbour : parts.grid.vertices.shared.neighbours)
       for (const std::uint32_t vertex : neighbour.records)
@@ -103,14 +103,14 @@ namespace limber
             if (parts.nodes.record(b, node)[Layout::mass] > 0)
               found.push_back({node, a, b});
         }
-    if (found == touches)
+    if (found == contact_nodes)
       return false;
-    for (const Touch &touch : touches)
-      first_of[touch.node] = 0;
-    touches.swap(found);
-    for (std::size_t t = touches.size(); t-- > 0;)
-      first_of[touches[t].node] = static_cast<std::uint32_t>(t + 1);
-    forget_rims();
+    for (const ContactNode &contact : contact_nodes)
+      first_of[contact.node] = 0;
+    contact_nodes.swap(found);
+    for (std::size_t t = contact_nodes.size(); t-- > 0;)
+      first_of[contact_nodes[t].node] = static_cast<std::uint32_t>(t + 1);
+    forget_cell_nodes();
     return true;
   }
 
@@ -118,12 +118,12 @@ namespace limber
 
   template <int dim>
   void
-  Contact<dim>::forget_rims()
+  Contact<dim>::forget_cell_nodes()
   {
     for (const std::uint32_t cell : looked_at)
-      rim_of[cell] = 0;
+      cell_nodes_of[cell] = 0;
     looked_at.clear();
-    rims.clear();
+    cell_nodes.clear();
     corners.clear();
   }
 
@@ -137,21 +137,23 @@ namespace limber
   {
     batches.clear();
     groups.clear();
-    if (touches.empty())
+    if (contact_nodes.empty())
       return;
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
       {
         const unsigned int         field = field_of(b);
         const std::size_t          first = batches.size();
         const std::uint32_t *const of_cell =
-          rim_of.data() + std::size_t(parts.grid.n_cells()) * field;
+          cell_nodes_of.data() + std::size_t(parts.grid.n_cells()) * field;
         for_each_batch(points[b], [&](const CellBatch &batch) {
-          std::uint32_t rim = of_cell[batch.cell];
-          if (rim == 0)
-            rim = find_rim(field, batch.cell);
-          if (rim > 1)
-            batches.push_back(
-              {batch, b, rims[rim - 2].first, rims[rim - 2].last});
+          std::uint32_t entry = of_cell[batch.cell];
+          if (entry == 0)
+            entry = find_cell_nodes(field, batch.cell);
+          if (entry > 1)
+            batches.push_back({batch,
+                               b,
+                               cell_nodes[entry - 2].first,
+                               cell_nodes[entry - 2].last});
         });
         if (batches.size() > first)
           groups.push_back({b, first, batches.size()});
@@ -162,7 +164,8 @@ namespace limber
 
   template <int dim>
   std::uint32_t
-  Contact<dim>::find_rim(const unsigned int field, const std::uint32_t cell)
+  Contact<dim>::find_cell_nodes(const unsigned int  field,
+                                const std::uint32_t cell)
   {
     const auto first = static_cast<std::uint32_t>(corners.size());
     with_degree(grid, [&](const auto degree) {
@@ -173,13 +176,13 @@ namespace limber
     const std::size_t at   = std::size_t(parts.grid.n_cells()) * field + cell;
     const auto        last = static_cast<std::uint32_t>(corners.size());
     looked_at.push_back(static_cast<std::uint32_t>(at));
-    rim_of[at] = 1;
+    cell_nodes_of[at] = 1;
     if (last > first)
       {
-        rims.push_back({first, last});
-        rim_of[at] = static_cast<std::uint32_t>(1 + rims.size());
+        cell_nodes.push_back({first, last});
+        cell_nodes_of[at] = static_cast<std::uint32_t>(1 + cell_nodes.size());
       }
-    return rim_of[at];
+    return cell_nodes_of[at];
   }
 
 
@@ -213,14 +216,15 @@ namespace limber
     if (first_of[node] == 0)
       return;
     for (std::size_t t = first_of[node] - 1;
-         t < touches.size() && touches[t].node == node;
+         t < contact_nodes.size() && contact_nodes[t].node == node;
          ++t)
-      if ((touches[t].a == field || touches[t].b == field) &&
-          law(touches[t].a, touches[t].b).law == ContactLaw::separate)
-        corners.push_back(
-          {static_cast<std::uint32_t>(2 * t + (touches[t].a == field ? 0 : 1)),
-           k,
-           share});
+      if ((contact_nodes[t].a == field || contact_nodes[t].b == field) &&
+          law(contact_nodes[t].a, contact_nodes[t].b).law ==
+            ContactLaw::separate)
+        corners.push_back({static_cast<std::uint32_t>(
+                             2 * t + (contact_nodes[t].a == field ? 0 : 1)),
+                           k,
+                           share});
   }
 
 
@@ -241,7 +245,7 @@ namespace limber
   void
   Contact<dim>::find_gradients()
   {
-    volume_gradients.assign(touches.size() * 2 * dim, 0.);
+    volume_gradients.assign(contact_nodes.size() * 2 * dim, 0.);
     for (const Group &group : groups)
       add_volume_gradients<dim>(points[group.body],
                                 parts.nodes.view(),
@@ -264,8 +268,9 @@ namespace limber
   void
   Contact<dim>::end_at_sides()
   {
-    for (std::size_t t = 0; t < touches.size(); ++t)
-      if (const auto sides_of_box = parts.nodes.table.sides[touches[t].node])
+    for (std::size_t t = 0; t < contact_nodes.size(); ++t)
+      if (const auto sides_of_box =
+            parts.nodes.table.sides[contact_nodes[t].node])
         for (unsigned int side = 0; side < 2 * dim; ++side)
           if ((sides_of_box >> side & 1) &&
               parts.problem.sides[side].held != HeldComponents::none)
@@ -284,11 +289,11 @@ namespace limber
   void
   Contact<dim>::find_normals()
   {
-    directions.resize(touches.size() * n_separations * dim);
-    find_directions<dim>(touches.size(),
+    directions.resize(contact_nodes.size() * n_separations * dim);
+    find_directions<dim>(contact_nodes.size(),
                          volume_gradients.data(),
                          directions.data());
-    extents.clear(2 * touches.size());
+    extents.clear(2 * contact_nodes.size());
     for (const Group &group : groups)
       extents.add(points[group.body], batches_of(group), directions.data());
     extents.find_largest();
@@ -305,13 +310,13 @@ namespace limber
         }
       return slots;
     });
-    faces.assign(touches.size(), {{}, {{-1e300, -1e300}}});
-    points_touch.assign(touches.size(), 0);
-    for (std::size_t t = 0; t < touches.size(); ++t)
+    faces.assign(contact_nodes.size(), {{}, {{-1e300, -1e300}}});
+    points_touch.assign(contact_nodes.size(), 0);
+    for (std::size_t t = 0; t < contact_nodes.size(); ++t)
       {
         double       largest = -1e300;
         const double nothing =
-          1e-6 * std::min(edge[touches[t].a], edge[touches[t].b]);
+          1e-6 * std::min(edge[contact_nodes[t].a], edge[contact_nodes[t].b]);
         for (int k = n_separations; k-- > 0;)
           {
             const Vector direction =

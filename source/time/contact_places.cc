@@ -59,22 +59,23 @@ namespace limber
   void
   Contact<dim>::add_nodes()
   {
-    for (std::size_t t = 0; t < touches.size(); ++t)
-      if (const Touch &touch = touches[t];
-          points_touch[t] && law(touch.a, touch.b).law == ContactLaw::separate)
+    for (std::size_t t = 0; t < contact_nodes.size(); ++t)
+      if (const ContactNode &contact = contact_nodes[t];
+          points_touch[t] &&
+          law(contact.a, contact.b).law == ContactLaw::separate)
         {
-          const double a =
-                         parts.nodes.record(touch.a, touch.node)[Layout::mass],
-                       b =
-                         parts.nodes.record(touch.b, touch.node)[Layout::mass];
-          auto &place = impulses.add_place();
+          const double a = parts.nodes.record(contact.a,
+                                              contact.node)[Layout::mass],
+                       b = parts.nodes.record(contact.b,
+                                              contact.node)[Layout::mass];
+          auto &place    = impulses.add_place();
           for (int d = 0; d < dim; ++d)
             place.normal[d] = -faces[t].normal[d];
-          place.friction = law(touch.a, touch.b).friction;
+          place.friction = law(contact.a, contact.b).friction;
           place.mass     = a * b / (a + b);
-          place.is_own   = parts.nodes.owns(touch.node);
-          impulses.add_share(touch.a, touch.node, 1);
-          impulses.add_share(touch.b, touch.node, -1);
+          place.is_own   = parts.nodes.owns(contact.node);
+          impulses.add_share(contact.a, contact.node, 1);
+          impulses.add_share(contact.b, contact.node, -1);
         }
     impulses.finish_adding_nodes();
   }
@@ -292,8 +293,8 @@ namespace limber
                 for (std::uint32_t c = some.first; c < some.last; ++c)
                   {
                     const MeetingCorner &corner = corners[c];
-                    const Touch         &touch  = touches[corner.slot / 2];
-                    if (touch.a != pair[0] || touch.b != pair[1])
+                    const ContactNode &contact = contact_nodes[corner.slot / 2];
+                    if (contact.a != pair[0] || contact.b != pair[1])
                       continue;
                     const double weight =
                       corner.share * functions.value(corner.k);

@@ -98,11 +98,12 @@ namespace limber
 
   template <int dim>
   void
-  ContactImpulses<dim>::heed_sides(const unsigned int             field,
-                                   const std::vector<Constraint> &constraints)
+  ContactImpulses<dim>::add_side_constraints(
+    const unsigned int             field,
+    const std::vector<Constraint> &constraints)
   {
     if (!constraints.empty())
-      heeded.emplace_back(field, &constraints);
+      side_constraints.emplace_back(field, &constraints);
   }
 
 
@@ -111,12 +112,12 @@ namespace limber
   void
   ContactImpulses<dim>::find_held()
   {
-    if (heeded.empty())
+    if (side_constraints.empty())
       return;
     held.clear();
     held_components.assign(seen.size(), 0);
     holding_side.assign(seen.size() * dim, 0);
-    for (const auto &[field, constraints] : heeded)
+    for (const auto &[field, constraints] : side_constraints)
       for (const Constraint &constraint : *constraints)
         if (const std::uint32_t as = seen_as[field][constraint.node]; as != 0)
           {
@@ -197,9 +198,11 @@ namespace limber
   template void
   ContactImpulses<2>::find_relaxation();
   template void
-  ContactImpulses<2>::heed_sides(unsigned int, const std::vector<Constraint> &);
+  ContactImpulses<2>::add_side_constraints(unsigned int,
+                                           const std::vector<Constraint> &);
   template void
   ContactImpulses<3>::find_relaxation();
   template void
-  ContactImpulses<3>::heed_sides(unsigned int, const std::vector<Constraint> &);
+  ContactImpulses<3>::add_side_constraints(unsigned int,
+                                           const std::vector<Constraint> &);
 } // namespace limber

@@ -15,10 +15,10 @@ namespace limber
   Contact<dim>::fit_surfaces()
   {
     fits.clear();
-    for (std::size_t slot = 0; slot < 2 * touches.size(); ++slot)
-      fits.emplace_back(
-        vector_in<dim>(&volume_gradients[slot * dim]),
-        edge[slot % 2 == 0 ? touches[slot / 2].a : touches[slot / 2].b]);
+    for (std::size_t slot = 0; slot < 2 * contact_nodes.size(); ++slot)
+      fits.emplace_back(vector_in<dim>(&volume_gradients[slot * dim]),
+                        edge[slot % 2 == 0 ? contact_nodes[slot / 2].a :
+                                             contact_nodes[slot / 2].b]);
     with_degree(grid, [&](const auto degree) {
       for (const Group &group : groups)
         if (points[group.body].reach != nullptr)
@@ -72,7 +72,8 @@ namespace limber
               {
                 // A master of hanging nodes counts only in its own cells.
                 const MeetingCorner &corner = corners[c];
-                if (functions.node(corner.k) != touches[corner.slot / 2].node)
+                if (functions.node(corner.k) !=
+                    contact_nodes[corner.slot / 2].node)
                   continue;
                 Vector place; // from the node
                 for (int d = 0; d < dim; ++d)

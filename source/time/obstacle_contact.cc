@@ -184,14 +184,16 @@ namespace limber
     if (!sides_that_meet.empty())
       for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
         if (parts.problem.meets_sides(field))
-          impulses.heed_sides(field,
-                              of_other_sides.at(parts.nodes, time + step));
+          impulses.add_side_constraints(field,
+                                        of_other_sides.at(parts.nodes,
+                                                          time + step));
     if (cut_cells)
       {
         add_cut_cells(ways, step);
         for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
           if (cut_cells->knows(field))
-            impulses.heed_sides(field, sides.at(parts.nodes, time + step));
+            impulses.add_side_constraints(field,
+                                          sides.at(parts.nodes, time + step));
       }
     if (cut_cells && cut_cells->any())
       return impulses.finish_adding({}, passes_of_surfaces);

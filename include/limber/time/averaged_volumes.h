@@ -72,7 +72,7 @@ namespace limber
           NodalVector                                  &solution);
 
   private:
-    class Felt;
+    class CheckerboardFilter;
 
     void
     make_solver(const dealii::TrilinosWrappers::SparseMatrix &stiffness,

@@ -106,13 +106,13 @@ namespace limber
     using Vector = dealii::Tensor<1, dim>;
 
     /** Two fields that have mass at a node. */
-    struct Touch
+    struct ContactNode
     {
       std::uint32_t node;
       unsigned int  a, b; // fields
 
       bool
-      operator==(const Touch &other) const
+      operator==(const ContactNode &other) const
       {
         return node == other.node && a == other.a && b == other.b;
       }
@@ -175,8 +175,8 @@ namespace limber
     };
 
     /**
-     * Reduction over ranks at the touches of two fields: sums or maxima of n
-     * numbers per node.
+     * Reduction over ranks at the contact nodes of two fields: sums or maxima
+     * of n numbers per node.
      */
     struct SharedSlots
     {
@@ -202,7 +202,7 @@ namespace limber
 
     /** Nodes of a cell at which the bodies of a field may touch others: range
      * [first, last) of the corners. */
-    struct Rim
+    struct ContactCellNodes
     {
       std::uint32_t first, last;
     };
@@ -240,11 +240,11 @@ namespace limber
     bool
     find_nodes();
     void
-    forget_rims();
+    forget_cell_nodes();
     void
     find_batches();
     std::uint32_t
-    find_rim(unsigned int field, std::uint32_t cell);
+    find_cell_nodes(unsigned int field, std::uint32_t cell);
     template <std::size_t n>
     void
     add_corners(unsigned int field, const std::array<std::uint32_t, n> &nodes);
@@ -341,36 +341,36 @@ namespace limber
     // By body, the cells of its points in the step before
     std::vector<std::vector<std::uint32_t>> cells_of;
     bool                     cells_are_others = true; // changed in this step
-    std::vector<Touch>       touches;  // those of a node side by side
-    std::vector<Touch>       found;    // those of this step
+    std::vector<ContactNode> contact_nodes; // those of a node side by side
+    std::vector<ContactNode> found;         // those of this step
     LazyArray<std::uint32_t> first_of; // by node: 1 + number of the first, or 0
     // By node: 1 + its number among those that hang, or 0; empty if none may
     LazyArray<std::uint32_t> hanging_of;
-    // By field and cell: 2 + number of the rim, 1 without corners, 0 where not
-    // yet determined since the touches last changed
-    LazyArray<std::uint32_t>     rim_of;
-    std::vector<std::uint32_t>   looked_at; // entries of these that are not 0
-    std::vector<Rim>             rims;
-    std::vector<MeetingCorner>   corners; // of the rims
-    std::vector<MeetingBatch>    batches; // of points in cells with a rim
-    std::vector<Group>           groups;  // of these
-    std::vector<double>          volume_gradients; // in slots, m^(dim-1)
-    std::vector<double>          directions; // of the touches, see Extents
-    Extents<dim>                 extents;
-    std::vector<Faces<dim>>      faces;        // of the touches
-    std::vector<char>            points_touch; // likewise
-    std::vector<SurfaceFit<dim>> fits;         // in slots
-    SharedSlots                  gradients_of_ranks{2 * dim, false};
-    SharedSlots                  fits_of_ranks{2 * SurfaceFit<dim>::n, false};
-    SharedSlots                  extents_of_ranks{2 * n_separations, true};
-    ContactImpulses<dim>         impulses;
-    std::vector<Stretch>         stretches; // of the bodies
-    std::vector<Sides>           sides;     // of the pairs
-    std::vector<std::uint32_t>   near;      // points of a batch
-    Bins                         bins;
-    std::vector<Facing>          facing;
-    Part                         part;
-    const unsigned int           this_rank;
+    // By field and cell: 2 + its number in cell_nodes, 1 without corners, 0
+    // where not yet determined since the contact nodes changed
+    LazyArray<std::uint32_t>      cell_nodes_of;
+    std::vector<std::uint32_t>    looked_at; // entries of these that are not 0
+    std::vector<ContactCellNodes> cell_nodes;
+    std::vector<MeetingCorner>    corners; // of these
+    std::vector<MeetingBatch>     batches; // of points in cells with such nodes
+    std::vector<Group>            groups;  // of these
+    std::vector<double>           volume_gradients; // in slots, m^(dim-1)
+    std::vector<double>           directions;       // of the nodes, see Extents
+    Extents<dim>                  extents;
+    std::vector<Faces<dim>>       faces;        // of the nodes
+    std::vector<char>             points_touch; // likewise
+    std::vector<SurfaceFit<dim>>  fits;         // in slots
+    SharedSlots                   gradients_of_ranks{2 * dim, false};
+    SharedSlots                   fits_of_ranks{2 * SurfaceFit<dim>::n, false};
+    SharedSlots                   extents_of_ranks{2 * n_separations, true};
+    ContactImpulses<dim>          impulses;
+    std::vector<Stretch>          stretches; // of the bodies
+    std::vector<Sides>            sides;     // of the pairs
+    std::vector<std::uint32_t>    near;      // points of a batch
+    Bins                          bins;
+    std::vector<Facing>           facing;
+    Part                          part;
+    const unsigned int            this_rank;
     // Ranks that share a vertex with this one
     std::unordered_map<std::uint32_t, std::vector<unsigned int>>
                                            ranks_of_vertex;
@@ -397,12 +397,12 @@ namespace limber
       for (const std::uint32_t node : nodes)
         std::fill_n(records + std::size_t(node) * n, n, slots.nothing);
     };
-    // work(slot of the touch, slot of the record)
+    // work(slot of the contact node, slot of the record)
     const auto for_each_slot = [&](const auto &pair, const auto &work) {
-      for (std::size_t t = 0; t < touches.size(); ++t)
-        if (touches[t].a == pair[0] && touches[t].b == pair[1])
+      for (std::size_t t = 0; t < contact_nodes.size(); ++t)
+        if (contact_nodes[t].a == pair[0] && contact_nodes[t].b == pair[1])
           {
-            double *record = records + std::size_t(touches[t].node) * n;
+            double *record = records + std::size_t(contact_nodes[t].node) * n;
             for (double *const slot : slots_of(t))
               work(*slot, *record++);
           }

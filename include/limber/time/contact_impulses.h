@@ -196,7 +196,8 @@ namespace limber
      * before finish_adding().
      */
     void
-    heed_sides(unsigned int field, const std::vector<Constraint> &constraints);
+    add_side_constraints(unsigned int                   field,
+                         const std::vector<Constraint> &constraints);
 
     /**
      * To be called after the last place has been added; masses of nodes are
@@ -485,11 +486,11 @@ namespace limber
     std::vector<double> inverse_mass, bears, velocity, momentum;
     std::vector<double> relative, given_by_place;
     std::vector<char>   takes_part;
-    // Constraints of seen nodes by sides, empty without heed_sides(): fields
-    // with their constraints; by node, the components always held (bits), the
-    // sides that do so, and the constrained velocity
+    // Constraints of seen nodes by sides, empty without add_side_constraints():
+    // fields with their constraints; by node, the components always held
+    // (bits), the sides that do so, and the constrained velocity
     std::vector<std::pair<unsigned int, const std::vector<Constraint> *>>
-                               heeded;
+                               side_constraints;
     std::vector<HeldOfNode>    held;
     std::vector<unsigned char> held_components, holding_side;
     std::vector<double>        left_velocity;
