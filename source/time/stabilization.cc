@@ -108,11 +108,11 @@ namespace limber
     for (const std::uint32_t node : nodes.active_nodes())
       std::fill_n(nodes.record(node) + Layout::hourglass_force, dim, 0.);
     lend_to_hanging_nodes();
-    find_twists(step);
-    resist_twists<dim>(nodes.owned_occupied_cells(),
-                       nodes.view(),
-                       twists,
-                       twist_sums.data());
+    find_hourglass_modes(step);
+    add_hourglass_forces<dim>(nodes.owned_occupied_cells(),
+                              nodes.view(),
+                              hourglass_modes,
+                              hourglass_sums.data());
     for (const HangingNode &hanging : nodes.table.hanging)
       {
         nodes.record(hanging.node)[Layout::mass] = 0;
@@ -141,41 +141,42 @@ namespace limber
 
 
 
-  // Hourglass amplitudes (twists) of the cells and their means around nodes. A
+  // Hourglass amplitudes of the cells and their means around nodes. A
   // hanging node has none: motion there is not smooth, as it follows its
   // masters along straight lines.
   template <int dim>
   void
-  Stabilization<dim>::find_twists(const double step)
+  Stabilization<dim>::find_hourglass_modes(const double step)
   {
     NodalFields<dim> &nodes = parts.nodes;
     const std::size_t size =
       std::size_t(nodes.table.n()) * NodeLayout<dim>::stride;
-    if (twist_sums.size() != size)
-      twist_sums.reinit(size);
+    if (hourglass_sums.size() != size)
+      hourglass_sums.reinit(size);
     const auto of_node = [&](const std::uint32_t node) {
-      return twist_sums.data() + std::size_t(node) * NodeLayout<dim>::stride;
+      return hourglass_sums.data() +
+             std::size_t(node) * NodeLayout<dim>::stride;
     };
-    constexpr unsigned int n = TwistLayout<dim>::n;
+    constexpr unsigned int n = HourglassLayout<dim>::n;
 
     for (const std::uint32_t node : nodes.active_nodes())
       std::fill_n(of_node(node), n, 0.);
-    limber::find_twists<dim>(nodes.owned_occupied_cells(),
-                             nodes.view(),
-                             resisting,
-                             step,
-                             twists,
-                             twist_sums.data());
+    limber::find_hourglass_modes<dim>(nodes.owned_occupied_cells(),
+                                      nodes.view(),
+                                      resisting,
+                                      step,
+                                      hourglass_modes,
+                                      hourglass_sums.data());
     for (const HangingNode &hanging : nodes.table.hanging)
       std::fill_n(of_node(hanging.node), n, 0.);
-    twist_exchange.start(nodes.node_plan(), twist_sums.data(), 0, n);
-    twist_exchange.finish(twist_sums.data());
+    hourglass_exchange.start(nodes.node_plan(), hourglass_sums.data(), 0, n);
+    hourglass_exchange.finish(hourglass_sums.data());
     for (const std::uint32_t node : nodes.active_nodes())
       if (double *const sums = of_node(node);
-          sums[TwistLayout<dim>::weight] > 0)
+          sums[HourglassLayout<dim>::weight] > 0)
         {
-          const double inverse = 1 / sums[TwistLayout<dim>::weight];
-          for (unsigned int k = TwistLayout<dim>::twist; k < n; ++k)
+          const double inverse = 1 / sums[HourglassLayout<dim>::weight];
+          for (unsigned int k = HourglassLayout<dim>::mode; k < n; ++k)
             sums[k] *= inverse;
         }
   }

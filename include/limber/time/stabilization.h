@@ -43,16 +43,16 @@ namespace limber
     void
     resist_hourglass_of_field(double step);
     void
-    find_twists(double step);
+    find_hourglass_modes(double step);
     void
     lend_to_hanging_nodes();
 
     const RunParts<dim> parts;
     // Refilled in each step, which then allocates nothing
     std::vector<HourglassResistance<dim>> resisting;
-    std::vector<CellTwist<dim>>           twists;
-    LazyArray<double>                     twist_sums; // TwistLayout
-    RecordExchange twist_exchange{NodeLayout<dim>::stride};
+    std::vector<HourglassModes<dim>>      hourglass_modes;
+    LazyArray<double>                     hourglass_sums; // HourglassLayout
+    RecordExchange hourglass_exchange{NodeLayout<dim>::stride};
   };
 } // namespace limber
 

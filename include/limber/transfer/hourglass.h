@@ -43,7 +43,7 @@ namespace limber
 
   /** Hourglass amplitudes of a cell. */
   template <int dim>
-  struct CellTwist
+  struct HourglassModes
   {
     static constexpr unsigned int n_modes = (1 << dim) - 1 - dim;
     // modes of two directions, which have a mean around nodes
@@ -63,11 +63,11 @@ namespace limber
    * directions.
    */
   template <int dim>
-  struct TwistLayout
+  struct HourglassLayout
   {
     static constexpr unsigned int weight = 0;
-    static constexpr unsigned int twist  = 1;
-    static constexpr unsigned int n = twist + dim * CellTwist<dim>::n_pairs;
+    static constexpr unsigned int mode   = 1;
+    static constexpr unsigned int n = mode + dim * HourglassModes<dim>::n_pairs;
     static_assert(n <= NodeLayout<dim>::stride, "at the same offsets");
   };
 
@@ -81,12 +81,12 @@ namespace limber
    */
   template <int dim>
   void
-  find_twists(const std::vector<std::uint32_t>            &cells,
-              const GridView<dim>                         &grid,
-              const std::vector<HourglassResistance<dim>> &bodies,
-              double                                       step,
-              std::vector<CellTwist<dim>>                 &twists,
-              double                                      *sums);
+  find_hourglass_modes(const std::vector<std::uint32_t>            &cells,
+                       const GridView<dim>                         &grid,
+                       const std::vector<HourglassResistance<dim>> &bodies,
+                       double                                       step,
+                       std::vector<HourglassModes<dim>>            &modes,
+                       double                                      *sums);
 
   /**
    * Given the means around the nodes (weight zero if there is none), add the
@@ -95,10 +95,10 @@ namespace limber
    */
   template <int dim>
   void
-  resist_twists(const std::vector<std::uint32_t>  &cells,
-                const GridView<dim>               &grid,
-                const std::vector<CellTwist<dim>> &twists,
-                const double                      *means);
+  add_hourglass_forces(const std::vector<std::uint32_t>       &cells,
+                       const GridView<dim>                    &grid,
+                       const std::vector<HourglassModes<dim>> &modes,
+                       const double                           *means);
 } // namespace limber
 
 #endif

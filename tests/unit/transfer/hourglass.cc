@@ -49,17 +49,17 @@ namespace
       for (std::size_t n = 0; n < grid.n_nodes; ++n)
         std::fill_n(record(n) + Layout::remapped, dim, 0.);
       sums.assign(grid.nodes.size(), 0.);
-      find_twists<dim>(cells,
-                       grid.view(),
-                       {{grid.cell_sums(), chi}},
-                       step,
-                       twists,
-                       sums.data());
+      find_hourglass_modes<dim>(cells,
+                                grid.view(),
+                                {{grid.cell_sums(), chi}},
+                                step,
+                                modes,
+                                sums.data());
       for (std::size_t n = 0; n < grid.n_nodes; ++n)
         if (double *const of_node = &sums[n * Layout::stride]; of_node[0] > 0)
-          for (unsigned int k = 1; k < TwistLayout<dim>::n; ++k)
+          for (unsigned int k = 1; k < HourglassLayout<dim>::n; ++k)
             of_node[k] /= of_node[0];
-      resist_twists<dim>(cells, grid.view(), twists, sums.data());
+      add_hourglass_forces<dim>(cells, grid.view(), modes, sums.data());
     }
 
     /** A place as if all edges were one, from the first node. */
@@ -72,12 +72,12 @@ namespace
       return x;
     }
 
-    Random                      random;
-    SmallGrid<dim>              grid;
-    SmallPoints<dim>            points;
-    std::vector<std::uint32_t>  cells;
-    std::vector<CellTwist<dim>> twists;
-    std::vector<double>         sums;
+    Random                           random;
+    SmallGrid<dim>                   grid;
+    SmallPoints<dim>                 points;
+    std::vector<std::uint32_t>       cells;
+    std::vector<HourglassModes<dim>> modes;
+    std::vector<double>              sums;
   };
 
   using Dimensions = testing::Types<std::integral_constant<int, 2>,
