@@ -149,7 +149,7 @@ namespace limber
     obey_filter(problem);
     read_contact(root, problem);
     check_obstacles(root, problem);
-    choose_spread_of_points(root, problem);
+    choose_density_control_and_shifting(root, problem);
     choose_side_contact(problem);
     problem.output     = read_output(root.subsection("Output"));
     problem.checkpoint = read_checkpoint(root.subsection("Checkpoint"));

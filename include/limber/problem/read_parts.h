@@ -311,7 +311,8 @@ namespace limber
    * particle_shifting. Time integration, bodies and obstacles are known. */
   template <int dim>
   void
-  choose_spread_of_points(const Section &root, Problem<dim> &problem);
+  choose_density_control_and_shifting(const Section &root,
+                                      Problem<dim>  &problem);
 
   // Steps by Newton's method (source/problem/newton_scene.cc)
 

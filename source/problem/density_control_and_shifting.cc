@@ -160,7 +160,8 @@ namespace limber
 
   template <int dim>
   void
-  choose_spread_of_points(const Section &root, Problem<dim> &problem)
+  choose_density_control_and_shifting(const Section &root,
+                                      Problem<dim>  &problem)
   {
     for (auto &body : problem.bodies)
       {
@@ -173,7 +174,7 @@ namespace limber
 
 
   template void
-  choose_spread_of_points(const Section &, Problem<2> &);
+  choose_density_control_and_shifting(const Section &, Problem<2> &);
   template void
-  choose_spread_of_points(const Section &, Problem<3> &);
+  choose_density_control_and_shifting(const Section &, Problem<3> &);
 } // namespace limber
