@@ -76,7 +76,7 @@ namespace limber
 
   template <int dim>
   std::size_t
-  BodySweeps<dim>::points_to_grid(GiveToGrid what)
+  BodySweeps<dim>::points_to_grid(P2GOptions what)
   {
     if (what.force && dual_domain)
       dual_domain->clear_stress(parts.nodes);
@@ -118,7 +118,7 @@ namespace limber
 
   template <int dim>
   void
-  BodySweeps<dim>::finish_points_to_grid(const GiveToGrid &what)
+  BodySweeps<dim>::finish_points_to_grid(const P2GOptions &what)
   {
     if (!dual_domain)
       return;
@@ -182,8 +182,8 @@ namespace limber
 
   template <int dim>
   void
-  BodySweeps<dim>::grid_to_points(const TakeFromGrid &what,
-                                  StepExtremes       &extremes)
+  BodySweeps<dim>::grid_to_points(const G2POptions &what,
+                                  StepExtremes     &extremes)
   {
     for (auto &body : parts.bodies)
       grid_to_points(*body, what, extremes);
@@ -193,8 +193,8 @@ namespace limber
 
   template <int dim>
   void
-  BodySweeps<dim>::grid_to_points_ahead(const TakeFromGrid &what,
-                                        StepExtremes       &extremes)
+  BodySweeps<dim>::grid_to_points_ahead(const G2POptions &what,
+                                        StepExtremes     &extremes)
   {
     for (auto &body : parts.bodies)
       if (!body->stress->takes_velocity())
@@ -205,12 +205,12 @@ namespace limber
 
   template <int dim>
   void
-  BodySweeps<dim>::grid_to_points(MaterialBody<dim>  &body,
-                                  const TakeFromGrid &what,
-                                  StepExtremes       &extremes)
+  BodySweeps<dim>::grid_to_points(MaterialBody<dim> &body,
+                                  const G2POptions  &what,
+                                  StepExtremes      &extremes)
   {
-    const auto   sums = sums_of(body);
-    TakeFromGrid own  = what;
+    const auto sums = sums_of(body);
+    G2POptions own  = what;
     own.light_density *= body.stress->density();
     const auto found = limber::grid_to_points<dim>(body.points.view(),
                                                    nodes_of(body),

@@ -468,7 +468,7 @@ namespace limber
                             Layout::stride);
     GridView<dim> grid = nodes.view();
     grid.nodes         = records;
-    TakeFromGrid take;
+    G2POptions take;
     take.flip_share = 0;
     take.remap      = true;
     for (auto &body : bodies)

@@ -283,7 +283,7 @@ namespace limber
   NewtonIntegrator<dim>::gather(const bool of_acceleration, Values &means)
   {
     parts.nodes.clear();
-    GiveToGrid what;
+    P2GOptions what;
     what.force = false;
     for (const auto &body : parts.bodies)
       points_to_grid<dim>(of_acceleration ?

@@ -24,7 +24,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::p2g_momentum()
   {
-    GiveToGrid what;
+    P2GOptions what;
     what.force = false;
     give(what);
     sum_shared_nodes(0, Layout::remapped);
@@ -38,7 +38,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::p2g_force()
   {
-    GiveToGrid what;
+    P2GOptions what;
     what.momentum = false;
     give(what);
     sum_shared_nodes(Layout::force, Layout::force + dim);
@@ -49,7 +49,7 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::give(GiveToGrid what)
+  ExplicitIntegrator<dim>::give(P2GOptions what)
   {
     what.affine = what.momentum && is_affine(parts.problem.method.transfer);
     relocation.note_batches(sweeps.points_to_grid(what));
@@ -60,7 +60,7 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::finish_giving(const GiveToGrid &what)
+  ExplicitIntegrator<dim>::finish_giving(const P2GOptions &what)
   {
     sweeps.finish_points_to_grid(what);
     lap(Verb::points_to_grid);
@@ -100,7 +100,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::g2p_and_move()
   {
-    TakeFromGrid what;
+    G2POptions what;
     what.move = step;
     take(what);
   }
@@ -120,7 +120,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::g2p_and_remap()
   {
-    TakeFromGrid what;
+    G2POptions what;
     what.remap = true;
     take(what);
     sum_shared_nodes(Layout::remapped, Layout::remapped + dim);
@@ -133,7 +133,7 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::take(TakeFromGrid what)
+  ExplicitIntegrator<dim>::take(G2POptions what)
   {
     what.affine              = is_affine(parts.problem.method.transfer);
     what.flip_share          = flip_share();
@@ -216,7 +216,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::g2p_update_stress_and_move()
   {
-    TakeFromGrid taken;
+    G2POptions taken;
     taken.affine     = is_affine(parts.problem.method.transfer);
     taken.flip_share = flip_share();
     sweeps.grid_to_points_ahead(taken, extremes);

@@ -63,7 +63,7 @@ namespace limber
     std::size_t
     give(const PointView<dim> &points,
          const GridView<dim>  &grid,
-         const GiveToGrid     &what)
+         const P2GOptions     &what)
     {
       using Layout = NodeLayout<dim>;
       using Window =
@@ -118,7 +118,7 @@ namespace limber
   std::size_t
   domains_to_grid(const PointView<dim> &points,
                   const GridView<dim>  &grid,
-                  const GiveToGrid     &what)
+                  const P2GOptions     &what)
   {
     check_treatment_of_domains(what.treatment.kind);
     if (!what.force)
@@ -133,7 +133,7 @@ namespace limber
   VelocitySummary
   grid_to_domains(const PointView<dim> &points,
                   const GridView<dim>  &grid,
-                  const TakeFromGrid   &what)
+                  const G2POptions     &what)
   {
     using Layout = NodeLayout<dim>;
     using Number = PointPack<dim>;
@@ -250,19 +250,19 @@ namespace limber
   template std::size_t
   domains_to_grid(const PointView<2> &,
                   const GridView<2> &,
-                  const GiveToGrid &);
+                  const P2GOptions &);
   template std::size_t
   domains_to_grid(const PointView<3> &,
                   const GridView<3> &,
-                  const GiveToGrid &);
+                  const P2GOptions &);
   template VelocitySummary
   grid_to_domains(const PointView<2> &,
                   const GridView<2> &,
-                  const TakeFromGrid &);
+                  const G2POptions &);
   template VelocitySummary
   grid_to_domains(const PointView<3> &,
                   const GridView<3> &,
-                  const TakeFromGrid &);
+                  const G2POptions &);
   template void
   sum_divergence_of_domains<NodalMeanSums<2>>(const PointView<2> &,
                                               const GridView<2> &,

@@ -135,7 +135,7 @@ namespace limber
     std::size_t
     give_stress(const PointView<dim> &points,
                 const GridView<dim>  &grid,
-                const GiveToGrid     &what)
+                const P2GOptions     &what)
     {
       return for_each_batch(points, [&](const CellBatch &batch) {
         const CellGeometry<dim>                  &cell = grid.cells[batch.cell];
@@ -187,7 +187,7 @@ namespace limber
   std::size_t
   stress_to_dual_domain(const PointView<dim> &points,
                         const GridView<dim>  &grid,
-                        const GiveToGrid     &what)
+                        const P2GOptions     &what)
   {
     check_treatment_of_domains(what.treatment.kind);
     const auto with = [&](const auto averaged) {
@@ -219,11 +219,11 @@ namespace limber
   template std::size_t
   stress_to_dual_domain(const PointView<2> &,
                         const GridView<2> &,
-                        const GiveToGrid &);
+                        const P2GOptions &);
   template std::size_t
   stress_to_dual_domain(const PointView<3> &,
                         const GridView<3> &,
-                        const GiveToGrid &);
+                        const P2GOptions &);
   template void
   sum_divergence_of_dual_domain<CellMeanSums<2>>(const PointView<2> &,
                                                  const GridView<2> &,

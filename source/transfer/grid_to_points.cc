@@ -288,7 +288,7 @@ namespace limber
     VelocitySummary
     sweep(const PointView<Basis::dim> &points,
           const GridView<Basis::dim>  &grid,
-          const TakeFromGrid          &what,
+          const G2POptions            &what,
           const CellSums<Basis::dim>  *sums)
     {
       constexpr int dim = Basis::dim;
@@ -385,7 +385,7 @@ namespace limber
   VelocitySummary
   grid_to_points(const PointView<dim> &points,
                  const GridView<dim>  &grid,
-                 const TakeFromGrid   &what,
+                 const G2POptions     &what,
                  const CellSums<dim>  *sums)
   {
     if (points.has_domains())
@@ -441,12 +441,12 @@ namespace limber
   template VelocitySummary
   grid_to_points(const PointView<2> &,
                  const GridView<2> &,
-                 const TakeFromGrid &,
+                 const G2POptions &,
                  const CellSums<2> *);
   template VelocitySummary
   grid_to_points(const PointView<3> &,
                  const GridView<3> &,
-                 const TakeFromGrid &,
+                 const G2POptions &,
                  const CellSums<3> *);
   template void
   gather_cell_sums(const PointView<2> &,

@@ -38,7 +38,7 @@ namespace limber
       of(const PointView<dim>    &points,
          const CellBatch         &batch,
          const CellGeometry<dim> &cell,
-         const GiveToGrid        &what,
+         const P2GOptions        &what,
          const CellSums<dim>     *sums)
       {
         const CellMeans<Linear<dim>> means(sums, batch.cell);
@@ -77,7 +77,7 @@ namespace limber
     std::size_t
     sweep(const PointView<dim> &points,
           const GridView<dim>  &grid,
-          const GiveToGrid     &what,
+          const P2GOptions     &what,
           const CellSums<dim>  *sums)
     {
       return for_each_batch(
@@ -108,7 +108,7 @@ namespace limber
     std::size_t
     choose_sums(const PointView<dim> &points,
                 const GridView<dim>  &grid,
-                const GiveToGrid     &what,
+                const P2GOptions     &what,
                 const CellSums<dim>  *sums)
     {
       if constexpr (Force::any)
@@ -125,7 +125,7 @@ namespace limber
     std::size_t
     choose_treatment(const PointView<dim> &points,
                      const GridView<dim>  &grid,
-                     const GiveToGrid     &what,
+                     const P2GOptions     &what,
                      const CellSums<dim>  *sums)
     {
       switch (what.treatment.kind)
@@ -169,7 +169,7 @@ namespace limber
   std::size_t
   points_to_grid(const PointView<dim> &points,
                  const GridView<dim>  &grid,
-                 const GiveToGrid     &what,
+                 const P2GOptions     &what,
                  const CellSums<dim>  *sums)
   {
     if (points.has_domains())
@@ -198,11 +198,11 @@ namespace limber
   template std::size_t
   points_to_grid(const PointView<2> &,
                  const GridView<2> &,
-                 const GiveToGrid &,
+                 const P2GOptions &,
                  const CellSums<2> *);
   template std::size_t
   points_to_grid(const PointView<3> &,
                  const GridView<3> &,
-                 const GiveToGrid &,
+                 const P2GOptions &,
                  const CellSums<3> *);
 } // namespace limber

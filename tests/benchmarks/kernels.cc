@@ -162,7 +162,7 @@ namespace
   measure_giving(const std::string &treatment, const bool apic)
   {
     Bench<dim> bench(block<dim>("linear elastic", "", treatment, apic));
-    GiveToGrid give;
+    P2GOptions give;
     give.affine          = apic;
     give.inverse_density = 1e-3;
     give.treatment       = bench.body.stress->treatment();
@@ -186,7 +186,7 @@ namespace
   {
     Bench<dim>        bench(block<dim>("linear elastic", "", "none", apic));
     const std::string name = apic ? "grid to points, apic" : "grid to points";
-    TakeFromGrid      take;
+    G2POptions        take;
     take.affine        = apic;
     take.flip_share    = apic ? 0 : 1;
     const auto prepare = [&]() { bench.set_motion(); };

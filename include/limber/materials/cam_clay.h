@@ -324,7 +324,7 @@ namespace limber
       double log_J =
         pressure > 0 ? -swelling * std::log1p(pressure / attraction) : 0;
       double left = 0;
-      for (int sweep = 0; sweep < 30; ++sweep)
+      for (int iteration = 0; iteration < 30; ++iteration)
         {
           const double x = attraction * std::exp(-log_J / swelling),
                        p = pressure * std::exp(log_J);
@@ -393,7 +393,8 @@ namespace limber
         Number low = place < 1. ? place : one, high = place < 1. ? one : place,
                t          = place;
         Number unfinished = one;
-        for (int sweep = 0; sweep < 60 && !all(unfinished <= 0.); ++sweep)
+        for (int iteration = 0; iteration < 60 && !all(unfinished <= 0.);
+             ++iteration)
           {
             const Number left   = residual(t);
             low                 = left > 0. ? t : low;

@@ -14,11 +14,11 @@ namespace limber
    */
   template <int dim, class Law, class Number>
   Number
-  flow_further(const Law                                 &law,
-               const SmallMatrix<dim, Number>            &f,
-               const Number                              &growth,
-               const double                               step,
-               typename Law::template State<dim, Number> &state)
+  return_map(const Law                                 &law,
+             const SmallMatrix<dim, Number>            &f,
+             const Number                              &growth,
+             const double                               step,
+             typename Law::template State<dim, Number> &state)
   {
     // the trial strain is set here and the stress is still the old one, as in
     // update() after its trial step, which therefore gets a zero increment
@@ -59,7 +59,7 @@ namespace limber
            typename Law::template State<dim, double> &state) const
     {
       if constexpr (Law::is_plastic)
-        return flow_further<dim, Law>(*this, f, growth, 0, state);
+        return return_map<dim, Law>(*this, f, growth, 0, state);
       else if constexpr (Law::finite_strain)
         {
           isochoric::deform<dim>(state.history, f, determinant<dim>(f));

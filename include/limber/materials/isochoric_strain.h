@@ -159,7 +159,7 @@ namespace limber
       const double half = 0.5 * squared_norm<dim, double>(e);
       const double rest = determinant_of<dim>(e) - 1;
       double       I = 1 + std::sqrt(2 * half), step = I;
-      for (int sweep = 0; sweep < 100 && step > 1e-15 * I; ++sweep)
+      for (int iteration = 0; iteration < 100 && step > 1e-15 * I; ++iteration)
         {
           step = (I * (I * I - half) + rest) / (3 * I * I - half);
           I -= step;

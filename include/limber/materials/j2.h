@@ -199,7 +199,7 @@ namespace limber
       Number       result =
         larger(excess, Number{}) / (stiffness + 2. / 3. * slope(alpha));
       if (saturation > 0)
-        for (int sweep = 0; sweep < 3; ++sweep)
+        for (int iteration = 0; iteration < 3; ++iteration)
           {
             const Number now = alpha + root * result;
             const Number left =
@@ -242,9 +242,9 @@ namespace limber
       const Number hard   = stiffness + 2. / 3. * slope(alpha);
       const Number alone =
         power(target / (rate * hard), 1 / inverse_exponent) * (1 / scale);
-      Number    y      = alone < target ? alone : target, flow{};
-      const int sweeps = inverse_exponent == 1 && saturation == 0 ? 1 : 5;
-      for (int sweep = 0; sweep < sweeps; ++sweep)
+      Number    y          = alone < target ? alone : target, flow{};
+      const int iterations = inverse_exponent == 1 && saturation == 0 ? 1 : 5;
+      for (int iteration = 0; iteration < iterations; ++iteration)
         {
           flow             = rate * power(scale * y, inverse_exponent);
           const Number now = alpha + root * flow;

@@ -75,9 +75,9 @@ namespace limber
       Number       reciprocal = 1. / slope;
       Number       step       = broadcast<Number>(1e300);
       // three iterations are enough at small elastic strain
-      for (int sweep = 0;
-           sweep < 3 || rarely(sweep < 100 && !all(step <= 1e-11 * I));
-           ++sweep)
+      for (int iteration = 0;
+           iteration < 3 || rarely(iteration < 100 && !all(step <= 1e-11 * I));
+           ++iteration)
         {
           step = (I * (I * I - half) + rest) * reciprocal;
           I -= step;

@@ -291,7 +291,7 @@ namespace limber
          Findings                               &found) const
     {
       auto       state = stored_state(points, lanes);
-      const auto work  = flow_further<dim>(law, f, growth, step, state);
+      const auto work  = return_map<dim>(law, f, growth, step, state);
       found.plastic +=
         lanes.only_active(lanes.load(points.mass)) * inverse_density * work;
       return state;

@@ -80,7 +80,7 @@ namespace limber
     const double *volume_shares = nullptr;
     // Of an implicit pressure, with Treatment::cell; null: there is none
     const CellPressures *implicit = nullptr;
-    // Divergence projected on nodes, as GiveToGrid::projected_pressure
+    // Divergence projected on nodes, as P2GOptions::projected_pressure
     const double *projected_divergence = nullptr;
   };
 

@@ -29,14 +29,14 @@ namespace limber
 
     /** P2G: add to the nodes; returns the number of batches. Collective. */
     std::size_t
-    points_to_grid(GiveToGrid what);
+    points_to_grid(P2GOptions what);
 
     /**
      * Dual domain method, once nodal sums are complete over ranks: add forces
      * of the stress that is mapped through nodes. Collective.
      */
     void
-    finish_points_to_grid(const GiveToGrid &what);
+    finish_points_to_grid(const P2GOptions &what);
 
     /**
      * With the dual domain method, before points and loaded faces are strained:
@@ -53,11 +53,11 @@ namespace limber
     }
 
     void
-    grid_to_points(const TakeFromGrid &what, StepExtremes &extremes);
+    grid_to_points(const G2POptions &what, StepExtremes &extremes);
 
     /** G2P for bodies that do not take velocities in update_stress(). */
     void
-    grid_to_points_ahead(const TakeFromGrid &what, StepExtremes &extremes);
+    grid_to_points_ahead(const G2POptions &what, StepExtremes &extremes);
 
     /** Relaxation of histories towards the mean of the cell in one sweep. */
     struct Pace
@@ -87,9 +87,9 @@ namespace limber
     }
 
     void
-    grid_to_points(MaterialBody<dim>  &body,
-                   const TakeFromGrid &what,
-                   StepExtremes       &extremes);
+    grid_to_points(MaterialBody<dim> &body,
+                   const G2POptions  &what,
+                   StepExtremes      &extremes);
     template <class Sum>
     void
     project_on_nodes(const Sum &sum);

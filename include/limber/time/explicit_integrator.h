@@ -220,11 +220,11 @@ namespace limber
     bool
     spread_points(double now);
     void
-    give(GiveToGrid what);
+    give(P2GOptions what);
     void
-    finish_giving(const GiveToGrid &what);
+    finish_giving(const P2GOptions &what);
     void
-    take(TakeFromGrid what);
+    take(G2POptions what);
     double
     flip_share() const;
     double

@@ -18,7 +18,7 @@ namespace limber
   std::size_t
   domains_to_grid(const PointView<dim> &points,
                   const GridView<dim>  &grid,
-                  const GiveToGrid     &what);
+                  const P2GOptions     &what);
 
 
 
@@ -29,7 +29,7 @@ namespace limber
   VelocitySummary
   grid_to_domains(const PointView<dim> &points,
                   const GridView<dim>  &grid,
-                  const TakeFromGrid   &what);
+                  const G2POptions     &what);
 
 
 

@@ -22,7 +22,7 @@ namespace limber
   std::size_t
   stress_to_dual_domain(const PointView<dim> &points,
                         const GridView<dim>  &grid,
-                        const GiveToGrid     &what);
+                        const P2GOptions     &what);
 
 
 

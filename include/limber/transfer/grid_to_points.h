@@ -7,7 +7,7 @@
 namespace limber
 {
   /** Options of G2P for the points of a body. */
-  struct TakeFromGrid
+  struct G2POptions
   {
     // FLIP share alpha of the velocity increment; the rest is the velocity
     // itself (PIC): v = alpha (v + sum N dv) + (1 - alpha) sum N v.
@@ -43,7 +43,7 @@ namespace limber
   VelocitySummary
   grid_to_points(const PointView<dim> &points,
                  const GridView<dim>  &grid,
-                 const TakeFromGrid   &what,
+                 const G2POptions     &what,
                  const CellSums<dim>  *sums);
 
 

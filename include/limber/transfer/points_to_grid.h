@@ -8,7 +8,7 @@
 namespace limber
 {
   /** Options of P2G for the points of a body. */
-  struct GiveToGrid
+  struct P2GOptions
   {
     bool            momentum        = true;  // mass and momentum
     bool            force           = true;  // internal force
@@ -42,7 +42,7 @@ namespace limber
   std::size_t
   points_to_grid(const PointView<dim> &points,
                  const GridView<dim>  &grid,
-                 const GiveToGrid     &what,
+                 const P2GOptions     &what,
                  const CellSums<dim>  *sums);
 } // namespace limber
 

@@ -14,7 +14,7 @@ namespace limber
   std::size_t
   points_to_splines(const PointView<Basis::dim> &points,
                     const GridView<Basis::dim>  &grid,
-                    const GiveToGrid            &what,
+                    const P2GOptions            &what,
                     const CellSums<Basis::dim>  *sums);
 } // namespace limber
 

@@ -58,7 +58,7 @@ namespace limber
                 const CellGeometry<dim>               &cell,
                 const Lanes                           &lanes,
                 const std::array<PointPack<dim>, dim> &xi,
-                const GiveToGrid                      &what,
+                const P2GOptions                      &what,
                 StressSums<dim>                       &on_means) const
       {
         using Number = PointPack<dim>;
@@ -133,7 +133,7 @@ namespace limber
     std::size_t
     sweep(const PointView<dim>         &points,
           const GridView<dim>          &grid,
-          const GiveToGrid             &what,
+          const P2GOptions             &what,
           const CellSums<dim>          *sums,
           [[maybe_unused]] const Force &force)
     {
@@ -195,7 +195,7 @@ namespace limber
     std::size_t
     choose_sums(const PointView<dim> &points,
                 const GridView<dim>  &grid,
-                const GiveToGrid     &what,
+                const P2GOptions     &what,
                 const CellSums<dim>  *sums,
                 const Force          &force)
     {
@@ -214,7 +214,7 @@ namespace limber
   std::size_t
   points_to_splines(const PointView<Basis::dim> &points,
                     const GridView<Basis::dim>  &grid,
-                    const GiveToGrid            &what,
+                    const P2GOptions            &what,
                     const CellSums<Basis::dim>  *sums)
   {
     using namespace internal;

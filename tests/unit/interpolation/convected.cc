@@ -380,7 +380,7 @@ TYPED_TEST(ConvectedDomains, GiveForcesThatAreTheTransposeOfTheStrain)
   for (const Treatment kind : {Treatment::none, Treatment::cell})
     {
       this->grid.nodes = before_nodes;
-      GiveToGrid what;
+      P2GOptions what;
       what.inverse_density    = 0.7;
       what.treatment.kind     = kind;
       what.projected_pressure = pressure.data();
@@ -460,7 +460,7 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
   using Layout      = typename TestFixture::Layout;
   auto       own    = this->points_with_domains(0.8);
   const auto points = this->view(own);
-  GiveToGrid what;
+  P2GOptions what;
   what.force = false;
   domains_to_grid<dim>(points, this->grid.view(), what);
   double added = 0;
@@ -475,7 +475,7 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
   double before = 0, after = 0;
   for (std::size_t p = 0; p < points.size; ++p)
     before += points.mass[p] * points.velocity[0][p];
-  TakeFromGrid take;
+  G2POptions take;
   take.remap = true;
   grid_to_domains<dim>(points, this->grid.view(), take);
   for (std::size_t p = 0; p < points.size; ++p)
@@ -526,13 +526,13 @@ TYPED_TEST(ConvectedDomains, TakeWhatNodesGive)
 // found by cells, and the same one by one, where the table knows no node.
 TYPED_TEST(ConvectedDomains, GiveAndTakeTheSameInBlocksAsOneByOne)
 {
-  constexpr int dim   = TestFixture::dim;
-  using Layout        = typename TestFixture::Layout;
-  const auto   own    = this->points_with_domains(0.5);
-  const auto   edges  = this->domains;
-  const auto   wanted = this->grid.nodes;
-  GiveToGrid   what;
-  TakeFromGrid take;
+  constexpr int dim = TestFixture::dim;
+  using Layout      = typename TestFixture::Layout;
+  const auto own    = this->points_with_domains(0.5);
+  const auto edges  = this->domains;
+  const auto wanted = this->grid.nodes;
+  P2GOptions what;
+  G2POptions take;
   what.inverse_density = 0.7;
   take.remap           = true;
   take.move            = 1e-3;
@@ -603,7 +603,7 @@ TYPED_TEST(ConvectedDomains, GiveNoNegativeMass)
   using Layout      = typename TestFixture::Layout;
   auto       own    = this->points_with_domains(0.5);
   const auto points = this->view(own);
-  GiveToGrid what;
+  P2GOptions what;
   what.inverse_density = 1;
   this->set_twists_to_zero();
   std::vector<double> smallest(points.size, 1);

@@ -160,7 +160,7 @@ TYPED_TEST(Strain, StressActsThroughTheTransposeOfTheStrainOperator)
         }
 
       const auto velocities = this->grid.nodes;
-      GiveToGrid what;
+      P2GOptions what;
       what.momentum        = variant & 4;
       what.inverse_density = 0.8;
       what.treatment       = strain_treatment_of(TestFixture::kind);

@@ -78,7 +78,7 @@ namespace
       run.integrator.reorganise(run.time);
       run.nodes.clear();
       BodySweeps<2> sweeps(parts);
-      GiveToGrid    what;
+      P2GOptions    what;
       what.force = false;
       sweeps.points_to_grid(what);
       run.nodes.for_each_field([&]() {

@@ -101,7 +101,7 @@ namespace
     find_volumes(const PointView<dim> &points)
     {
       grid.clear();
-      GiveToGrid what;
+      P2GOptions what;
       what.force = false;
       points_to_grid<dim>(points, grid.view(), what, nullptr);
       std::fill(weight.begin(), weight.end(), 0.);
@@ -184,7 +184,7 @@ namespace
 
     /** The internal forces of stress, in the records of the grid. */
     void
-    give_forces(const PointView<dim> &points, const GiveToGrid &what)
+    give_forces(const PointView<dim> &points, const P2GOptions &what)
     {
       clear_tensors();
       for (std::size_t n = 0; n < grid.n_nodes; ++n)
@@ -375,7 +375,7 @@ TYPED_TEST(DualDomainTransfer, ForcesAreTheTransposeOfTheStrain)
         const auto points = own.view();
         this->find_volumes(points);
 
-        GiveToGrid what;
+        P2GOptions what;
         what.momentum        = false;
         what.inverse_density = 0.8;
         what.treatment.kind  = kind;

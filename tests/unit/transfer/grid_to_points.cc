@@ -80,7 +80,7 @@ TYPED_TEST(GridToPoints, LinearFieldsAreTakenExactly)
 
   for (int variant = 0; variant < 12; ++variant)
     {
-      TakeFromGrid what;
+      G2POptions what;
       what.flip_share = std::array{1., 0.9, 0.}[variant % 3];
       what.affine     = variant % 6 >= 3;
       auto points =
@@ -185,8 +185,8 @@ TYPED_TEST(GridToPoints, LightNodesBoundTheAffineVelocity)
   const auto before = points;
 
   const auto run = [&](const double light_density) {
-    auto         result = before;
-    TakeFromGrid what;
+    auto       result = before;
+    G2POptions what;
     what.affine        = true;
     what.flip_share    = 0;
     what.light_density = light_density;
@@ -271,7 +271,7 @@ TYPED_TEST(GridToPoints, IncrementsBringTheirAngularMomentum)
   auto       points = random_points<dim>(this->grid, this->random);
   const auto before = points;
 
-  TakeFromGrid what;
+  G2POptions what;
   what.affine = true;
   grid_to_points<dim>(points.view(), this->grid.view(), what, nullptr);
 
@@ -327,7 +327,7 @@ TYPED_TEST(GridToPoints, RemapIsTheDirectSum)
 
       auto own =
         random_points<dim>(this->grid, this->random, false, 0, -1, variant & 2);
-      TakeFromGrid what;
+      G2POptions what;
       what.affine       = variant & 1;
       what.remap        = true;
       auto       wanted = this->grid.nodes;
@@ -367,7 +367,7 @@ TYPED_TEST(GridToPoints, PointsMoveWithTheGrid)
   this->set_field(Layout::velocity, b, B);
   for (const bool affine : {false, true})
     {
-      TakeFromGrid what;
+      G2POptions what;
       what.affine       = affine;
       what.move         = 0.05;
       auto       points = random_points<dim>(this->grid, this->random);

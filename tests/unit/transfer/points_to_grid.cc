@@ -32,7 +32,7 @@ namespace
 
     /** The sums as the textbook has them, point by point, node by node. */
     std::vector<double>
-    direct(SmallPoints<dim> &own, const GiveToGrid &what)
+    direct(SmallPoints<dim> &own, const P2GOptions &what)
     {
       const auto          points = own.view();
       std::vector<double> result(grid.nodes.size());
@@ -121,7 +121,7 @@ TYPED_TEST(PointsToGrid, SumsAreThoseOfAPlainLoop)
   constexpr int dim = TestFixture::dim;
   for (int variant = 0; variant < 32; ++variant)
     {
-      GiveToGrid what;
+      P2GOptions what;
       what.momentum        = variant & 1;
       what.force           = variant & 2;
       what.affine          = variant & 4;
@@ -140,7 +140,7 @@ TYPED_TEST(PointsToGrid, SumsAreAddedToWhatIsThere)
 {
   constexpr int dim    = TestFixture::dim;
   auto          points = random_points<dim>(this->grid, this->random);
-  GiveToGrid    what;
+  P2GOptions    what;
   what.inverse_density = 1;
   auto expected        = this->direct(points, what);
   for (std::size_t k = 0; k < expected.size(); ++k)
@@ -160,7 +160,7 @@ TYPED_TEST(PointsToGrid, ProjectedPressureActsThroughAllPointsOfItsCell)
       auto own = random_points<dim>(
         this->grid, this->random, variant & 1, 0, -1, variant & 2);
       const auto points = own.view();
-      GiveToGrid what;
+      P2GOptions what;
       what.momentum        = variant & 4;
       what.inverse_density = 0.8;
       what.treatment.kind  = Treatment::cell;
@@ -194,7 +194,7 @@ TYPED_TEST(PointsToGrid, TotalsAreKept)
       {
         auto       own    = random_points<dim>(this->grid, this->random);
         const auto points = own.view();
-        GiveToGrid what;
+        P2GOptions what;
         what.inverse_density = 0.8;
         what.affine          = affine;
         what.treatment       = strain_treatment_of(kind);
@@ -277,7 +277,7 @@ TYPED_TEST(PointsToGrid, BatchesAreCountedAndCoverAllPoints)
   EXPECT_EQ(covered, points.size);
   EXPECT_EQ(n, runs);
   EXPECT_EQ(points_to_grid<dim>(
-              points.view(), this->grid.view(), GiveToGrid(), nullptr),
+              points.view(), this->grid.view(), P2GOptions(), nullptr),
             runs);
 }
 
@@ -288,7 +288,7 @@ TYPED_TEST(PointsToGrid, NoPointsGiveNothing)
   constexpr int    dim = TestFixture::dim;
   SmallPoints<dim> points(0, true, 0, -1);
   EXPECT_EQ(points_to_grid<dim>(
-              points.view(), this->grid.view(), GiveToGrid(), nullptr),
+              points.view(), this->grid.view(), P2GOptions(), nullptr),
             0u);
   this->expect_nodes(std::vector<double>(this->grid.nodes.size()));
 }
