@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/fem/element_fields.h>
-#include <limber/fem/flowing_element.h>
+#include <limber/fem/plastic_element.h>
 #include <limber/materials/law_list.h>
 
 #include <cmath>
@@ -321,7 +321,7 @@ namespace limber
                                                         n_modes_of<dim>(kind));
       else if constexpr (Law::is_plastic)
         result =
-          std::make_unique<FlowingElement<dim, Law>>(Law(values),
+          std::make_unique<PlasticElement<dim, Law>>(Law(values),
                                                      body,
                                                      n_modes_of<dim>(kind));
     };

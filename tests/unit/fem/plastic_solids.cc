@@ -110,7 +110,7 @@ namespace
 
 
 
-TEST(FlowingElements, TangentIsTheDerivativeOfTheForces)
+TEST(PlasticElements, TangentIsTheDerivativeOfTheForces)
 {
   for (const std::string &element : reference_elements)
     {
@@ -131,7 +131,7 @@ TEST(FlowingElements, TangentIsTheDerivativeOfTheForces)
 // flow have taken up. The stretch is the elastic one, J stress / E, and the
 // plastic one, which the law measures at dev(be): to a share of the elastic
 // strain.
-TEST(FlowingElements, BarFollowsTheUniaxialCurve)
+TEST(PlasticElements, BarFollowsTheUniaxialCurve)
 {
   for (const std::string &element : reference_elements)
     {
@@ -190,7 +190,7 @@ TEST(FlowingElements, BarFollowsTheUniaxialCurve)
 
 // Pressed in plane strain the difference of the principal stresses is 2 sy /
 // sqrt(3) where it flows (without hardening).
-TEST(FlowingElements, PlaneStrainFlowsAtTwoOverRootThree)
+TEST(PlasticElements, PlaneStrainFlowsAtTwoOverRootThree)
 {
   for (const std::string &element : reference_elements)
     {
@@ -219,7 +219,7 @@ TEST(FlowingElements, PlaneStrainFlowsAtTwoOverRootThree)
 
 // A block flung against a wall: what flow takes is what the motion loses, with
 // an error that falls with the step.
-TEST(FlowingElements, EnergyIsKeptInTime)
+TEST(PlasticElements, EnergyIsKeptInTime)
 {
   for (const std::string &element : reference_elements)
     {
@@ -254,7 +254,7 @@ TEST(FlowingElements, EnergyIsKeptInTime)
 
 
 
-TEST(FlowingElements, WhatTheyDoNotKnowIsRefused)
+TEST(PlasticElements, WhatTheyDoNotKnowIsRefused)
 {
   const auto message = [](const std::vector<std::string> &changes) {
     try

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_fem_flowing_element_h
-#define limber_fem_flowing_element_h
+#ifndef limber_fem_plastic_element_h
+#define limber_fem_plastic_element_h
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -30,7 +30,7 @@ namespace limber
    * law.
    */
   template <int dim, class Law>
-  class FlowingElement final : public SolidElement<dim>
+  class PlasticElement final : public SolidElement<dim>
   {
     using Values = typename SolidElement<dim>::Values;
     using State  = typename Law::template State<dim, double>;
@@ -38,7 +38,7 @@ namespace limber
     using Matrix = dealii::Tensor<2, dim>;
 
   public:
-    FlowingElement(const Law         &law,
+    PlasticElement(const Law         &law,
                    const Body<dim>   &body,
                    const unsigned int n_modes)
       : law(law)
