@@ -71,10 +71,10 @@ namespace limber
     Followers followers;
     for (std::uint32_t cell = 0; cell < parts.grid.n_owned_cells(); ++cell)
       {
-        const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
-        double                   room     = 1. / (1 << dim);
+        const CellGeometry<dim> &geometry     = parts.grid.geometry[cell];
+        double                   nodal_volume = 1. / (1 << dim);
         for (int d = 0; d < dim; ++d)
-          room /= geometry.inverse_edge[d];
+          nodal_volume /= geometry.inverse_edge[d];
         for (std::uint32_t a = 0; a < 1 << dim; ++a)
           for_each_master(geometry.node[a] / NodeLayout<dim>::stride,
                           [&](const Master &master) {
@@ -82,7 +82,8 @@ namespace limber
                                                    Corner{cell,
                                                           a,
                                                           master.share,
-                                                          master.share * room});
+                                                          master.share *
+                                                            nodal_volume});
                           });
       }
     return followers;

@@ -119,7 +119,7 @@ namespace limber
           is_left || (by_moving && is_implicit) || cell.open >= least_share;
         kinds[number] = !(cell.open > 0) ? covered :
                         has_walls        ? closed :
-                                           closed_to_a_rest;
+                                           closed_small_cut;
         return;
       }
     finish_volume(cell);
@@ -187,7 +187,7 @@ namespace limber
         {
           const std::uint32_t next = neighbour(cell.number, d, end);
           is_shut[d][end]          = next != invalid_cell && is_closed(next);
-          if (is_shut[d][end] && kinds[next] == closed_to_a_rest)
+          if (is_shut[d][end] && kinds[next] == closed_small_cut)
             {
               at_tips[d][end]    = open_corners(d, end, distances);
               cell.is_beside_tip = true;

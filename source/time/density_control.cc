@@ -24,7 +24,7 @@ namespace limber
                                       const CutCells<dim> *const cut_cells)
     : parts(parts)
     , means(means)
-    , rooms(parts.grid, cut_cells)
+    , nodal_volumes(parts.grid, cut_cells)
   {
     for (auto &body : parts.bodies)
       if (body->description.density_control > 0 &&
@@ -41,7 +41,7 @@ namespace limber
   {
     if (liquids.empty())
       return;
-    rooms.reinit();
+    nodal_volumes.reinit();
     at_surface.reinit(parts.grid.vertices.n());
     filling.reinit(parts.grid.vertices.n());
   }
@@ -83,12 +83,12 @@ namespace limber
     const double inverse_density = 1 / body.stress->density();
     for (const std::uint32_t node : vertices.active_nodes())
       {
-        const double room = rooms.at(node);
+        const double nodal_volume = nodal_volumes.at(node);
         const bool   is_known =
-          room > 0 && at_surface[node] == 0 && !is_shared(field, node);
+          nodal_volume > 0 && at_surface[node] == 0 && !is_shared(field, node);
         filling[node] = is_known ?
                           vertices.record(field, node)[NodeLayout<dim>::mass] *
-                            inverse_density / room :
+                            inverse_density / nodal_volume :
                           0;
       }
   }

@@ -115,7 +115,7 @@ namespace limber
     distance.clear();
     at_cut.reinit(parts.grid.vertices.n());
     at_covered.reinit(parts.grid.vertices.n());
-    open_rooms.reinit(parts.grid.vertices.n());
+    open_volumes.reinit(parts.grid.vertices.n());
     former.clear();
     holding.clear();
     Places places;
@@ -273,7 +273,7 @@ namespace limber
         for (unsigned int a = 0; a < n_nodes; ++a)
           at_covered[parts.grid.geometry[cell].node[a] /
                      NodeLayout<dim>::stride] += 1u << a;
-    find_rooms();
+    find_open_volumes();
     any_cut = dealii::Utilities::MPI::max<unsigned int>(
                 std::any_of(cells.begin(),
                             cells.end(),
@@ -317,9 +317,9 @@ namespace limber
   // Integrals of N_i over the open volume, with N_i expanded in monomials.
   template <int dim>
   void
-  CutCells<dim>::find_rooms()
+  CutCells<dim>::find_open_volumes()
   {
-    std::fill_n(open_rooms.data(), parts.grid.vertices.n(), 0.);
+    std::fill_n(open_volumes.data(), parts.grid.vertices.n(), 0.);
     for (std::uint32_t number = 0; number < parts.grid.n_owned_cells();
          ++number)
       {
@@ -342,11 +342,11 @@ namespace limber
                       means[k] -= means[k | 1u << d];
                 mean = cut->open * means[a];
               }
-            open_rooms[geometry.node[a] / NodeLayout<dim>::stride] +=
+            open_volumes[geometry.node[a] / NodeLayout<dim>::stride] +=
               mean * volume;
           }
       }
-    sum_over_ranks(open_rooms);
+    sum_over_ranks(open_volumes);
   }
 
 

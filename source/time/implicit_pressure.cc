@@ -27,7 +27,7 @@ namespace limber
     constexpr unsigned int most_releases_by_sides = 10, most_more = 10;
 
     // Largest displacement of density control in a step, in cells along an axis
-    constexpr double longest_way_to_room = 0.25;
+    constexpr double max_density_displacement = 0.25;
   } // namespace
 
 
@@ -57,7 +57,7 @@ namespace limber
     system.reinit();
     force.reinit(std::size_t(parts.nodes.table.n()) * dim);
     way.reinit(std::size_t(parts.nodes.table.n()) * dim);
-    has_way_to_room = false;
+    has_density_displacement = false;
   }
 
 
@@ -120,7 +120,7 @@ namespace limber
     push_nodes(step);
     if (obstacles != nullptr)
       press_on_obstacles(step, impulses);
-    find_way_to_room(step, residual);
+    find_density_displacement(step, residual);
   }
 
 
@@ -234,19 +234,20 @@ namespace limber
   // Displacement w of the density control, with the active set of this step.
   template <int dim>
   void
-  ImplicitPressure<dim>::find_way_to_room(const double step,
-                                          const double residual)
+  ImplicitPressure<dim>::find_density_displacement(const double step,
+                                                   const double residual)
   {
-    has_way_to_room = system.ask_for_room();
-    if (!has_way_to_room)
+    has_density_displacement = system.set_density_source();
+    if (!has_density_displacement)
       return;
     std::vector<double> pressures;
-    spent.for_room += solver.solve_again(system.equations, residual, pressures);
+    spent.for_density +=
+      solver.solve_again(system.equations, residual, pressures);
     for (std::uint32_t row = 0; row < cells.n; ++row)
       pressures[row] *= system.scales[row];
     sum_forces(pressures, obstacles != nullptr);
 
-    const double longest = longest_way_to_room * parts.grid.smallest_edge;
+    const double longest = max_density_displacement * parts.grid.smallest_edge;
     const NodeTable<dim> &table = parts.nodes.table;
     for (const std::uint32_t node : table.masters)
       std::fill_n(&way[std::size_t(node) * dim], dim, 0.);
@@ -424,16 +425,16 @@ namespace limber
 
   template <int dim>
   void
-  ImplicitPressure<dim>::make_room(const double step)
+  ImplicitPressure<dim>::correct_density(const double step)
   {
-    if (!has_way_to_room)
+    if (!has_density_displacement)
       return;
     for (const std::uint32_t node : parts.nodes.active_nodes())
       for (int d = 0; d < dim; ++d)
         parts.nodes.record(node)[Layout::velocity + d] +=
-          way_to_room(node, d) / step;
+          density_displacement(node, d) / step;
     const auto of_node = [this](const std::uint32_t node, const int d) {
-      return way_to_room(node, d);
+      return density_displacement(node, d);
     };
     for (Medium &medium : cells.media)
       for (auto *const body : medium.bodies)

@@ -156,7 +156,7 @@ namespace limber
     const Walls  walls   = walls_at(field, node);
     const bool   is_full = walls.any() &&
                          mass >= least_of_full * liquid_density[field] *
-                                   cut_cells->rooms()[node] &&
+                                   cut_cells->open_nodal_volumes()[node] &&
                          is_in(node, obstacle, way, true);
     const bool touches_somewhere = // and the normals do not cancel
       weight > 0 && normal.norm() > 1e-6 * weight;

@@ -97,7 +97,7 @@ namespace limber
                              body->description.density_control > 0;
                     }))
     , surroundings(parts.grid)
-    , rooms(parts.grid, cut_cells)
+    , nodal_volumes(parts.grid, cut_cells)
     , potential(parts.grid)
   {
     std::map<unsigned int, Group> by_field;
@@ -130,7 +130,7 @@ namespace limber
     potential.reinit();
     records.reinit(std::size_t(parts.grid.vertices.n()) * Record::stride);
     holders.reinit(parts.grid.n_cells());
-    rooms.reinit();
+    nodal_volumes.reinit();
   }
 
 
@@ -186,9 +186,11 @@ namespace limber
   // density control of semi-implicit steps alone keeps the volume better.
   template <int dim>
   double
-  ParticleShifting<dim>::room_at(const std::uint32_t node) const
+  ParticleShifting<dim>::nodal_volume_at(const std::uint32_t node) const
   {
-    return controls_density && rooms.is_at_obstacle(node) ? 0 : rooms.at(node);
+    return controls_density && nodal_volumes.is_at_obstacle(node) ?
+             0 :
+             nodal_volumes.at(node);
   }
 
 
@@ -222,16 +224,16 @@ namespace limber
 
     for (const std::uint32_t node : vertices.active_nodes())
       {
-        double *const of_node = record(node);
-        const double  room    = room_at(node);
-        double        excess  = excess_of(of_node[Record::excess] / room);
+        double *const of_node      = record(node);
+        const double  nodal_volume = nodal_volume_at(node);
+        double excess = excess_of(of_node[Record::excess] / nodal_volume);
         if (of_node[Record::at_surface] > 0)
           excess = std::max(excess, 0.);
-        if (of_node[Record::shared] > 0 || !(room > 0))
+        if (of_node[Record::shared] > 0 || !(nodal_volume > 0))
           excess = 0;
         of_node[Record::excess] = excess;
       }
-    make_room();
+    add_potential();
     table.take_from_masters(records.data(),
                             Record::stride,
                             Record::excess,
@@ -302,7 +304,7 @@ namespace limber
   // sizes differ: a dam break with coarse cells inside rose.
   template <int dim>
   void
-  ParticleShifting<dim>::make_room()
+  ParticleShifting<dim>::add_potential()
   {
     if (parts.grid.has_levels())
       return;
@@ -322,7 +324,7 @@ namespace limber
         potential.set_source(node,
                              of_node[Record::at_surface] > 0 ?
                                0. :
-                               of_node[Record::excess] * room_at(node),
+                               of_node[Record::excess] * nodal_volume_at(node),
                              !surroundings.is_surrounded(node));
       }
     potential.solve(vertices);
@@ -402,7 +404,7 @@ namespace limber
                 is_inside =
                   is_inside && !(of_node[Record::at_surface] > 0) &&
                   !(of_node[Record::shared] > 0) &&
-                  !rooms.is_at_obstacle(node) &&
+                  !nodal_volumes.is_at_obstacle(node) &&
                   !(parts.grid.vertices.sides[node] >> (2 * d + end) & 1);
               }
           if (!is_inside)

@@ -167,10 +167,11 @@ namespace limber
   {
     double result = 0;
     cells.corners.for_each_master(corner, [&](const auto &master) {
-      double room = 0;
-      cells.corners.for_each(master.node,
-                             [&](const auto &part) { room += part.room; });
-      result += master.share * excess_in(room, master.node, density);
+      double nodal_volume = 0;
+      cells.corners.for_each(master.node, [&](const auto &part) {
+        nodal_volume += part.nodal_volume;
+      });
+      result += master.share * excess_in(nodal_volume, master.node, density);
     });
     return result;
   }

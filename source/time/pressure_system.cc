@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/time/nodal_volumes.h>
 #include <limber/time/pressure_system.h>
 
 #include <algorithm>
@@ -11,10 +12,6 @@ namespace limber
     // Dead band of the density control, relative to the nodal volume: the
     // positions of points do not give the volume more exactly.
     constexpr double excess_allowed = 0.02;
-
-    // As a share of the nodal volume: where obstacles leave less (small cut), a
-    // single point would overfill the node by far.
-    constexpr double least_room = 0.1;
 
 
 
@@ -221,21 +218,21 @@ namespace limber
                               const std::uint32_t node,
                               const double        density) const
   {
-    double room = 1;
+    double nodal_volume = 1;
     for (int d = 0; d < dim; ++d)
-      room /= parts.grid.geometry[cell].inverse_edge[d];
+      nodal_volume /= parts.grid.geometry[cell].inverse_edge[d];
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (parts.nodes.table.sides[node] >> side & 1)
-        room *= 0.5;
-    return excess_in(room, node, density);
+        nodal_volume *= 0.5;
+    return excess_in(nodal_volume, node, density);
   }
 
 
 
-  // The same with the nodal volume @p room, m^3, before obstacles take a part.
+  // The same with the @p nodal_volume, m^3, before obstacles take a part.
   template <int dim>
   double
-  PressureSystem<dim>::excess_in(double              room,
+  PressureSystem<dim>::excess_in(double              nodal_volume,
                                  const std::uint32_t node,
                                  const double        density) const
   {
@@ -244,12 +241,12 @@ namespace limber
                           parts.nodes.record(node)[Layout::mass] / density;
     if (is_at_obstacle(node))
       {
-        const double left = cells.surfaces.cells()->rooms()[node];
-        if (left < least_room * room)
+        nodal_volume = NodalVolumes<dim>::beside_obstacle(
+          cells.surfaces.cells()->open_nodal_volumes()[node], nodal_volume);
+        if (nodal_volume == 0)
           return 0;
-        room = left;
       }
-    const double excess = held / room - 1;
+    const double excess = held / nodal_volume - 1;
     if (excess < 0 && at_surface[node] > 0)
       return 0; // partly filled: at the free surface
     return std::copysign(std::max(0., std::abs(excess) - excess_allowed),
@@ -471,7 +468,7 @@ namespace limber
 
   template <int dim>
   bool
-  PressureSystem<dim>::ask_for_room()
+  PressureSystem<dim>::set_density_source()
   {
     equations.right_side.assign(equations.n, 0.);
     int any = 0;

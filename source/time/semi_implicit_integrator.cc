@@ -112,9 +112,9 @@ namespace limber
                 " times a step, until tension is cut off and sides and obstacles "
                 "hold what presses on them" :
               "") +
-           (spent.for_room > 0 ?
+           (spent.for_density > 0 ?
               "; for the density control " +
-                brief(double(spent.for_room) / double(spent.steps)) :
+                brief(double(spent.for_density) / double(spent.steps)) :
               "");
   }
 
@@ -199,7 +199,7 @@ namespace limber
     this->filter_velocity();
     const double expected = energy_to_points();
     this->g2p();
-    const double weighs = make_room();
+    const double weighs = correct_density();
     this->update_stress_and_move(this->step, false);
     this->parts.ledger.lose_by_steps(expected - weighs - energy_of_points());
   }
@@ -210,7 +210,7 @@ namespace limber
   // is on record as removed by a change of state.
   template <int dim>
   double
-  SemiImplicitIntegrator<dim>::make_room()
+  SemiImplicitIntegrator<dim>::correct_density()
   {
     double work = 0;
     for (const std::uint32_t node : this->parts.nodes.active_nodes())
@@ -218,9 +218,9 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           work += this->parts.nodes.record(node)[Layout::mass] *
                   this->parts.problem.loads.gravity[d] *
-                  pressure.way_to_room(node, d);
+                  pressure.density_displacement(node, d);
     this->parts.ledger.history += work;
-    pressure.make_room(this->step);
+    pressure.correct_density(this->step);
     return work;
   }
 
@@ -251,7 +251,7 @@ namespace limber
     if (lightest_solid > 0)
       strain_by_heavy_nodes();
     this->interpolate_hanging();
-    make_room();
+    correct_density();
     this->update_stress_and_move(this->step, true);
   }
 

@@ -57,7 +57,8 @@ namespace limber
       {
         const bool changes =
           may_be_cut[row] &&
-          (is_cut[row] ? may_return && opening(row) < 0 : pressures[row] < 0);
+          (is_cut[row] ? may_return && row_residual(row) < 0 :
+                         pressures[row] < 0);
         if (!changes)
           continue;
         is_cut[row]    = !is_cut[row];
@@ -76,7 +77,7 @@ namespace limber
   // how much the cell expands beyond what its pressure gives.
   template <int dim>
   double
-  PressureSystem<dim>::opening(const std::uint32_t row) const
+  PressureSystem<dim>::row_residual(const std::uint32_t row) const
   {
     double result = -whole_right_side[row];
     for (unsigned int place = 0; place < equations.width; ++place)

@@ -24,7 +24,7 @@ namespace limber
       std::uint32_t cell;
       std::uint32_t corner;
       double        share; // weight of the node in it
-      double        room;  // share times the volume around the corner, m^dim
+      double nodal_volume; // share times the volume around the corner, m^dim
     };
 
     /** A node that a corner follows, with its weight. */

@@ -30,7 +30,7 @@ namespace limber
    * least_open(), below least_open_layer() where the surface is normal to an
    * axis (a layer), below least_open_left() where points have left a cell that
    * a moving obstacle closes. The faces of open cells towards closed ones then
-   * act as their surfaces. Towards a tip (closed_to_a_rest) only the part of
+   * act as their surfaces. Towards a tip (closed_small_cut) only the part of
    * the face's normal along that of the obstacle counts; other faces keep
    * their normals and so sweep the same volume as the moving obstacle. Nodes of
    * faces that belong to no cut cell are constrained one by one, see
@@ -73,7 +73,7 @@ namespace limber
       //   int_open g . (x - x_c) grad N_i dV
       //     + sum_s int_s g . (x - x_s) N_i n dS, m^(dim+1)/s^2
       std::array<Vector, n_nodes> hydrostatic{};
-      // In cells next to tips (closed_to_a_rest): nodal forces per unit
+      // In cells next to tips (closed_small_cut): nodal forces per unit
       // pressure, m^(dim-1), that move the part of the pressure on the face
       // which acts along the obstacle to the corners that the tip leaves open.
       // There the parts of all faces of a tip cancel; the sum over the nodes of
@@ -194,7 +194,7 @@ namespace limber
     bool
     is_closed(const std::uint32_t number) const
     {
-      return kinds[number] == closed || kinds[number] == closed_to_a_rest;
+      return kinds[number] == closed || kinds[number] == closed_small_cut;
     }
 
     /** Whether material in a cell can exert a pressure: not in cells inside
@@ -202,7 +202,7 @@ namespace limber
     bool
     has_room(const std::uint32_t number) const
     {
-      return kinds[number] != covered && kinds[number] != closed_to_a_rest;
+      return kinds[number] != covered && kinds[number] != closed_small_cut;
     }
 
     /** By vertex, bit mask of the covered cells around it, see is_covered():
@@ -223,9 +223,9 @@ namespace limber
     /** By vertex, the integral of N_i over the volume outside obstacles, m^dim.
      */
     const double *
-    rooms() const
+    open_nodal_volumes() const
     {
-      return open_rooms.data();
+      return open_volumes.data();
     }
 
     /** Whether a surface shares a node with a cut cell: always true for those
@@ -255,7 +255,7 @@ namespace limber
       open,
       covered,          // inside obstacles
       closed,           // open part may hold points; its faces are walls
-      closed_to_a_rest, // tip: its faces stand for the obstacle behind them
+      closed_small_cut, // tip: its faces stand for the obstacle behind them
       first_cut
     };
 
@@ -278,7 +278,7 @@ namespace limber
     void
     find_cells(const Places &places);
     void
-    find_rooms();
+    find_open_volumes();
     void
     find_holding();
     void
@@ -334,8 +334,8 @@ namespace limber
     const RunParts<dim>        parts;
     std::vector<char>          knowing; // by field
     std::vector<Cell>          cells;
-    std::vector<std::uint32_t> kinds;                          // by cell
-    LazyArray<double>          at_cut, at_covered, open_rooms; // by node
+    std::vector<std::uint32_t> kinds;                            // by cell
+    LazyArray<double>          at_cut, at_covered, open_volumes; // by node
     RecordExchange             exchange{1};
     std::vector<char>          wet; // by cell, field
     // Signed distances of cell centres, m, from obstacles at rest; from moving

@@ -3,7 +3,7 @@
 #define limber_time_density_control_h
 
 #include <limber/time/liquid_means.h>
-#include <limber/time/node_rooms.h>
+#include <limber/time/nodal_volumes.h>
 
 namespace limber
 {
@@ -16,11 +16,11 @@ namespace limber
    *
    *   J -= C s mean(e_i),   e_i = J_c m_i / (rho R_i) - 1,
    *
-   * with the mass of a node, its available volume R_i (NodeRooms) and the mean
-   * J_c of the cell: where points are too dense the pressure rises and drives
-   * them apart, through to the surface, at the speed of sound. C is the body's
-   * 'Density control' and s the displacement of the fastest point in the step
-   * over the largest of semi-implicit steps, 0.4 cells; their control, in
+   * with the mass of a node, its available volume R_i (NodalVolumes) and the
+   * mean J_c of the cell: where points are too dense the pressure rises and
+   * drives them apart, through to the surface, at the speed of sound. C is the
+   * body's 'Density control' and s the displacement of the fastest point in the
+   * step over the largest of semi-implicit steps, 0.4 cells; their control, in
    * PressureSystem, has the same source term. Nodes next to cells at a surface,
    * where R_i may not be filled, and nodes with other bodies do not count. (If
    * only an excess counted at surfaces, noise would be rectified: dam breaks
@@ -63,7 +63,7 @@ namespace limber
     const RunParts<dim>         parts;
     std::vector<MaterialBody *> liquids;
     const LiquidMeans<dim>     &means;
-    NodeRooms<dim>              rooms;
+    NodalVolumes<dim>           nodal_volumes;
     // By vertex: how many cells at a surface it is next to; m / (rho R), its
     // stress-free volume over the available one, 0 where that is not known
     LazyArray<double> at_surface, filling;

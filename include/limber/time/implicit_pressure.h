@@ -97,13 +97,13 @@ namespace limber
      * from their dilations. Collective.
      */
     void
-    make_room(double step);
+    correct_density(double step);
 
     /** Component of the displacement w of the density control at a node, m. */
     double
-    way_to_room(const std::uint32_t node, const int d) const
+    density_displacement(const std::uint32_t node, const int d) const
     {
-      return has_way_to_room ? way[std::size_t(node) * dim + d] : 0;
+      return has_density_displacement ? way[std::size_t(node) * dim + d] : 0;
     }
 
     /**
@@ -137,7 +137,7 @@ namespace limber
     {
       unsigned long steps = 0, solutions = 0, iterations = 0;
       unsigned int  most_iterations = 0; // in a step
-      unsigned long for_room        = 0; // further ones, for density control
+      unsigned long for_density     = 0; // further ones, for density control
     };
 
     const Effort &
@@ -178,7 +178,7 @@ namespace limber
     void
     push_nodes(double step);
     void
-    find_way_to_room(double step, double residual);
+    find_density_displacement(double step, double residual);
     template <class Field>
     void
     add_flow_to_dilations(Medium            &medium,
@@ -197,7 +197,7 @@ namespace limber
     // Forces of the pressures, by node and component, N
     LazyArray<double> force;
     // Displacement w of the density control, likewise, m
-    bool              has_way_to_room = false;
+    bool              has_density_displacement = false;
     LazyArray<double> way;
     PressureSolver    solver;
     Effort            spent;

@@ -3,8 +3,8 @@
 #define limber_time_particle_shifting_h
 
 #include <limber/time/integrator.h>
-#include <limber/time/node_rooms.h>
-#include <limber/time/room_potential.h>
+#include <limber/time/nodal_volumes.h>
+#include <limber/time/shifting_potential.h>
 #include <limber/time/surroundings.h>
 
 #include <vector>
@@ -26,10 +26,10 @@ namespace limber
    *   delta_p = - C s h^2 grad (g + alpha phi)(x_p),
    *
    * and, as a uniform overfill has no gradient, of the potential phi that makes
-   * room for it (RoomPotential; compare the implicit density projection of T.
-   * Kugelstadt, A. Longva, N. Thuerey and J. Bender, IEEE TVCG 27, 2021). R_i
-   * is the nodal volume, the integral of N_i over what obstacles leave of the
-   * box; s, in cells, is how far the fastest point has moved since the last
+   * room for it (ShiftingPotential; compare the implicit density projection of
+   * T. Kugelstadt, A. Longva, N. Thuerey and J. Bender, IEEE TVCG 27, 2021).
+   * R_i is the nodal volume, the integral of N_i over what obstacles leave of
+   * the box; s, in cells, is how far the fastest point has moved since the last
    * time, and C the body's 'Particle shifting'.
    *
    * A density that alternates from cell to cell (stripes two cells wide, or a
@@ -139,7 +139,7 @@ namespace limber
     void
     find_holders(const Group &group);
     void
-    make_room();
+    add_potential();
     void
     add_volumes(MaterialBody &body);
     void
@@ -156,7 +156,7 @@ namespace limber
     move_points(MaterialBody &body);
 
     double
-    room_at(std::uint32_t node) const;
+    nodal_volume_at(std::uint32_t node) const;
 
     double *
     record(const std::uint32_t node)
@@ -169,8 +169,8 @@ namespace limber
     const bool                 controls_density; // with implicit pressures
     std::vector<Group>         groups;
     Surroundings<dim>          surroundings;
-    NodeRooms<dim>             rooms;
-    RoomPotential<dim>         potential;
+    NodalVolumes<dim>          nodal_volumes;
+    ShiftingPotential<dim>     potential;
     LazyArray<double>          records; // by vertex
     LazyArray<std::uint8_t>    holders; // by cell
     RecordExchange             exchange{Record::stride};

@@ -78,7 +78,7 @@ namespace limber
      * zero anywhere. After the pressures have been found; collective.
      */
     bool
-    ask_for_room();
+    set_density_source();
 
     /** Turn a force on a node, N, into its change of velocity dt M^-1 f in a
      * step of so many seconds, m/s, without what sides and obstacles hold. */
@@ -279,7 +279,7 @@ namespace limber
     std::size_t
     entry_of(std::uint32_t row, std::size_t medium, std::uint32_t cell) const;
     double
-    opening(std::uint32_t row) const;
+    row_residual(std::uint32_t row) const;
     void
     exclude_cut();
     void
@@ -287,7 +287,7 @@ namespace limber
     double
     excess(std::uint32_t cell, std::uint32_t node, double density) const;
     double
-    excess_in(double room, std::uint32_t node, double density) const;
+    excess_in(double nodal_volume, std::uint32_t node, double density) const;
     void
     sum_volumes();
     void

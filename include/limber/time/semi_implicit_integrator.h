@@ -56,7 +56,7 @@ namespace limber
     void
     update_all();
     double
-    make_room();
+    correct_density();
     void
     strain_by_heavy_nodes();
     double

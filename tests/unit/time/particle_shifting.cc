@@ -76,8 +76,9 @@ namespace
     double result = 0;
     for (unsigned int k = 0; k <= n; ++k)
       {
-        const double room = points.size / double(n) * (k % n == 0 ? 0.5 : 1);
-        result += std::pow(sums[k] / room - 1, 2) / (n + 1);
+        const double nodal_volume =
+          points.size / double(n) * (k % n == 0 ? 0.5 : 1);
+        result += std::pow(sums[k] / nodal_volume - 1, 2) / (n + 1);
       }
     return std::sqrt(result);
   }
@@ -241,11 +242,11 @@ expect_parabola()
 {
   SceneRun<dim>           run(half_full_box(dim));
   const NodalFields<dim> &vertices = run.nodes.vertices();
-  RoomPotential<dim>      potential(run.grid);
+  ShiftingPotential<dim>  potential(run.grid);
   potential.reinit();
   potential.clear(vertices);
   const double                    volume = std::pow(0.125, dim);
-  std::vector<double>             rooms(run.grid.vertices.n());
+  std::vector<double>             nodal_volumes(run.grid.vertices.n());
   std::vector<dealii::Point<dim>> places(run.grid.vertices.n());
   for (const std::uint32_t cell : vertices.owned_occupied_cells())
     {
@@ -254,13 +255,13 @@ expect_parabola()
       for (unsigned int a = 0; a < 1 << dim; ++a)
         {
           const std::uint32_t node = geometry.node[a] / NodeLayout<dim>::stride;
-          rooms[node] += volume / (1 << dim);
+          nodal_volumes[node] += volume / (1 << dim);
           for (int d = 0; d < dim; ++d)
             places[node][d] = geometry.origin[d] + 0.125 * (a >> d & 1);
         }
     }
   for (const std::uint32_t node : vertices.active_nodes())
-    potential.set_source(node, rooms[node], places[node][1] > 0.49);
+    potential.set_source(node, nodal_volumes[node], places[node][1] > 0.49);
   potential.solve(vertices);
   for (const std::uint32_t node : vertices.active_nodes())
     {
@@ -271,7 +272,7 @@ expect_parabola()
 
 
 
-TEST(RoomPotential, GrowsBetweenAWallAndASurface)
+TEST(ShiftingPotential, GrowsBetweenAWallAndASurface)
 {
   expect_parabola<2>();
   expect_parabola<3>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/time/room_potential.h>
+#include <limber/time/shifting_potential.h>
 
 #include <algorithm>
 #include <array>
@@ -46,7 +46,7 @@ namespace limber
 
   template <int dim>
   void
-  RoomPotential<dim>::reinit()
+  ShiftingPotential<dim>::reinit()
   {
     records.reinit(std::size_t(grid.vertices.n()) * Record::stride);
   }
@@ -55,7 +55,7 @@ namespace limber
 
   template <int dim>
   void
-  RoomPotential<dim>::clear(const NodalFields<dim> &vertices)
+  ShiftingPotential<dim>::clear(const NodalFields<dim> &vertices)
   {
     for (const std::uint32_t node : vertices.active_nodes())
       std::fill_n(record(node), Record::stride, 0.);
@@ -66,7 +66,8 @@ namespace limber
 
   template <int dim>
   void
-  RoomPotential<dim>::add_cell(const std::uint32_t cell, const double volume)
+  ShiftingPotential<dim>::add_cell(const std::uint32_t cell,
+                                   const double        volume)
   {
     static const auto matrix = stiffness<dim>();
     cells.push_back({cell, volume});
@@ -79,8 +80,8 @@ namespace limber
   // Sum over ranks of a slot to which cells of this rank have been added.
   template <int dim>
   void
-  RoomPotential<dim>::sum_over_cells(const NodalFields<dim> &vertices,
-                                     const unsigned int      slot)
+  ShiftingPotential<dim>::sum_over_cells(const NodalFields<dim> &vertices,
+                                         const unsigned int      slot)
   {
     exchange.start(vertices.node_plan(), records.data(), slot, slot + 1);
     exchange.finish(records.data());
@@ -90,7 +91,7 @@ namespace limber
 
   template <int dim>
   void
-  RoomPotential<dim>::multiply(const NodalFields<dim> &vertices)
+  ShiftingPotential<dim>::multiply(const NodalFields<dim> &vertices)
   {
     static const auto matrix = stiffness<dim>();
     for (const std::uint32_t node : vertices.active_nodes())
@@ -117,7 +118,7 @@ namespace limber
   // 2003, algorithm 12.1
   template <int dim>
   void
-  RoomPotential<dim>::solve(const NodalFields<dim> &vertices)
+  ShiftingPotential<dim>::solve(const NodalFields<dim> &vertices)
   {
     const std::vector<std::uint32_t> &nodes = vertices.active_nodes();
     sum_over_cells(vertices, Record::diagonal);
@@ -150,6 +151,6 @@ namespace limber
 
 
 
-  template class RoomPotential<2>;
-  template class RoomPotential<3>;
+  template class ShiftingPotential<2>;
+  template class ShiftingPotential<3>;
 } // namespace limber

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_time_room_potential_h
-#define limber_time_room_potential_h
+#ifndef limber_time_shifting_potential_h
+#define limber_time_shifting_potential_h
 
 #include <limber/grid/nodal_fields.h>
 
@@ -22,10 +22,10 @@ namespace limber
    * resolves are left to the next time. For cells of one size.
    */
   template <int dim>
-  class RoomPotential
+  class ShiftingPotential
   {
   public:
-    explicit RoomPotential(const BackgroundGrid<dim> &grid)
+    explicit ShiftingPotential(const BackgroundGrid<dim> &grid)
       : grid(grid)
     {}
 
