@@ -32,10 +32,12 @@ namespace
   {
     const Problem<dim> problem = read_problem<dim>(scene);
     check_size(problem, Task::run, this_machine(MPI_COMM_WORLD));
-    check_moving_sides(problem);
+    const auto about_sides = check_moving_sides(problem);
     for (const std::string &setting : command.overrides)
       console.say("From the command line: " + printable(setting) + ".");
     for (const std::string &warning : scene.warnings())
+      console.warn(warning);
+    for (const std::string &warning : about_sides)
       console.warn(warning);
     for (const std::string &note : problem.notes)
       console.say(note);

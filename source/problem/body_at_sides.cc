@@ -18,6 +18,10 @@ namespace limber
     // lets go what it holds (doc/theory/boundaries_and_loads.md).
     constexpr double reach_of_side = 0.5;
 
+    // The same where liquids fill the box again behind a side that does not
+    // move in fact: less is sound, not a piston.
+    constexpr double noticed_by_liquid = 0.05;
+
 
 
     /**
@@ -240,16 +244,22 @@ namespace limber
 
 
   template <int dim>
-  void
+  std::vector<std::string>
   check_moving_sides(const Problem<dim> &problem)
   {
-    const auto body = std::find_if(problem.bodies.begin(),
-                                   problem.bodies.end(),
-                                   [](const Body<dim> &candidate) {
-                                     return candidate.frame == Frame::current;
-                                   });
-    if (body == problem.bodies.end())
-      return;
+    const auto in_current_frame = [](const Body<dim> &candidate) {
+      return candidate.frame == Frame::current;
+    };
+    const auto is_shifted = [](const Body<dim> &candidate) {
+      return candidate.particle_shifting > 0 || candidate.density_control > 0;
+    };
+    const auto &bodies = problem.bodies;
+    const auto  body =
+      std::find_if(bodies.begin(), bodies.end(), in_current_frame);
+    const auto liquid = std::find_if(bodies.begin(), bodies.end(), is_shifted);
+    std::vector<std::string> warnings;
+    if (body == bodies.end())
+      return warnings;
     for (unsigned int side = 0; side < 2 * dim; ++side)
       {
         const Formula<dim> &velocity = problem.sides[side].velocity;
@@ -257,17 +267,25 @@ namespace limber
           continue;
         const double way =
           farthest_inward(side, velocity, problem.grid, problem.end_time);
-        const double edge = problem.grid.finest_edge(side / 2);
+        const double      edge  = problem.grid.finest_edge(side / 2);
+        const std::string moves = "The side '" + side_names(dim)[side] +
+                                  "' moves inward by " + brief(way) + " m, " +
+                                  brief(way / edge) + " cells";
         if (way > reach_of_side * edge)
           throw InputError(
-            "The side '" + side_names(dim)[side] + "' moves inward by " +
-            brief(way) + " m, " + brief(way / edge) +
-            " cells: after half a cell it lets go of body " +
+            moves + ": after half a cell it lets go of body " +
             in_quotes(body->name) +
             ". Use an obstacle 'half-space' that moves ('Displacement') with "
             "'Law = stick', or 'Body " +
             body->name + "/Frame = initial'.");
+        if (liquid != bodies.end() && way > noticed_by_liquid * edge)
+          warnings.push_back(moves + ", which displaces nothing of liquid " +
+                             in_quotes(liquid->name) +
+                             ": its points spread evenly in the whole box. An "
+                             "obstacle 'half-space' that moves "
+                             "('Displacement') pushes it.");
       }
+    return warnings;
   }
 
 
@@ -280,7 +298,7 @@ namespace limber
   is_held(const Body<2> &, const Problem<2> &);
   template bool
   are_one_piece(const Problem<2> &);
-  template void
+  template std::vector<std::string>
   check_moving_sides(const Problem<2> &);
   template bool
   has_face_in(unsigned int, const Body<3> &, const GridDescription<3> &);
@@ -290,6 +308,6 @@ namespace limber
   is_held(const Body<3> &, const Problem<3> &);
   template bool
   are_one_piece(const Problem<3> &);
-  template void
+  template std::vector<std::string>
   check_moving_sides(const Problem<3> &);
 } // namespace limber

@@ -89,9 +89,23 @@ namespace limber
 
 
     /**
-     * In a full box 'auto' is none: points that are pushed apart there would
-     * raise the pressure everywhere.
+     * Whether there is room to expand into, or need to. In explicit steps what
+     * is pushed apart in a full box raises the pressure everywhere; in
+     * semi-implicit ones points move instead, at the price of a second solution
+     * of the pressure, and without it stirred water that has weight parts from
+     * its lid and sinks.
      */
+    template <int dim>
+    bool
+    may_expand(const Problem<dim> &problem)
+    {
+      return (problem.method.integration == TimeIntegration::semi_implicit &&
+              problem.loads.gravity.norm() > 0) ||
+             !is_full(problem);
+    }
+
+
+
     template <int dim>
     void
     read_density_control(const Section      &section,
@@ -101,8 +115,8 @@ namespace limber
       const bool possible  = may_control_density(problem, body);
       const bool automatic = section.text("Density control") == "auto";
       body.density_control = !automatic ? section.number("Density control") :
-                             possible && !is_full(problem) ? density_control :
-                                                             0;
+                             possible && may_expand(problem) ? density_control :
+                                                               0;
       if (body.density_control > 0 && !possible)
         throw InputError("The entry 'Density control' in " +
                          section.where("Density control") +

@@ -42,8 +42,9 @@ namespace limber
     // 'crossing' relaxes within the time in which a point crosses a cell, which
     // differs between cells of several sizes.
     if (problem.method.integration != TimeIntegration::explicit_steps ||
-        problem.grid.kernel != KernelKind::linear || problem.grid.levels > 0 ||
-        !is_stirred(problem))
+        (problem.grid.kernel != KernelKind::linear &&
+         problem.grid.kernel != KernelKind::quadratic) ||
+        problem.grid.levels > 0 || !is_stirred(problem))
       return;
     for (Body<dim> &body : problem.bodies)
       if (body.is_liquid && averages_volume_in_cells(body.treatment) &&

@@ -107,7 +107,8 @@ namespace limber
         "it in semi-implicit steps), the share that is pushed apart while the "
         "fastest point moves by 0.4 cells; 'auto' is 0.2 for liquids "
         "that have their nodes for themselves (in semi-implicit steps: no solid "
-        "in the scene) and do not fill the box, else 0.");
+        "in the scene) and do not fill the box (in semi-implicit steps: or have "
+        "weight), else 0.");
       declare_word(parameters,
                    "History",
                    "auto",

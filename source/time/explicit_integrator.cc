@@ -210,7 +210,11 @@ namespace limber
     if (cut_cells)
       cut_cells->find(now);
     shifting.shift();
-    relocation.adopt_places();
+    // as Relocation::bring_points_home()
+    if (parallel && parts.grid.reaches_beyond_cells())
+      relocation.exchange_points();
+    else
+      relocation.adopt_places();
     return true;
   }
 

@@ -49,9 +49,11 @@ namespace limber
   are_one_piece(const Problem<dim> &problem);
 
   /** Throws InputError where a side with a 'velocity' moves inward so far that
-   * bodies in the current frame would lose contact: its nodes stay in place. */
+   * bodies in the current frame would lose contact: its nodes stay in place.
+   * Returns warnings about liquids, whose points spread evenly in the room that
+   * a side has not left. */
   template <int dim>
-  void
+  std::vector<std::string>
   check_moving_sides(const Problem<dim> &problem);
 } // namespace limber
 

@@ -42,13 +42,14 @@ namespace limber
    * with the volume V_in of the points in a cell, a point being a box that may
    * cover parts of several cells, so that e is no noise where rows of points
    * pass faces; and within a cell by the linear interpolation between opposite
-   * faces (lowest order Raviart-Thomas). It takes C s / dim of stripes.
+   * faces (lowest order Raviart-Thomas). It takes C s / dim of stripes. Of the
+   * difference only what is more than noise counts.
    *
    * Next to cells at a free surface R_i is not known to be filled: only an
-   * excess of nodes counts there, and nothing passes faces. Nothing is done
-   * beside solids and other fields, and neither phi nor faces count on cells of
-   * several sizes. Velocities stay; the potential energy that this takes is on
-   * record as removed with histories.
+   * excess of nodes counts there, and nothing passes faces, nor those where the
+   * size of cells changes. Nothing is done beside solids and other fields. On
+   * cells of several sizes there is no phi. Velocities stay; the potential
+   * energy that this takes is on record as removed with histories.
    *
    * For linear functions, with means over cells. Theory:
    * doc/theory/treatments.md.
@@ -171,8 +172,9 @@ namespace limber
     Surroundings<dim>          surroundings;
     NodalVolumes<dim>          nodal_volumes;
     ShiftingPotential<dim>     potential;
-    LazyArray<double>          records; // by vertex
-    LazyArray<std::uint8_t>    holders; // by cell
+    LazyArray<double>          records;           // by vertex
+    LazyArray<std::uint8_t>    holders;           // by cell
+    LazyArray<bool>            at_change_of_size; // by vertex
     RecordExchange             exchange{Record::stride};
     std::vector<double>        volume_ratios; // of the points of a body
     double                     travelled = 0; // in cells

@@ -388,19 +388,27 @@ TEST(Scenes, ObstaclesAllowStepsOfTheCourantNumber)
 
 
 
-// What is pushed apart in a full box would press on all of it.
+// What is pushed apart in a full box would press on all of it in explicit
+// steps.
 TEST(Scenes, DensityIsNotControlledWhereThereIsNoRoom)
 {
-  const auto control = [](const std::string &change) {
+  const std::string full      = "Body water/Box/Upper corner=1, 1",
+                    with_room = "Body water/Box/Upper corner=1, 0.9";
+  const auto control          = [](const std::string &integration,
+                          const std::string &change,
+                          const std::string &weight = "Loads/Gravity=0, 0") {
     return read_problem<2>(
-             SceneFile(prm_folder() + "verification/taylor_green.prm",
-                       {change}))
+             SceneFile(
+               prm_folder() + "verification/taylor_green.prm",
+               {"Method/Time integration=" + integration, change, weight}))
       .bodies[0]
       .density_control;
   };
-  EXPECT_EQ(control("Body water/Box/Upper corner=1, 1"), 0);
-  EXPECT_EQ(control("Body water/Box/Upper corner=1, 0.9"), 0.2);
-  EXPECT_EQ(control("Body water/Density control=0.1"), 0.1);
+  EXPECT_EQ(control("explicit", full), 0);
+  EXPECT_EQ(control("explicit", with_room), 0.2);
+  EXPECT_EQ(control("semi-implicit", full), 0);
+  EXPECT_EQ(control("semi-implicit", full, "Loads/Gravity=0, -10"), 0.2);
+  EXPECT_EQ(control("explicit", "Body water/Density control=0.1"), 0.1);
 }
 
 
@@ -727,6 +735,35 @@ TEST(Scenes, SidesThatMoveInwardLetGoBodiesOfTheCurrentFrame)
                   std::string::npos)
           << error.what();
       }
+}
+
+
+
+// What a side would displace of a liquid, particle shifting gives back.
+TEST(Scenes, SidesThatMoveIntoLiquidAreWarnedOf)
+{
+  const auto warnings = [](const std::string &velocity) {
+    return check_moving_sides(read_problem<2>(scene_of(R"(
+      set End time = 1
+      set Bodies = water
+      subsection Body water
+        set Material = newtonian fluid
+      end
+      subsection Boundaries
+        set left  = velocity
+        subsection Side left
+          set Velocity = )" + velocity + R"(
+        end
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end)")));
+  };
+  EXPECT_TRUE(warnings("0; 1").empty());
+  EXPECT_TRUE(warnings("0.004; 0").empty());
+  ASSERT_EQ(warnings("0.04; 0").size(), 1u);
+  EXPECT_NE(warnings("0.04; 0").front().find("'half-space'"),
+            std::string::npos);
 }
 
 

@@ -280,6 +280,66 @@ TEST(ShiftingPotential, GrowsBetweenAWallAndASurface)
 
 
 
+// Stripes two cells wide, six points of nine in each second column having gone
+// to the next one, which nodes do not notice.
+template <int dim>
+void
+expect_stripes_to_fade(const std::vector<std::string> &settings)
+{
+  std::vector<std::string> all = settings;
+  all.push_back(dim == 2 ? "Body water/Box/Upper corner=1, 1" :
+                           "Body water/Box/Upper corner=1, 1, 0.5");
+  SceneRun<dim> run(half_full_box(dim), all);
+  {
+    const PointView<dim> points = run.points();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        double &x = points.position[0][p];
+        if (x > 1. / 8 && x < 7. / 8)
+          x += 0.25 / 8 * std::cos(8 * M_PI * x);
+        std::array<double, dim> place;
+        for (int d = 0; d < dim; ++d)
+          place[d] = points.position[d][p];
+        points.cell[p] = run.nodes.view().bins.cell_at(place);
+      }
+  }
+  run.integrator.reinit();
+  // over what it should be, in the inner columns
+  const auto largest_column = [&]() {
+    const PointView<dim>        points = run.points();
+    std::array<unsigned int, 8> columns{};
+    for (std::size_t p = 0; p < points.size; ++p)
+      ++columns[static_cast<unsigned int>(8 * points.position[0][p])];
+    return 8. / points.size *
+           *std::max_element(columns.begin() + 2, columns.end() - 2);
+  };
+  ASSERT_GT(largest_column(), 1.6);
+
+  const RunParts<dim> parts{
+    run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  ParticleShifting<dim> shifting(parts, nullptr);
+  for (unsigned int time = 0; time < 20; ++time)
+    {
+      shifting.follow(0.25);
+      shifting.shift();
+      run.integrator.reinit();
+    }
+  EXPECT_LT(largest_column(), 1.1);
+}
+
+
+
+TEST(ParticleShifting, EvensOutStripes)
+{
+  expect_stripes_to_fade<2>({});
+  expect_stripes_to_fade<3>({});
+  for (const std::string treatment : {"cell", "node"})
+    expect_stripes_to_fade<2>(
+      {"Method/Kernel=quadratic", "Body water/Locking treatment=" + treatment});
+}
+
+
+
 // Evenly spread points stay where they are, to the last bit.
 TEST(ParticleShifting, LeavesWhatIsEven)
 {
