@@ -240,19 +240,23 @@ namespace limber
 
   // Solids and viscous liquids are strained by the velocity that points give
   // back: the new one makes stresses of its own in cells that are hardly
-  // filled.
+  // filled. The pressure of liquids alone works along the new one in any case.
   template <int dim>
   void
   SemiImplicitIntegrator<dim>::update_all()
   {
+    const bool   any_solid = lightest_solid > 0;
+    const double expected  = any_solid ? 0 : energy_to_points();
     this->clear_remapped();
     this->g2p_and_remap();
-    account(Layout::strain_velocity);
-    if (lightest_solid > 0)
+    account(any_solid ? Layout::strain_velocity : Layout::velocity);
+    if (any_solid)
       strain_by_heavy_nodes();
     this->interpolate_hanging();
-    correct_density();
+    const double weighs = correct_density();
     this->update_stress_and_move(this->step, true);
+    if (!any_solid)
+      this->parts.ledger.lose_by_steps(expected - weighs - energy_of_points());
   }
 
 
