@@ -211,7 +211,7 @@ namespace limber
 
   template <int dim>
   void
-  Observables<dim>::update_forces(const double time, const Totals<dim> &totals)
+  Observables<dim>::follow_forces(const double time, const Totals<dim> &totals)
   {
     if (memory.has_row && time > memory.time)
       {
@@ -317,7 +317,7 @@ namespace limber
   std::vector<double>
   Observables<dim>::evaluate(const State<dim> &state, const Totals<dim> &totals)
   {
-    update_forces(state.time, totals);
+    follow_forces(state.time, totals);
     const auto samples = points.sample(state, with_stress);
     const auto largest = has_extremes ? extents(state) : std::vector<double>();
     return observed_row(problem.observables,

@@ -224,6 +224,9 @@ namespace limber
           report_lost_points();
         if (row_is_due())
           record();
+        else if (problem.method.integration == TimeIntegration::quasi_static)
+          observables.follow_forces(state.time,
+                                    balance_of_start.evaluate(state));
         if (problem.output.time_interval > 0 &&
             state.time >= next_pictures - same_time * step)
           write_pictures();

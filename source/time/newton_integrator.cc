@@ -213,12 +213,14 @@ namespace limber
   void
   NewtonIntegrator<dim>::fail(const double time, const double step) const
   {
-    throw ComputationError("No step was found from time " + brief(time) +
-                           " s on, down to one of " + brief(step) +
-                           " s: " + obstacle +
-                           ". Usually the body buckles, tears or is crushed "
-                           "there. Look at the last state, refine 'Grid/Cells',"
-                           " or set 'Time integration = explicit'.");
+    throw ComputationError(
+      "No step was found from time " + brief(time) + " s on, down to one of " +
+      brief(step) + " s: " + obstacle +
+      ". Usually the load is the largest that can be borne "
+      "(limit load), or the body buckles, tears or is "
+      "crushed. Look at the last state, refine "
+      "'Grid/Cells', or set 'Time integration = "
+      "explicit'.");
   }
 
 

@@ -169,6 +169,13 @@ namespace limber
       return result;
     }
 
+    /** See DruckerPrager; here there is always some. */
+    double
+    stiffness_at_apex() const
+    {
+      return 0;
+    }
+
     /** Whether the law is viscoplastic. */
     bool
     depends_on_rate() const

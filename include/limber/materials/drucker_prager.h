@@ -250,6 +250,17 @@ namespace limber
       return growth > 0;
     }
 
+    /**
+     * Shear stiffness that tangents keep where there is none, Pa: without
+     * cohesion a point has none at zero stress, so that no first correction
+     * could be found.
+     */
+    double
+    stiffness_at_apex() const
+    {
+      return 1e-9 * shear_modulus;
+    }
+
     /** The total volume ratio J, with opening and dilation. */
     template <int dim, class Number>
     Number

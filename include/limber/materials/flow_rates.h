@@ -65,14 +65,17 @@ namespace limber
           SquareMatrix<dim> e{};
           e[k][l] += 0.5;
           e[l][k] += 0.5;
-          const State more = perturbed(e, difference, 0),
-                      less = perturbed(e, -difference, 0);
-          const auto ahead = rows_of<dim>(more.deviator),
-                     back  = rows_of<dim>(less.deviator);
+          const State more   = perturbed(e, difference, 0),
+                      less   = perturbed(e, -difference, 0);
+          const auto ahead   = rows_of<dim>(more.deviator),
+                     back    = rows_of<dim>(less.deviator);
+          const double third = k == l ? 1. / 3 : 0.;
           for (int c = 0; c < dim; ++c)
             for (int d = 0; d < dim; ++d)
               {
-                double rate = (ahead[c][d] - back[c][d]) / (2 * difference);
+                double rate = (ahead[c][d] - back[c][d]) / (2 * difference) +
+                              2 * law.stiffness_at_apex() *
+                                (e[c][d] - (c == d ? third : 0.));
                 for (int b = 0; b < dim; ++b)
                   rate -= e[c][b] * own[b][d] + own[c][b] * e[d][b];
                 result.deviator[c * dim + d][k * dim + l] =

@@ -141,6 +141,13 @@ namespace limber
                (1 + 1e-9) * root * yield_strength(alpha);
     }
 
+    /** See DruckerPrager; here there is always some. */
+    double
+    stiffness_at_apex() const
+    {
+      return 0;
+    }
+
     /** Whether the law is viscoplastic. */
     bool
     depends_on_rate() const

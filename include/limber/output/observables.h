@@ -45,6 +45,12 @@ namespace limber
     void
     restore(const ObservablesState<dim> &former);
 
+    /** Note the reaction forces of a step without a row: rows have the mean
+     * force since the last note or row, that is, in quasi-static steps, the one
+     * of the last equilibrium. */
+    void
+    follow_forces(double time, const Totals<dim> &totals);
+
     /** A row; frequencies and reaction forces count on one per call. */
     std::vector<double>
     evaluate(const State<dim> &state, const Totals<dim> &totals);
@@ -55,8 +61,6 @@ namespace limber
   private:
     void
     decide_what_to_sample();
-    void
-    update_forces(const double time, const Totals<dim> &totals);
     Seen<dim>
     look(unsigned int                         number,
          const Totals<dim>                   &totals,

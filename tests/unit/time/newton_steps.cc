@@ -442,6 +442,59 @@ TEST(NewtonSteps, NothingLoadsABodyYet)
 
 
 
+// Sand without cohesion has no shear stiffness before it bears its weight, and
+// yet settles as K0 says: by rho g (2 H y - y^2) / (2 M).
+TEST(NewtonSteps, SandWithoutCohesionSettles)
+{
+  const std::string sand = R"(
+    set Dimension = 2
+    set End time = 1
+    set Bodies = sand
+    subsection Body sand
+      set Shape = box
+      set Material = drucker prager
+      subsection Drucker prager
+        set Density = 2000
+        set Young's modulus = 1e8
+        set Poisson's ratio = 0.3
+        set Friction angle = 30
+      end
+    end
+    subsection Grid
+      set Upper corner = 1, 1.1
+      set Cells = 10, 11
+    end
+    subsection Boundaries
+      set left = slip
+      set right = slip
+      set bottom = slip
+    end
+    subsection Loads
+      set Gravity = 0, -10
+    end
+    subsection Method
+      set Time integration = quasi-static
+    end)";
+  for (const std::string frame : {"initial", "current"})
+    {
+      SCOPED_TRACE(frame);
+      SceneRun<2> run(sand, {"Body sand/Frame=" + frame});
+      const auto  before = run.positions();
+      run.advance_to(1);
+      const auto   after   = run.positions();
+      const double modulus = 1e8 * 0.7 / (1.3 * 0.4);
+      for (std::size_t p = 0; p < before.size(); ++p)
+        {
+          const double y = before[p][1];
+          EXPECT_NEAR(before[p][1] - after[p][1],
+                      2e4 / (2 * modulus) * (2 * y - y * y),
+                      2e-6);
+        }
+    }
+}
+
+
+
 // Two bars in a row, the first one stiffer by a factor, are pulled: where they
 // meet the strain jumps, which costs next to nothing.
 TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
