@@ -193,7 +193,7 @@ namespace limber
             if (points.crossings[p] > 0)
               strained[2] +=
                 energy * points.crossings[p] * elastic_share(p, energy);
-            if (own.description.is_plastic && points.pressure[p] < 0)
+            if (points.pressure[p] < 0)
               strained[3] += energy;
           }
         const MPI_Comm ranks  = state.grid.communicator;

@@ -518,6 +518,33 @@ namespace limber
 
 
 
+    /**
+     * Whether points with domains serve a scene on cells of several sizes: of
+     * solids that keep their connection, where linear functions creep. They go
+     * neither with joined points nor with pairs in contact.
+     */
+    template <int dim>
+    bool
+    takes_domains(const Section &root, const Problem<dim> &problem)
+    {
+      return problem.method.integration == TimeIntegration::explicit_steps &&
+             !root.subsection("Grid").flag("Join points") &&
+             root.subsection("Contact").list("Pairs").empty() &&
+             !is_affine(read_word(root.subsection("Method"),
+                                  "Transfer",
+                                  transfer_words())) &&
+             std::all_of(problem.bodies.begin(),
+                         problem.bodies.end(),
+                         [&](const auto &body) {
+                           return !body.is_liquid &&
+                                  (!body.is_plastic || body.keeps_surface) &&
+                                  !misfit_of_domains(
+                                    root.subsection("Body " + body.name));
+                         });
+    }
+
+
+
     template <int dim>
     void
     choose_kernel(const Section &root, Problem<dim> &problem)
@@ -526,6 +553,12 @@ namespace limber
         problem.notes.push_back("Kernel 'auto' is " + choice + ".");
       };
       problem.grid.kernel = KernelKind::linear;
+      if (problem.grid.levels > 0 && takes_domains(root, problem))
+        {
+          problem.grid.kernel = KernelKind::cpdi;
+          return say("'cpdi', as solids creep with linear functions when their "
+                     "points cross cells, and splines need cells of one size");
+        }
       if (!problem.grid.against_splines.empty())
         return say("'linear', as " + problem.grid.against_splines);
       for (const auto &body : problem.bodies)

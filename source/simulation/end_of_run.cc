@@ -24,33 +24,44 @@ namespace limber
 
 
 
+    /** The entry that makes steps shorter than they were. */
+    std::string
+    shorter_steps(const Method &method)
+    {
+      if (method.time_step > 0)
+        return "'Method/Time step' to 0";
+      return "'Method/Courant number' to " +
+             brief(std::min(0.4, 0.5 * method.courant_number));
+    }
+
+
+
     /** Where no cause has been found: the usual one and its remedy. */
     std::string
-    usual_cause(const FailureKind     kind,
-                const TimeIntegration integration,
-                const bool            through_open_side)
+    usual_cause(const FailureKind kind,
+                const Method     &method,
+                const bool        through_open_side)
     {
       switch (kind)
         {
           case FailureKind::growing_energy:
           case FailureKind::not_finite:
-            return "Usually the step is too long for the stiffness. Set "
-                   "'Method/Courant number' to 0.4 or below and 'Method/Time "
-                   "step' to 0.";
+            return "Usually the step is too long for the stiffness. Set " +
+                   shorter_steps(method) + ".";
           case FailureKind::inverted_point:
             return "Usually the grid does not resolve the motion. Refine "
-                   "'Grid/Cells', load more slowly, or set 'Method/Courant "
-                   "number' to 0.4 or below.";
+                   "'Grid/Cells', load more slowly, or set " +
+                   shorter_steps(method) + ".";
           case FailureKind::lost_points:
             return through_open_side ?
                      "Usually a side is free there or moves away. Close it in 'Boundaries' "
-                     "with slip, or raise 'Method/Lost points limit' above the "
+                     "with slip, let an obstacle move instead, or raise 'Method/Lost points limit' above the "
                      "share that is lost." :
                      "No side is free there, so the motion is unstable. Set "
                      "'Method/Blend time', smaller cells, or a 'Method/Lost "
                      "points limit' above the share that is lost.";
           case FailureKind::step_too_small:
-            if (integration == TimeIntegration::quasi_static)
+            if (method.integration == TimeIntegration::quasi_static)
               return "Usually the load is the largest that can be borne (limit "
                      "load, buckling): there is no equilibrium beyond. Let a "
                      "side or an obstacle move instead of a load, or set "
@@ -124,10 +135,9 @@ namespace limber
       suspected = {};
     std::string message =
       std::string(failure.what()) + " " +
-      (suspected.mode.empty() ? usual_cause(failure.kind,
-                                            problem.method.integration,
-                                            lost_through_open_side) :
-                                in_words(suspected)) +
+      (suspected.mode.empty() ?
+         usual_cause(failure.kind, problem.method, lost_through_open_side) :
+         in_words(suspected)) +
       " " + describe_last_state();
     try
       {

@@ -61,16 +61,16 @@ namespace limber
     unsigned long gaps_at_start = 0;
 
     // At the end
-    double unseen_energy          = 0; // kinetic, in the null space of P2G
-    double strain_energy          = 0;
-    double crossings              = 0; // cells entered, mean over the points
-    double crossings_under_strain = 0; // weighted by strain energy
-    double most_crossings         = 0; // of one point
-    double elastic_share          = 1; // of the strain at these
-    double share_in_tension       = 0; // of its strain energy, if it is plastic
-    unsigned long cells           = 0; // that hold points of it
-    unsigned long inner_cells     = 0; // with neighbours along all axes
-    unsigned long single_cells    = 0; // of these, with one point
+    double        unseen_energy = 0; // kinetic, in the null space of P2G
+    double        strain_energy = 0;
+    double        crossings     = 0; // cells entered, mean over the points
+    double        crossings_under_strain = 0; // weighted by strain energy
+    double        most_crossings         = 0; // of one point
+    double        elastic_share          = 1; // of the strain at these
+    double        share_in_tension       = 0; // of its strain energy
+    unsigned long cells                  = 0; // that hold points of it
+    unsigned long inner_cells            = 0; // with neighbours along all axes
+    unsigned long single_cells           = 0; // of these, with one point
     unsigned long gaps            = 0; // empty cells between two of the body
     double        smallest_volume = 1, largest_volume = 1; // of all J
     // Clumping of a liquid: volume of points in inner cells over that of these

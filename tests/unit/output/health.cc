@@ -204,6 +204,29 @@ namespace limber::test
 
 
 
+  // A bar pulled past a third of a cell is a quarter too soft with three points
+  // along an edge, and no energy is missing.
+  TEST(Health, BarsUnderTensionSoftenWithLinearFunctions)
+  {
+    HealthFigures figures       = sound();
+    BodyFigures  &body          = figures.bodies[0];
+    body.crossings              = 0.46;
+    body.crossings_under_strain = 0.36;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::good);
+    body.share_in_tension = 1;
+    const HealthLine bad  = line("crossings", figures);
+    EXPECT_EQ(bad.verdict, Verdict::bad);
+    EXPECT_NEAR(bad.value,
+                3. / (body.points_per_edge * body.points_per_edge) * 0.46,
+                1e-12);
+    EXPECT_NE(bad.text.find("under tension"), std::string::npos);
+    EXPECT_LT(n_words(bad.text), 60u) << bad.text;
+    body.kernel = KernelKind::cpdi;
+    EXPECT_EQ(line("crossings", figures).verdict, Verdict::good);
+  }
+
+
+
   // The balance does not miss plastic work.
   TEST(Health, CreepOfWhatFlowsInTensionIsBad)
   {

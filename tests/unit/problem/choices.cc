@@ -259,6 +259,40 @@ TEST(Choices, EveryShapeFillsSomethingAsItIsDeclared)
 
 
 
+// On cells of several sizes solids have neither the initial frame nor splines,
+// and creep with linear functions: a bar under tension stretches by a third too
+// far.
+TEST(Choices, KernelOfSolidsOverLevels)
+{
+  const auto kernel = [](std::vector<std::string> changes) {
+    changes.push_back("Grid/Levels=1");
+    changes.push_back("Grid/Refine=region");
+    changes.push_back("Grid/Refine region/Upper corner=1, 1");
+    return read_problem<2>(scene_with(R"(
+      set Bodies = bar
+      subsection Body bar
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end)",
+                                      changes))
+      .grid.kernel;
+  };
+  EXPECT_EQ(kernel({}), KernelKind::cpdi);
+  EXPECT_EQ(kernel({"Body bar/Material=j2", "Body bar/J2/Yield stress=1e5"}),
+            KernelKind::cpdi);
+  EXPECT_EQ(kernel({"Body bar/Material=drucker prager",
+                    "Body bar/Drucker prager/Friction angle=30"}),
+            KernelKind::linear); // flows without end
+  EXPECT_EQ(kernel({"Body bar/Material=newtonian fluid"}), KernelKind::linear);
+  EXPECT_EQ(kernel({"Method/Transfer=apic"}), KernelKind::linear);
+  EXPECT_EQ(kernel({"Grid/Join points=true"}), KernelKind::linear);
+  EXPECT_EQ(kernel({"Body bar/Locking treatment=assumed strain"}),
+            KernelKind::linear);
+}
+
+
+
 // Splines where bodies may bend across the cells
 TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
 {
