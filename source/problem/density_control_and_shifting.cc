@@ -131,8 +131,7 @@ namespace limber
     /**
      * Particle shifting is for volume ratios averaged over cells, or around
      * nodes: only there points that gather (clumping) weigh more than their
-     * pressure balances. With domains that cover several cells nothing gathers
-     * within one.
+     * pressure balances. It has not been tried with other kernels.
      */
     template <int dim>
     bool

@@ -51,8 +51,8 @@ namespace limber
    * cells of several sizes there is no phi. Velocities stay; the potential
    * energy that this takes is on record as removed with histories.
    *
-   * For linear functions, with means over cells. Theory:
-   * doc/theory/treatments.md.
+   * For linear functions with means over cells, and quadratic splines with
+   * means over cells or around nodes. Theory: doc/theory/treatments.md.
    */
   template <int dim>
   class ParticleShifting
