@@ -198,6 +198,34 @@ namespace limber
 
 
   template <int dim>
+  std::vector<QuadratureSample<dim>>
+  quadrature_samples(const SolidModel<dim> &model,
+                     const NodalVector     &displacement,
+                     const NodalVector     &velocity)
+  {
+    std::vector<QuadratureSample<dim>> result;
+    std::vector<PlaceSample<dim>>      here;
+    dealii::FEValues<dim> values(model.shape_values(model.quadrature));
+    for (const auto &cell : model.dof_handler.active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          fill_samples(model,
+                       cell,
+                       model.quadrature.get_points(),
+                       displacement,
+                       velocity,
+                       here);
+          for (const unsigned int q : values.quadrature_point_indices())
+            result.push_back(
+              {values.quadrature_point(q), values.JxW(q), here[q]});
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
   std::vector<NodalStress>
   interpolate_at(const SolidModel<dim>                 &model,
                  const std::vector<dealii::Point<dim>> &places,
@@ -303,6 +331,10 @@ namespace limber
             const std::vector<dealii::Point<2>> &,
             const NodalVector &,
             const NodalVector &);
+  template std::vector<QuadratureSample<2>>
+  quadrature_samples(const SolidModel<2> &,
+                     const NodalVector &,
+                     const NodalVector &);
   template std::vector<MaterialState>
   nodal_states(const SolidModel<2> &, const NodalVector &);
   template std::vector<NodalStress>
@@ -323,6 +355,10 @@ namespace limber
             const std::vector<dealii::Point<3>> &,
             const NodalVector &,
             const NodalVector &);
+  template std::vector<QuadratureSample<3>>
+  quadrature_samples(const SolidModel<3> &,
+                     const NodalVector &,
+                     const NodalVector &);
   template std::vector<MaterialState>
   nodal_states(const SolidModel<3> &, const NodalVector &);
 } // namespace limber

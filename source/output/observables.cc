@@ -21,12 +21,10 @@ namespace limber
               const std::size_t      p,
               const Observable<dim> &observable)
     {
-      if (observable.within)
-        for (int d = 0; d < dim; ++d)
-          if (points.position[d][p] < observable.within->first[d] ||
-              points.position[d][p] > observable.within->second[d])
-            return false;
-      return true;
+      dealii::Point<dim> place;
+      for (int d = 0; d < dim; ++d)
+        place[d] = points.position[d][p];
+      return observable.is_within(place);
     }
 
 
@@ -133,7 +131,7 @@ namespace limber
     : problem(start.problem)
   {
     const unsigned int n = problem.observables.size();
-    memory.crossings.resize(n);
+    memory.columns.resize(n);
     memory.tracked_of.assign(n, not_followed);
     for (unsigned int i = 0; i < n; ++i)
       if (looks_at_place(problem.observables[i]))
@@ -169,6 +167,7 @@ namespace limber
           with_stress[memory.tracked_of[i]] = true;
         has_extremes |=
           part == ObservedPart::extent || part == ObservedPart::largest;
+        has_regions |= is_region(part);
       }
   }
 
@@ -242,7 +241,8 @@ namespace limber
   Observables<dim>::look(const unsigned int                   number,
                          const Totals<dim>                   &totals,
                          const std::vector<PointSample<dim>> &samples,
-                         const std::vector<double>           &extents) const
+                         const std::vector<double>           &extents,
+                         const std::vector<RegionSums<dim>>  &regions) const
   {
     const Observable<dim> &observable = problem.observables[number];
     Seen<dim>              seen;
@@ -254,6 +254,9 @@ namespace limber
             const unsigned int t = memory.tracked_of[number];
             return see(samples[t], points.points()[t].reference, observable);
           }
+        case ObservedPart::region:
+        case ObservedPart::region_material:
+          return regions[number].seen();
         case ObservedPart::body:
           return see(totals_of(observable, totals));
         case ObservedPart::extent:
@@ -313,6 +316,58 @@ namespace limber
 
 
 
+  // By observable; points count whole, by their centres.
+  template <int dim>
+  std::vector<RegionSums<dim>>
+  Observables<dim>::regions(const State<dim> &state) const
+  {
+    std::vector<RegionSums<dim>> sums(problem.observables.size());
+    for (unsigned int b = 0; b < state.bodies.size(); ++b)
+      {
+        const MaterialBody<dim> &body   = *state.bodies[b];
+        const PointView<dim>     points = body.points.view();
+        PointStress<dim>         stress(state);
+        bool                     has_stress = false;
+        for (unsigned int i = 0; i < sums.size(); ++i)
+          {
+            const Observable<dim> &observable = problem.observables[i];
+            const ObservedPart     part       = observable.kind->looks_at;
+            if (!is_region(part) ||
+                !(observable.body.empty() || b == body_index(observable.body)))
+              continue;
+            const bool with_stress = part == ObservedPart::region_material;
+            if (with_stress && !has_stress)
+              {
+                stress.compute(body);
+                has_stress = true;
+              }
+            for (std::size_t p = 0; p < points.size; ++p)
+              if (is_within(points, p, observable))
+                {
+                  dealii::Tensor<1, dim> velocity;
+                  for (int d = 0; d < dim; ++d)
+                    velocity[d] = points.velocity[d][p];
+                  if (!with_stress)
+                    sums[i].add(points.mass[p], velocity);
+                  else
+                    sums[i].add(points.mass[p],
+                                velocity,
+                                points.mass[p] * stress.volume_ratio(p) /
+                                  body.description.density(),
+                                stress.pressure(p),
+                                stress.deviator(p) -
+                                  stress.pressure(p) *
+                                    dealii::unit_symmetric_tensor<3>());
+                }
+          }
+      }
+    for (RegionSums<dim> &sum : sums)
+      sum.sum_over_ranks(state.grid.communicator);
+    return sums;
+  }
+
+
+
   template <int dim>
   std::vector<double>
   Observables<dim>::evaluate(const State<dim> &state, const Totals<dim> &totals)
@@ -320,11 +375,13 @@ namespace limber
     follow_forces(state.time, totals);
     const auto samples = points.sample(state, with_stress);
     const auto largest = has_extremes ? extents(state) : std::vector<double>();
+    const auto within =
+      has_regions ? regions(state) : std::vector<RegionSums<dim>>();
     return observed_row(problem.observables,
                         state.time,
-                        memory.crossings,
+                        memory.columns,
                         [&](const unsigned int i) {
-                          return look(i, totals, samples, largest);
+                          return look(i, totals, samples, largest, within);
                         });
   }
 

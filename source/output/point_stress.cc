@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/nodal_means.h>
+#include <limber/materials/linear_elastic.h>
 #include <limber/output/point_stress.h>
 #include <limber/transfer/project_on_nodes.h>
 
@@ -45,8 +46,10 @@ namespace limber
   void
   PointStress<dim>::compute(const MaterialBody<dim> &body)
   {
-    points = body.points.view();
-    kind   = body.stress->treatment().kind;
+    points          = body.points.view();
+    kind            = body.stress->treatment().kind;
+    is_small_strain = body.description.frame == Frame::initial &&
+                      body.description.law == LinearElastic::name;
     volume_ratios.resize(points.size);
     body.stress->volume_ratio(points, volume_ratios.data());
     if (kind != Treatment::none)
@@ -75,12 +78,13 @@ namespace limber
         double *const record = of_cells.open(cell);
         record[0] += points.mass[p];
         record[1] += points.mass[p] * volume_ratios[p];
-        record[2] += points.mass[p] * points.pressure[p];
+        record[2] += points.mass[p] * volume_ratios[p] * point_pressure(p);
         if (averages_deviator)
           {
             double *const deviator = of_deviators.open(cell);
             for (unsigned int k = 0; k < n_deviator<dim>; ++k)
-              deviator[k] += points.mass[p] * points.deviator[k][p];
+              deviator[k] += points.mass[p] * volume_ratios[p] *
+                             points.deviator[k][p] / kirchhoff_over_cauchy(p);
           }
       }
     sums.start_completion(plan);
@@ -137,7 +141,7 @@ namespace limber
       return {};
     return full_deviator<dim>(
              [&](const unsigned int k) { return points.deviator[k][p]; }) /
-           volume_ratios[p];
+           kirchhoff_over_cauchy(p);
   }
 
 

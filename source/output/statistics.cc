@@ -221,7 +221,7 @@ namespace limber
       columns.push_back({"energy removed by adaptation", "J"});
 
     for (const Observable<dim> &observable : problem.observables)
-      columns.push_back({observable.name, observable.kind->unit});
+      columns.push_back({observable.name, observable.unit});
     return columns;
   }
 

@@ -28,35 +28,6 @@ namespace limber
 
 
     /**
-     * Length of the ray along n from a place in the shape to where it leaves
-     * the shape, by strides and bisection; to 1e-13 of the stride.
-     */
-    template <int dim>
-    double
-    way_out(const Shape<dim>     &shape,
-            const Point<dim>     &place,
-            const Tensor<1, dim> &n,
-            const double          stride)
-    {
-      double inside = 0, outside = stride;
-      while (shape.contains(place + outside * n))
-        {
-          inside = outside;
-          outside += stride;
-        }
-      while (outside - inside > 1e-13 * stride)
-        {
-          const double middle = 0.5 * (inside + outside);
-          if (middle <= inside || middle >= outside)
-            break;
-          (shape.contains(place + middle * n) ? inside : outside) = middle;
-        }
-      return inside;
-    }
-
-
-
-    /**
      * The farthest place along n that rays from the centres of the parts of a
      * box find, and its n . place.
      */
@@ -102,15 +73,15 @@ namespace limber
 
 
   template <int dim>
-  std::optional<double>
-  reach(const Shape<dim> &shape, const Tensor<1, dim> &n)
+  std::optional<Point<dim>>
+  farthest_place(const Shape<dim> &shape, const Tensor<1, dim> &n)
   {
     const Corners<dim> all = shape.bounding_box();
     Point<dim>         corner;
     for (unsigned int d = 0; d < dim; ++d)
       corner[d] = n[d] > 0 ? all.second[d] : all.first[d];
     if (shape.contains(corner))
-      return n * corner;
+      return corner;
 
     constexpr unsigned int n_coarse = dim == 2 ? 256 : 64, n_fine = 8;
     Farthest<dim>          farthest;
@@ -130,13 +101,42 @@ namespace limber
           }
         farthest.look(shape, n, around, n_fine);
       }
-    return farthest.reach;
+    return farthest.place;
   }
 
 
 
-  template std::optional<double>
-  reach(const Shape<2> &, const Tensor<1, 2> &);
-  template std::optional<double>
-  reach(const Shape<3> &, const Tensor<1, 3> &);
+  template <int dim>
+  double
+  way_out(const Shape<dim>     &shape,
+          const Point<dim>     &place,
+          const Tensor<1, dim> &n,
+          const double          stride)
+  {
+    double inside = 0, outside = stride;
+    while (shape.contains(place + outside * n))
+      {
+        inside = outside;
+        outside += stride;
+      }
+    while (outside - inside > 1e-13 * stride)
+      {
+        const double middle = 0.5 * (inside + outside);
+        if (middle <= inside || middle >= outside)
+          break;
+        (shape.contains(place + middle * n) ? inside : outside) = middle;
+      }
+    return inside;
+  }
+
+
+
+  template std::optional<Point<2>>
+  farthest_place(const Shape<2> &, const Tensor<1, 2> &);
+  template std::optional<Point<3>>
+  farthest_place(const Shape<3> &, const Tensor<1, 3> &);
+  template double
+  way_out(const Shape<2> &, const Point<2> &, const Tensor<1, 2> &, double);
+  template double
+  way_out(const Shape<3> &, const Point<3> &, const Tensor<1, 3> &, double);
 } // namespace limber

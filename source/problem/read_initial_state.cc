@@ -19,7 +19,7 @@ namespace limber
                                         "hydrostatic"),
                        "p at time 0, Pa, positive in compression, only for "
                        "fluids; empty: none; hydrostatic: in balance with "
-                       "gravity, zero at the highest place of the body.");
+                       "gravity, the weight of what is above.");
     parameters.declare(
       "Initial stress",
       "",
@@ -27,8 +27,8 @@ namespace limber
                          variable_names(dim),
                        "K0: 0.5"),
       "Cauchy stress at time 0, Pa, only for solids. 'K0: formula' is "
-      "geostatic: along gravity the weight of what is above, from the "
-      "highest place of the body and an 'overburden: formula' (Pa) on; "
+      "geostatic: along gravity the weight of what is above, with an "
+      "'overburden: formula' (Pa) in the place of other bodies; "
       "across it K0 times that. 'xx: formula; yy: formula' and so on give "
       "components, positive in tension; others are zero. Empty: none.");
     parameters.declare(

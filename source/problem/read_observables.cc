@@ -89,13 +89,20 @@ namespace limber
       parameters.declare("Within",
                          "",
                          corners_entry(dim).or_empty(),
-                         "For extreme coordinate: only points that are within "
-                         "this box, m.");
+                         "The region of space that 'mean' values and 'mass "
+                         "within' are taken of, m: of the points whose "
+                         "centres are in it now; for extreme coordinate: only "
+                         "those count.");
       parameters.declare("Observable",
                          "",
                          admissible::text("name of an observable", "tip"),
-                         "For frequency: of which observable, Hz, from its "
-                         "zero crossings.");
+                         "Of which observable: its frequency, from its zero "
+                         "crossings, its mean over time, or its largest or "
+                         "smallest value so far.");
+      parameters.declare("From time",
+                         "",
+                         admissible::non_negative_number("0.5").or_empty(),
+                         "For these: rows before it do not count, s.");
       parameters.declare("Side",
                          "",
                          admissible::one_of(side_names(dim)).or_empty(),
@@ -143,6 +150,7 @@ namespace limber
                                       "Direction",
                                       "Within",
                                       "Observable",
+                                      "From time",
                                       "Side",
                                       "Obstacle",
                                       "Variable"})
@@ -236,7 +244,9 @@ namespace limber
 
     template <int dim>
     void
-    read_within(const Section &section, Observable<dim> &observable)
+    read_within(const Section              &section,
+                const GridDescription<dim> &grid,
+                Observable<dim>            &observable)
     {
       if (section.is_empty("Within"))
         return;
@@ -255,6 +265,15 @@ namespace limber
                            section.where("Within") +
                            ". Usually the corners are swapped. Give the lower "
                            "corner first, then the upper one.");
+      for (unsigned int d = 0; d < dim; ++d)
+        if (box.second[d] < grid.lower[d] || box.first[d] > grid.upper[d])
+          throw InputError(
+            "The box from " + to_text(box.first) + " to " +
+            to_text(box.second) + " in " + section.where("Within") +
+            " is outside the grid, where nothing can be. "
+            "Usually a coordinate is mistyped. Give one that "
+            "meets the grid, from " +
+            to_text(grid.lower) + " to " + to_text(grid.upper) + ".");
       observable.within = box;
     }
 
@@ -338,10 +357,13 @@ namespace limber
       read_observed_body(section, problem, observable);
       read_location(section, problem.grid, observable);
       read_direction(section, observable);
-      read_within(section, observable);
+      read_within(section, problem.grid, observable);
       read_variable(section, problem, observable);
       read_observed_obstacle(section, problem, observable);
+      observable.unit       = observable.kind->unit;
       observable.observable = section.text("Observable");
+      if (!section.is_empty("From time"))
+        observable.from_time = section.number("From time");
       if (!section.is_empty("Side"))
         observable.side = side_index(section.text("Side"));
       return observable;
@@ -350,17 +372,17 @@ namespace limber
 
 
     /**
-     * An observable 'frequency' looks at another observable that is no
-     * frequency. Notes where rows may be too rare to resolve zero crossings:
-     * implicit steps are as long as the motion allows, explicit ones a hundred
-     * times shorter.
+     * A column over time (frequency, mean ...) is that of an observable that is
+     * none itself, and has its unit. Notes where rows may be too rare to
+     * resolve zero crossings: implicit steps are as long as the motion allows,
+     * explicit ones a hundred times shorter.
      */
     template <int dim>
     void
-    check_frequencies(const Section &root, Problem<dim> &problem)
+    check_columns(const Section &root, Problem<dim> &problem)
     {
       const std::vector<std::string> names = root.list("Observables");
-      for (const Observable<dim> &observable : problem.observables)
+      for (Observable<dim> &observable : problem.observables)
         {
           if (observable.kind->looks_at != ObservedPart::column)
             continue;
@@ -372,13 +394,17 @@ namespace limber
             std::find(names.begin(), names.end(), observable.observable) -
             names.begin();
           if (problem.observables[of].kind->looks_at == ObservedPart::column)
-            throw InputError("The frequency " + in_quotes(observable.name) +
-                             " is taken of " +
+            throw InputError("The observable " + in_quotes(observable.name) +
+                             ", a " + in_quotes(observable.kind->word) +
+                             ", is taken of " +
                              in_quotes(observable.observable) +
-                             ", itself a frequency, in " + where +
-                             ". Only a quantity that swings has one. Name "
-                             "another observable, for instance a "
-                             "displacement.");
+                             ", itself taken of another one, in " + where +
+                             ". Name one that the material has at each time, "
+                             "for instance a displacement.");
+          if (observable.unit.empty())
+            observable.unit = problem.observables[of].unit;
+          if (observable.kind->word != "frequency")
+            continue;
 
           const unsigned int interval = problem.output.statistics_interval;
           if (problem.method.integration != TimeIntegration::explicit_steps &&
@@ -439,7 +465,7 @@ namespace limber
         if (!section.is_empty("Location"))
           look_at_location(problem.observables.back(), problem);
       }
-    check_frequencies(root, problem);
+    check_columns(root, problem);
   }
 
 

@@ -3,6 +3,7 @@
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
 #include <limber/problem/farthest_place.h>
+#include <limber/problem/obstacle.h>
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 
@@ -58,26 +59,108 @@ namespace limber
   template <int dim>
   InitialState<dim>::InitialState(const Problem<dim>      &problem,
                                   const Body<dim>         &body,
-                                  const StressUpdate<dim> &law)
+                                  const StressUpdate<dim> &law,
+                                  const OfAllBodies       &of_all)
     : problem(problem)
     , body(body)
     , law(law)
+    , of_all(of_all)
   {
-    const bool geostatic =
-      body.initial_stress && !body.initial_stress->lateral_ratio.empty();
-    if (!body.hydrostatic && !geostatic)
+    if (!is_in_equilibrium())
       return;
-    const auto  &gravity = problem.loads.gravity;
-    const double g       = gravity.norm();
-    const auto   top     = reach<dim>(*body.shape, -gravity / g);
-    if (!top)
+    up               = -problem.loads.gravity / problem.loads.gravity.norm();
+    const auto place = farthest_place<dim>(*body.shape, up);
+    if (!place)
       throw InputError(
         "The highest place of body " + in_quotes(body.name) +
         " is not found, below which 'Body " + body.name + "/Initial " +
-        (geostatic ? "stress" : "pressure") +
+        (body.hydrostatic ? "pressure" : "stress") +
         "' begins. Usually the body is very thin in its bounding box. Write "
         "a formula there, or give tighter corners of the shape.");
-    highest = *top * g;
+    highest = *place;
+    stride  = problem.grid.finest_edge(0) / 2;
+    for (unsigned int d = 1; d < dim; ++d)
+      stride = std::min(stride, problem.grid.finest_edge(d) / 2);
+  }
+
+
+
+  template <int dim>
+  bool
+  InitialState<dim>::is_in_equilibrium() const
+  {
+    return body.hydrostatic ||
+           (body.initial_stress && !body.initial_stress->lateral_ratio.empty());
+  }
+
+
+
+  template <int dim>
+  std::optional<double>
+  InitialState<dim>::stress_along_gravity(const dealii::Point<dim> &place) const
+  {
+    if (!body.is_liquid && !body.initial_stress)
+      return std::nullopt;
+    const PointStart<dim> start = at(place);
+    if (body.is_liquid)
+      return start.pressure;
+    Components sigma{};
+    for (unsigned int k = 0; k < start.deviator.size(); ++k)
+      sigma[k < 2 ? k : k + 1] = start.deviator[k];
+    sigma[2] = -sigma[0] - sigma[1];
+    double s = start.pressure;
+    for (unsigned int d = 0; d < dim; ++d)
+      s -= up[d] * (sigma[d] * up[d] + 2 * sigma[3 + d] * up[(d + 1) % dim]);
+    return s;
+  }
+
+
+
+  template <int dim>
+  std::optional<double>
+  InitialState<dim>::load_on(const dealii::Point<dim> &surface) const
+  {
+    const dealii::Point<dim> above = surface + 1e-6 * stride * up;
+    if (!problem.grid.has_inside(above))
+      return std::nullopt;
+    for (const Obstacle<dim> &obstacle : problem.obstacles)
+      if (ObstaclePlace<dim>(obstacle, 0).distance(above).value < 0)
+        return std::nullopt;
+    for (const auto &other : of_all)
+      if (other.get() != this && other->body.shape->contains(above))
+        return other->stress_along_gravity(above);
+    return 0.;
+  }
+
+
+
+  template <int dim>
+  const typename InitialState<dim>::Column &
+  InitialState<dim>::column_above(const dealii::Point<dim> &place) const
+  {
+    const double               height = up * place;
+    const auto                 across = place - height * up;
+    std::array<long long, dim> key;
+    for (unsigned int d = 0; d < dim; ++d)
+      key[d] = std::llround(across[d] / (1e-6 * stride));
+
+    std::vector<Column> &known = columns[key];
+    for (const Column &column : known)
+      if (column.lowest <= height && height <= column.top)
+        return column;
+
+    const dealii::Point<dim> end =
+      place + way_out(*body.shape, place, up, stride) * up;
+    Column column{height, up * end, up * end, 0};
+    if (const auto load = load_on(end))
+      column.load = *load;
+    else
+      {
+        column.head = up * highest;
+        column.load = load_on(highest).value_or(0);
+      }
+    known.push_back(column);
+    return known.back();
   }
 
 
@@ -91,11 +174,16 @@ namespace limber
     if (body.initial_pressure)
       start.pressure = body.initial_pressure->value(place, 0);
     else if (body.hydrostatic)
-      start.pressure = stress_under(head(place), 0, [&](const double p) {
-        PointStart<dim> deeper;
-        deeper.pressure = p;
-        return law.volume_ratio_at(deeper);
-      });
+      {
+        const Column &column = column_above(place);
+        start.pressure       = stress_under(weight_above(place, column),
+                                      column.load,
+                                      [&](const double p) {
+                                        PointStart<dim> deeper;
+                                        deeper.pressure = p;
+                                        return law.volume_ratio_at(deeper);
+                                      });
+      }
     else if (body.initial_stress && !body.initial_stress->lateral_ratio.empty())
       set_geostatic(place, start);
     else if (body.initial_stress)
@@ -176,10 +264,12 @@ namespace limber
   InitialState<dim>::set_geostatic(const dealii::Point<dim> &place,
                                    PointStart<dim>          &start) const
   {
-    const InitialStress<dim> &stress = *body.initial_stress;
-    const double              K0     = stress.lateral_ratio.value(place, 0);
-    const double              overburden =
-      stress.overburden.empty() ? 0 : stress.overburden.value(place, 0);
+    const InitialStress<dim> &stress     = *body.initial_stress;
+    const double              K0         = stress.lateral_ratio.value(place, 0);
+    const Column             &column     = column_above(place);
+    const double              overburden = stress.overburden.empty() ?
+                                             column.load :
+                                             stress.overburden.value(place, 0);
     if (!(K0 >= 0) || !(overburden >= 0))
       throw InputError("In 'Body " + body.name + "/Initial stress' K0 is " +
                        brief(K0) + " and the overburden " + brief(overburden) +
@@ -200,19 +290,22 @@ namespace limber
         }
       set_stress(sigma, start);
     };
-    put_under(stress_under(head(place), overburden, [&](const double s) {
-      put_under(s);
-      return law.volume_ratio_at(start);
-    }));
+    put_under(
+      stress_under(weight_above(place, column), overburden, [&](double s) {
+        put_under(s);
+        return law.volume_ratio_at(start);
+      }));
   }
 
 
 
   template <int dim>
   double
-  InitialState<dim>::head(const dealii::Point<dim> &place) const
+  InitialState<dim>::weight_above(const dealii::Point<dim> &place,
+                                  const Column             &column) const
   {
-    return body.density() * (highest + problem.loads.gravity * place);
+    return body.density() * problem.loads.gravity.norm() *
+           (column.head - up * place);
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/records_of_ranks.h>
 #include <limber/fem/solid_samples.h>
+#include <limber/output/region_sums.h>
 #include <limber/simulation/reference_observables.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ namespace limber
     : model(model)
     , solver(solver)
     , problem(model.problem)
-    , crossings(problem.observables.size())
+    , columns_over_time(problem.observables.size())
   {
     for (const Observable<dim> &observable : problem.observables)
       places.push_back(looks_at_place(observable) ?
@@ -106,7 +107,7 @@ namespace limber
     result.push_back({"smallest volume ratio", ""});
     result.push_back({"largest volume ratio", ""});
     for (const Observable<dim> &observable : problem.observables)
-      result.push_back({observable.name, observable.kind->unit});
+      result.push_back({observable.name, observable.unit});
     return result;
   }
 
@@ -166,16 +167,32 @@ namespace limber
     model.for_each_owned_node([&](dealii::Point<dim> place, const auto &dofs) {
       for (unsigned int d = 0; d < dim; ++d)
         place[d] += u[dofs[d]];
-      bool counts = true;
-      if (observable.within)
-        for (unsigned int d = 0; d < dim; ++d)
-          counts &= place[d] >= observable.within->first[d] &&
-                    place[d] <= observable.within->second[d];
-      if (counts)
+      if (observable.is_within(place))
         largest = std::max(largest, sign * place[axis]);
     });
     largest = dealii::Utilities::MPI::max(largest, model.communicator);
     return std::isfinite(largest) ? largest : not_known;
+  }
+
+
+
+  template <int dim>
+  Seen<dim>
+  ReferenceObservables<dim>::look_within(
+    const Observable<dim> &observable) const
+  {
+    RegionSums<dim>         sums;
+    const SolidMotion<dim> &motion = solver.motion();
+    for (const QuadratureSample<dim> &part :
+         quadrature_samples(model, motion.displacement, motion.velocity))
+      if (observable.is_within(part.start + part.here.displacement))
+        sums.add(model.element->density * part.volume,
+                 part.here.velocity,
+                 part.here.material.volume_ratio * part.volume,
+                 part.here.material.pressure,
+                 part.here.material.stress);
+    sums.sum_over_ranks(model.communicator);
+    return sums.seen();
   }
 
 
@@ -207,6 +224,9 @@ namespace limber
               seen.variable = here.material.variables[observable.variable];
             return seen;
           }
+        case ObservedPart::region:
+        case ObservedPart::region_material:
+          return look_within(observable);
         case ObservedPart::body:
           seen.mass             = totals.mass;
           seen.momentum         = totals.momentum;
@@ -240,7 +260,7 @@ namespace limber
   {
     return observed_row(problem.observables,
                         solver.motion().time,
-                        crossings,
+                        columns_over_time,
                         [&](const unsigned int i) { return look(i, totals); });
   }
 

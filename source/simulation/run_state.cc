@@ -39,6 +39,25 @@ namespace limber
 
 
 
+  template <class Archive>
+  void
+  serialize(Archive &archive, RunningValues &values, const unsigned int)
+  {
+    archive &values.any &values.first_time &values.last_time &values
+      .last_value &values.integral &values.smallest &values.largest;
+  }
+
+
+
+  template <class Archive>
+  void
+  serialize(Archive &archive, ColumnOverTime &column, const unsigned int)
+  {
+    archive &column.crossings &column.values;
+  }
+
+
+
   template <class Archive, int dim>
   void
   serialize(Archive &archive, TrackedPoint<dim> &point, const unsigned int)
@@ -61,7 +80,7 @@ namespace limber
   void
   serialize(Archive &archive, ObservablesState<dim> &state, const unsigned int)
   {
-    archive &state.tracked &state.tracked_of &state.crossings &state
+    archive &state.tracked &state.tracked_of &state.columns &state
       .has_row &state.time &state.side_impulse &state.side_force &state
       .obstacle_impulse &state.obstacle_force;
   }
@@ -260,7 +279,7 @@ namespace limber
       for (std::size_t i = 0; i < a.tracked.size(); ++i)
         if (a.tracked[i].body != b.tracked[i].body)
           return false;
-      return a.crossings.size() == b.crossings.size() &&
+      return a.columns.size() == b.columns.size() &&
              state.adaptation.next_id.size() ==
                start.adaptation.next_id.size() &&
              state.checks.size() == start.checks.size() &&
@@ -308,8 +327,9 @@ namespace limber
       return "has values in 'run' that are not finite";
     if (state.time < 0 || state.step_size < 0 || state.next_pictures < 0)
       return "has negative times in 'run'";
-    for (const ZeroCrossings &crossings : state.observables.crossings)
-      if (std::abs(crossings.side) > 1 || std::abs(crossings.swing_sign) > 1)
+    for (const ColumnOverTime &column : state.observables.columns)
+      if (std::abs(column.crossings.side) > 1 ||
+          std::abs(column.crossings.swing_sign) > 1)
         return "has a sign in 'run' that is none";
     if (!in_order(state.pictures, state.time))
       return "has pictures in 'run' that are not in order";

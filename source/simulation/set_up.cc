@@ -54,11 +54,10 @@ namespace limber
 
     template <int dim>
     void
-    set_initial_state(const Problem<dim> &problem, MaterialBody<dim> &body)
+    set_initial_state(const InitialState<dim> &initial, MaterialBody<dim> &body)
     {
-      const PointView<dim>    points   = body.points.view();
-      const Formula<dim>     &velocity = body.description.initial_velocity;
-      const InitialState<dim> initial(problem, body.description, *body.stress);
+      const PointView<dim> points   = body.points.view();
+      const Formula<dim>  &velocity = body.description.initial_velocity;
       for (std::size_t p = 0; p < points.size; ++p)
         {
           dealii::Point<dim> place;
@@ -249,15 +248,15 @@ namespace limber
     void
     fill_with_points(const Problem<dim>        &problem,
                      const BackgroundGrid<dim> &grid,
+                     const InitialState<dim>   &initial,
                      MaterialBody<dim>         &body)
     {
-      const InitialState<dim> initial(problem, body.description, *body.stress);
-      const auto              density = [&](const dealii::Point<dim> &place) {
+      const auto density = [&](const dealii::Point<dim> &place) {
         return body.description.density() /
                body.stress->volume_ratio_at(initial.at(place));
       };
       seed<dim>(body.description, grid, density, body.points);
-      set_initial_state(problem, body);
+      set_initial_state(initial, body);
       set_reach<dim>(*body.description.shape, density, body.points);
       set_edges<dim>(problem.grid, body.description, density, body.points);
 
@@ -313,10 +312,14 @@ namespace limber
                         BackgroundGrid<dim> &grid,
                         Bodies<dim>         &bodies)
     {
+      typename InitialState<dim>::OfAllBodies initial;
+      for (const auto &body : bodies)
+        initial.push_back(std::make_unique<InitialState<dim>>(
+          problem, body->description, *body->stress, initial));
       for (;;)
         {
-          for (auto &body : bodies)
-            fill_with_points(problem, grid, *body);
+          for (std::size_t b = 0; b < bodies.size(); ++b)
+            fill_with_points(problem, grid, *initial[b], *bodies[b]);
           if (!grid.has_levels())
             return;
           // Refined cells stay refined, so that the iteration ends.

@@ -206,7 +206,7 @@ namespace limber
       double           largest   = 0;
       for (const Observable<dim> &observable : problem.observables)
         if (const auto *const any = column(scene.table, observable.name);
-            any != nullptr && observable.kind->unit == unit)
+            any != nullptr && observable.unit == unit)
           largest = std::max(largest, largest_of(*any, 0));
       return largest_of(values, values.front()) <= round_off * largest;
     }
@@ -227,7 +227,7 @@ namespace limber
           const auto *const own  = column(scene.table, observable.name);
           const auto *const with = column(changed.table, observable.name);
           if (own == nullptr || with == nullptr ||
-              stays(problem, scene, observable.kind->unit, *own))
+              stays(problem, scene, observable.unit, *own))
             continue;
           const std::string name = in_quotes(observable.name);
           if (observable.kind->looks_at != ObservedPart::column)
@@ -236,7 +236,7 @@ namespace limber
                                  other,
                                  *with,
                                  effect.until,
-                                 scale_of(observable.kind->unit, *own)),
+                                 scale_of(observable.unit, *own)),
                  name,
                  effect);
           else if (const double last = at_time(times, *own, effect.until);

@@ -43,6 +43,22 @@ namespace limber
             const NodalVector                     &displacement,
             const NodalVector                     &velocity);
 
+  /** A sample and the part of the body that it stands for. */
+  template <int dim>
+  struct QuadratureSample
+  {
+    dealii::Point<dim> start;      // place at the start, m
+    double             volume = 0; // at the start, m^dim
+    PlaceSample<dim>   here;
+  };
+
+  /** Those of the quadrature points of this rank. */
+  template <int dim>
+  std::vector<QuadratureSample<dim>>
+  quadrature_samples(const SolidModel<dim> &model,
+                     const NodalVector     &displacement,
+                     const NodalVector     &velocity);
+
   /** Cauchy pressure and stress (xx yy zz xy yz zx) of a node, Pa. */
   using NodalStress = std::array<double, 7>;
 

@@ -3,6 +3,7 @@
 #define limber_output_observables_h
 
 #include <limber/output/observed_row.h>
+#include <limber/output/region_sums.h>
 #include <limber/output/totals.h>
 #include <limber/output/tracked_points.h>
 
@@ -17,7 +18,7 @@ namespace limber
   {
     std::vector<TrackedPoint<dim>> tracked;
     std::vector<unsigned int>      tracked_of; // per observable, or invalid
-    std::vector<ZeroCrossings>     crossings;  // per observable
+    std::vector<ColumnOverTime>    columns;    // per observable
     bool                           has_row = false;
     double                         time    = 0; // of the last row, s
     // on the material until then, kg m/s, and the force since the row before
@@ -65,9 +66,12 @@ namespace limber
     look(unsigned int                         number,
          const Totals<dim>                   &totals,
          const std::vector<PointSample<dim>> &samples,
-         const std::vector<double>           &extents) const;
+         const std::vector<double>           &extents,
+         const std::vector<RegionSums<dim>>  &regions) const;
     std::vector<double>
     extents(const State<dim> &state) const;
+    std::vector<RegionSums<dim>>
+    regions(const State<dim> &state) const;
     unsigned int
     body_index(const std::string &name) const;
     BodyTotals<dim>
@@ -78,7 +82,7 @@ namespace limber
     ObservablesState<dim> memory;
     TrackedPoints<dim>    points;
     std::vector<bool>     with_stress; // per tracked point
-    bool                  has_extremes = false;
+    bool                  has_extremes = false, has_regions = false;
   };
 } // namespace limber
 

@@ -3,6 +3,7 @@
 #define limber_output_observed_row_h
 
 #include <limber/output/frequency.h>
+#include <limber/output/running_values.h>
 #include <limber/problem/observable.h>
 
 #include <algorithm>
@@ -34,17 +35,27 @@ namespace limber
 
 
 
+  /** What an observable of another one keeps of its rows; plain data, for
+   * checkpoints. */
+  struct ColumnOverTime
+  {
+    ZeroCrossings crossings;
+    RunningValues values;
+  };
+
+
+
   /**
    * The values of all observables at @p time, s, in the order of the scene.
    * look(i) returns what the observable of that number sees (Seen); those of
-   * other columns come last and count on their own @p crossings, one call per
-   * row.
+   * other columns come last and count on in their own entry of @p columns, one
+   * call per row.
    */
   template <int dim, class Look>
   std::vector<double>
   observed_row(const std::vector<Observable<dim>> &observables,
                const double                        time,
-               std::vector<ZeroCrossings>         &crossings,
+               std::vector<ColumnOverTime>        &columns,
                const Look                         &look)
   {
     std::vector<double> values(observables.size(), not_known);
@@ -65,10 +76,20 @@ namespace limber
                          [&](const Observable<dim> &other) {
                            return other.name == observable.observable;
                          });
-          crossings[i].add(time, values[of - observables.begin()]);
+          const double value = time >= observable.from_time ?
+                                 values[of - observables.begin()] :
+                                 not_known;
+          columns[i].crossings.add(time, value);
+          columns[i].values.add(time, value);
           Seen<dim> seen;
-          seen.frequency = crossings[i].frequency();
-          values[i]      = observable.kind->value(observable, seen);
+          seen.frequency = columns[i].crossings.frequency();
+          if (columns[i].values.any)
+            {
+              seen.mean     = columns[i].values.mean();
+              seen.smallest = columns[i].values.smallest;
+              seen.largest  = columns[i].values.largest;
+            }
+          values[i] = observable.kind->value(observable, seen);
         }
     return values;
   }

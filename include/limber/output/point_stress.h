@@ -67,7 +67,7 @@ namespace limber
     double
     point_pressure(const std::size_t p) const
     {
-      return points.pressure[p] / volume_ratios[p];
+      return points.pressure[p] / kirchhoff_over_cauchy(p);
     }
 
     Tensor
@@ -98,6 +98,14 @@ namespace limber
     }
 
   private:
+    /** J; one for small strain in the initial frame, whose forces are those of
+     * P = sigma. */
+    double
+    kirchhoff_over_cauchy(const std::size_t p) const
+    {
+      return is_small_strain ? 1 : volume_ratios[p];
+    }
+
     void
     sum_over_cells();
     void
@@ -110,7 +118,8 @@ namespace limber
     NodalProjection<dim>    nodal;     // pressure
     PointView<dim>          points;
     std::vector<double>     volume_ratios;
-    Treatment               kind = Treatment::none;
+    Treatment               kind            = Treatment::none;
+    bool                    is_small_strain = false; // in the initial frame
   };
 } // namespace limber
 

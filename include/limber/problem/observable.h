@@ -25,6 +25,7 @@ namespace limber
   struct Observable
   {
     std::string                name;
+    std::string                unit; // of its values
     const ObservableKind<dim> *kind = nullptr;
     std::string                body; // empty: all bodies
     dealii::Point<dim>         location;
@@ -33,10 +34,22 @@ namespace limber
     bool         positive = true;
     // second axis of a stress component: xx, xy, ...
     unsigned int second_axis = 0;
-    // extreme coordinate: only points within this box, where given
+    // only what is in this box, where given
     std::optional<std::pair<dealii::Point<dim>, dealii::Point<dim>>> within;
-    std::string  observable; // frequency: of which other observable
-    unsigned int side = 0;   // reaction force
+    std::string  observable;    // column: of which other observable
+    double       from_time = 0; // column: rows before it do not count, s
+    unsigned int side      = 0; // reaction force
+
+    bool
+    is_within(const dealii::Point<dim> &place) const
+    {
+      if (within)
+        for (unsigned int d = 0; d < dim; ++d)
+          if (place[d] < within->first[d] || place[d] > within->second[d])
+            return false;
+      return true;
+    }
+
     // obstacle force and moment: by its number
     unsigned int obstacle = 0;
     // state variable: by its number among those of the law of the body
@@ -48,15 +61,27 @@ namespace limber
   /** What kinds of observables observe. */
   enum class ObservedPart
   {
-    place,    // position and velocity of the point near a place
-    material, // the same and its stress, volume ratio and state
-    body,     // sums over a body, or over all
-    extent,   // largest coordinate of a body, or of all, in the direction
-    largest,  // the largest value of a state variable in a body
-    side,     // reaction force of a side of the box
-    obstacle, // force and moment on an obstacle
-    column    // another observable, over time
+    place,           // position and velocity of the point near a place
+    material,        // the same and its stress, volume ratio and state
+    region,          // mass and velocity of what is in a region of space
+    region_material, // the same and its stress
+    body,            // sums over a body, or over all
+    extent,          // largest coordinate of a body, or of all
+    largest,         // the largest value of a state variable in a body
+    side,            // reaction force of a side of the box
+    obstacle,        // force and moment on an obstacle
+    column           // another observable, over time
   };
+
+
+
+  /** Whether the part is what is in a region of space. */
+  inline bool
+  is_region(const ObservedPart part)
+  {
+    return part == ObservedPart::region ||
+           part == ObservedPart::region_material;
+  }
 
 
 
@@ -73,7 +98,7 @@ namespace limber
   struct Seen
   {
     bool known = true; // else there is nothing to be seen
-    // Place and material
+    // Place and material; of a region means
     dealii::Point<dim>            position;     // m
     dealii::Tensor<1, dim>        displacement; // since the start, m
     dealii::Tensor<1, dim>        velocity;     // m/s
@@ -82,7 +107,7 @@ namespace limber
     double                        volume_ratio = not_known;
     // The named one of the law; of 'largest' that of all points
     double variable = not_known;
-    // Body; gravitational energy is -sum of m g.x
+    // Body, the mass of a region as well; gravitational energy is -sum of m g.x
     double                 mass = 0;             // kg
     dealii::Tensor<1, dim> momentum;             // kg m/s
     dealii::Tensor<1, dim> mass_moment;          // sum of m x, kg m
@@ -95,7 +120,9 @@ namespace limber
     dealii::Tensor<1, dim> force;
     // Moment on the obstacle about its centre, N m; in the plane the last entry
     dealii::Tensor<1, 3> moment;
-    double               frequency = not_known; // of the column, Hz
+    // Of the column: frequency, Hz; the others in its unit
+    double frequency = not_known;
+    double mean = not_known, smallest = not_known, largest = not_known;
   };
 
 
@@ -107,7 +134,8 @@ namespace limber
   template <int dim>
   struct ObservableKind
   {
-    std::string              word, unit;
+    std::string              word;
+    std::string              unit; // empty: none, or that of the column
     ObservedPart             looks_at;
     std::vector<std::string> required, optional;
     double (*value)(const Observable<dim> &, const Seen<dim> &);

@@ -74,12 +74,15 @@ namespace limber
     look(unsigned int number, const ReferenceTotals<dim> &totals) const;
     double
     extreme(const Observable<dim> &observable) const;
+    Seen<dim>
+    look_within(const Observable<dim> &observable) const;
 
-    const SolidModel<dim>          &model;
-    const ReferenceSolver<dim>     &solver;
-    const Problem<dim>             &problem;
-    std::vector<dealii::Point<dim>> places;    // per observable
-    std::vector<ZeroCrossings>      crossings; // per observable
+    const SolidModel<dim>      &model;
+    const ReferenceSolver<dim> &solver;
+    const Problem<dim>         &problem;
+    // Per observable
+    std::vector<dealii::Point<dim>> places;
+    std::vector<ColumnOverTime>     columns_over_time;
     bool                            has_start       = false;
     double                          energy_at_start = 0, gravity_at_start = 0;
     double                          energy_scale = 0; // J

@@ -250,4 +250,95 @@ namespace limber::test
       }
     EXPECT_NEAR(found, 10 / (2 * dealii::numbers::PI), 1e-4);
   }
+
+
+
+  TEST(Observables, OfARegionAreMassAndMeansOfWhatIsInItNow)
+  {
+    SampleRun<2> run(false);
+    auto         observables_within = [&](const dealii::Point<2> &lower,
+                                  const dealii::Point<2> &upper) {
+      std::vector<Observable<2>> result = {observe("mass within"),
+                                           observe("mean velocity", 1),
+                                           observe("mean pressure"),
+                                           observe("mean stress", 0)};
+      for (auto &observable : result)
+        observable.within = std::make_pair(lower, upper);
+      return result;
+    };
+    run.problem.observables =
+      observables_within(dealii::Point<2>(0.25, 0), dealii::Point<2>(0.5, 0.5));
+    Observables<2> observables(run.state);
+    PointView<2>   points = run.points().view();
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.velocity[1][p] = points.position[0][p];
+        points.pressure[p]    = 1e5 * points.position[1][p];
+        points.deviator[0][p] = 2e5;
+      }
+    const auto values = observables.evaluate(run.state, run.totals);
+    // Eight points at x = 0.3125 and 0.4375, y from 0.0625 to 0.4375
+    EXPECT_NEAR(values[0], 8 * run.point_mass, 1e-12);
+    EXPECT_NEAR(values[1], 0.375, 1e-14);
+    double volume = 0, pressure = 0, stress = 0;
+    for (const double y : {0.0625, 0.1875, 0.3125, 0.4375})
+      {
+        volume += 1 - 1e5 * y / run.bulk_modulus;
+        pressure += 1e5 * y; // J p
+        stress += 2e5 - 1e5 * y;
+      }
+    EXPECT_NEAR(values[2], pressure / volume, 1e-8);
+    EXPECT_NEAR(values[3], stress / volume, 1e-8);
+
+    run.problem.observables =
+      observables_within(dealii::Point<2>(0.7, 0), dealii::Point<2>(1, 1));
+    const auto of_none =
+      Observables<2>(run.state).evaluate(run.state, run.totals);
+    EXPECT_EQ(of_none[0], 0);
+    EXPECT_TRUE(std::isnan(of_none[1]));
+    EXPECT_EQ(of_none[2], 0);
+  }
+
+
+
+  // Linear between rows.
+  TEST(Observables, MeansAndExtremesAreThoseOfTheRowsFromATimeOn)
+  {
+    SampleRun<2> run(false);
+    run.problem.observables = {observe("velocity", 1)};
+    for (const std::string kind :
+         {"mean over time", "largest so far", "smallest so far"})
+      {
+        Observable<2> column = observe(kind);
+        column.name          = kind;
+        column.observable    = "probe";
+        column.from_time     = 1;
+        run.problem.observables.push_back(column);
+      }
+    Observables<2>      observables(run.state);
+    PointView<2>        points = run.points().view();
+    std::vector<double> values;
+    for (const double time : {0., 1., 1.5, 3.})
+      {
+        run.state.time = time;
+        for (std::size_t p = 0; p < points.size; ++p)
+          points.velocity[1][p] = (time - 2) * (time - 2) - 5;
+        if (time == 3)
+          { // as from a checkpoint
+            Observables<2> resumed(run.state);
+            resumed.restore(observables.state());
+            values = resumed.evaluate(run.state, run.totals);
+          }
+        else
+          values = observables.evaluate(run.state, run.totals);
+        if (time == 0)
+          for (unsigned int i = 1; i <= 3; ++i)
+            EXPECT_TRUE(std::isnan(values[i]));
+      }
+    EXPECT_NEAR(values[1],
+                ((-4 - 4.75) / 2 * 0.5 + (-4.75 - 4) / 2 * 1.5) / 2,
+                1e-14);
+    EXPECT_EQ(values[2], -4);
+    EXPECT_EQ(values[3], -4.75);
+  }
 } // namespace limber::test

@@ -36,8 +36,8 @@ namespace limber::test
       layout.reference = true;
       bodies.emplace_back(new MaterialBody<dim>{
         problem.bodies[0],
-        make_stress_update<dim>("linear elastic",
-                                {1000, 1e6, 0.3},
+        make_stress_update<dim>(problem.bodies[0].law,
+                                problem.bodies[0].material,
                                 problem.bodies[0].treatment,
                                 HourglassResponse::bending),
         MaterialPoints<dim>(grid, layout),
@@ -82,7 +82,9 @@ namespace limber::test
           problem.grid.cells[d] = 4;
         }
       Body<dim> body;
-      body.name = "block";
+      body.name     = "block";
+      body.law      = "linear elastic";
+      body.material = {1000, 1e6, 0.3};
       body.points_per_cell_edge.fill(2);
       body.treatment = treatment;
       problem.bodies.push_back(body);

@@ -98,6 +98,7 @@ namespace limber::test
     SampleRun<3>  run(false);
     Observable<3> mass_centre;
     mass_centre.name        = "height";
+    mass_centre.unit        = "m";
     mass_centre.kind        = &observable_kind<3>("centre of mass");
     mass_centre.axis        = 2;
     run.problem.observables = {mass_centre};

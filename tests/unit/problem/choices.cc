@@ -109,6 +109,7 @@ TEST(Choices, ObservablesAreTheSameInTwoAndThreeDimensions)
                                          "Direction",
                                          "Within",
                                          "Observable",
+                                         "From time",
                                          "Side",
                                          "Obstacle",
                                          "Variable"};
@@ -153,25 +154,23 @@ TEST(Choices, ObservablesPickTheirPartOfWhatIsSeen)
   seen.frequency                               = 14;
   seen.variable                                = 15;
   seen.moment[2]                               = 16;
-  const std::map<std::string, double> expected = {{"position", 2},
-                                                  {"displacement", 3},
-                                                  {"velocity", 4},
-                                                  {"stress", 5},
-                                                  {"pressure", 6},
-                                                  {"volume ratio", 7},
-                                                  {"momentum", 8},
-                                                  {"centre of mass", 9},
-                                                  {"kinetic energy", 10},
-                                                  {"strain energy", 11},
-                                                  {"total energy", 20},
-                                                  {"extreme coordinate", 12},
-                                                  {"reaction force", 13},
-                                                  {"obstacle force", 13},
-                                                  {"obstacle moment", 16},
-                                                  {"frequency", 14},
-                                                  {"state variable", 15},
-                                                  {"largest state variable",
-                                                   15}};
+  seen.mean                                    = 17;
+  seen.largest                                 = 18;
+  seen.smallest                                = 19;
+  const std::map<std::string, double> expected = {
+    {"position", 2},         {"displacement", 3},
+    {"velocity", 4},         {"stress", 5},
+    {"pressure", 6},         {"volume ratio", 7},
+    {"momentum", 8},         {"centre of mass", 9},
+    {"kinetic energy", 10},  {"strain energy", 11},
+    {"total energy", 20},    {"extreme coordinate", 12},
+    {"reaction force", 13},  {"obstacle force", 13},
+    {"obstacle moment", 16}, {"frequency", 14},
+    {"state variable", 15},  {"largest state variable", 15},
+    {"mass within", 2},      {"mean velocity", 4},
+    {"mean stress", 5},      {"mean pressure", 6},
+    {"mean over time", 17},  {"largest so far", 18},
+    {"smallest so far", 19}};
   EXPECT_EQ(expected.size(), observable_kinds<2>().size());
   for (const auto &[word, value] : expected)
     EXPECT_EQ(observable_kind<2>(word).value(o, seen), value) << word;

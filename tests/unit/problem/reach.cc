@@ -24,6 +24,17 @@ namespace
 
 
 
+  /** The largest n . x of a shape. */
+  template <int dim>
+  std::optional<double>
+  reach(const Shape<dim> &shape, const Tensor<1, dim> &n)
+  {
+    const auto place = farthest_place<dim>(shape, n);
+    return place ? std::optional<double>(n * *place) : std::nullopt;
+  }
+
+
+
   FormulaShape<2>
   formula_in_unit_box(const std::string &inside)
   {
