@@ -24,8 +24,13 @@ namespace limber
     constexpr double fast_sound = 30;
 
     // Cost of a semi-implicit step over that of an explicit one, as measured in
-    // doc/theory/implicit_pressure.md (7 to 12)
-    constexpr double cost_of_step = 10;
+    // doc/theory/implicit_pressure.md (7 to 12); of one that viscosity limits,
+    // in which the pressure hardly changes, 3
+    constexpr double cost_of_step         = 10;
+    constexpr double cost_of_viscous_step = 3;
+
+    // Saving of time from which steps that viscosity limits are worth it
+    constexpr double worthwhile = 2;
 
 
 
@@ -205,11 +210,13 @@ namespace limber
       const double steps        = std::max({other / (C * edge),
                                             5 * std::sqrt(speeds.acceleration / edge),
                                             of_viscosity});
-      if (!(former_steps > fast_sound * of_viscosity))
+      if (!(former_steps > worthwhile * cost_of_viscous_step * of_viscosity))
         return say("'explicit', as viscosity would limit other steps as well");
+      const double cost =
+        steps > of_viscosity ? cost_of_step : cost_of_viscous_step;
       const std::string gain = "about " + brief(former_steps / steps) +
                                " times fewer steps, which take some " +
-                               brief(cost_of_step) + " times as long";
+                               brief(cost) + " times as long";
       const std::string obstacle = obstacle_to_implicit_pressure(root, problem);
       if (!obstacle.empty())
         return say("'explicit', as " + obstacle +

@@ -117,6 +117,29 @@ namespace limber::test
 
 
 
+  // Its forces are those of P = sigma, without J.
+  TEST(Observables, OfSmallStrainInTheInitialFrameAreTheStressOfTheLaw)
+  {
+    for (const bool projected : {false, true})
+      {
+        SampleRun<2> run(projected);
+        run.problem.bodies[0].frame = Frame::initial;
+        run.problem.observables = {observe("pressure"), observe("stress", 0)};
+        Observables<2>     observables(run.state);
+        const PointView<2> points = run.points().view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            points.pressure[p]    = 1e5;
+            points.deviator[0][p] = 3e5;
+          }
+        const auto values = observables.evaluate(run.state, run.totals);
+        EXPECT_NEAR(values[0], 1e5, 1e-8) << projected;
+        EXPECT_NEAR(values[1], 2e5, 1e-8) << projected;
+      }
+  }
+
+
+
   TEST(Observables, ContinueFromACheckpoint)
   {
     SampleRun<2> run(false);
