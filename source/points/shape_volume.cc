@@ -107,6 +107,66 @@ namespace limber
 
 
 
+    /** The number of the lattice's corner at a corner of a box. */
+    template <int dim>
+    long
+    corner_of(const BoxLattice<dim>       &lattice,
+              const std::array<long, dim> &box,
+              const unsigned int           i)
+    {
+      long corner = 0;
+      for (int d = dim - 1; d >= 0; --d)
+        corner = corner * (lattice.n[d] + 1) + box[d] + (i >> d & 1);
+      return corner;
+    }
+
+
+
+    template <int dim>
+    dealii::Point<dim>
+    centre_of(const BoxLattice<dim> &lattice, const std::array<long, dim> &box)
+    {
+      std::array<double, dim> centre;
+      for (unsigned int d = 0; d < dim; ++d)
+        centre[d] = box[d] + 0.5;
+      return lattice.place(centre);
+    }
+
+
+
+    /**
+     * The part of a box that holds the shape, as far as corners and centres of
+     * a lattice tell, and a box of the lattice around it: the bounding box of a
+     * formula may be that of the whole grid. The whole box if none is inside.
+     */
+    template <int dim>
+    Corners<dim>
+    tightened(const Shape<dim> &shape, const Corners<dim> &box)
+    {
+      const BoxLattice<dim>   lattice(box);
+      const std::vector<char> is_inside = corners_inside(shape, lattice);
+      std::array<long, dim>   first     = lattice.n, last{};
+      for_each_index<dim>(lattice.n, [&](const std::array<long, dim> &index) {
+        bool any = shape.contains(centre_of<dim>(lattice, index));
+        for (unsigned int i = 0; i < 1u << dim; ++i)
+          any = any || is_inside[corner_of<dim>(lattice, index, i)];
+        if (any)
+          for (unsigned int d = 0; d < dim; ++d)
+            {
+              first[d] = std::min(first[d], std::max(index[d] - 1, 0l));
+              last[d] = std::max(last[d], std::min(index[d] + 2, lattice.n[d]));
+            }
+      });
+      if (last[0] == 0)
+        return box;
+      std::array<double, dim> lower, upper;
+      std::copy(first.begin(), first.end(), lower.begin());
+      std::copy(last.begin(), last.end(), upper.begin());
+      return {lattice.place(lower), lattice.place(upper)};
+    }
+
+
+
     /** The number of boxes of the lattice inside, with fractions. */
     template <int dim>
     double
@@ -117,16 +177,9 @@ namespace limber
       for_each_index<dim>(lattice.n, [&](const std::array<long, dim> &box) {
         int n_inside = 0;
         for (unsigned int i = 0; i < 1u << dim; ++i)
-          {
-            long corner = 0;
-            for (int d = dim - 1; d >= 0; --d)
-              corner = corner * (lattice.n[d] + 1) + box[d] + (i >> d & 1);
-            n_inside += is_inside[corner];
-          }
-        std::array<double, dim> centre;
-        for (unsigned int d = 0; d < dim; ++d)
-          centre[d] = box[d] + 0.5;
-        const int agree = shape.contains(lattice.place(centre)) ? 1 << dim : 0;
+          n_inside += is_inside[corner_of<dim>(lattice, box, i)];
+        const int agree =
+          shape.contains(centre_of<dim>(lattice, box)) ? 1 << dim : 0;
         boxes += n_inside == agree ? n_inside > 0 :
                                      share_inside<dim>(shape, lattice, box);
       });
@@ -140,7 +193,7 @@ namespace limber
   double
   counted_volume(const Shape<dim> &shape)
   {
-    const BoxLattice<dim> lattice(shape.bounding_box());
+    const BoxLattice<dim> lattice(tightened(shape, shape.bounding_box()));
     double                volume = count_boxes(shape, lattice);
     for (const double edge : lattice.edge)
       volume *= edge;

@@ -75,26 +75,38 @@ namespace limber
               const Body<dim>            &body,
               const GridDescription<dim> &grid)
   {
-    constexpr unsigned int samples   = 16;
-    const unsigned int     normal    = side / 2;
-    const Corners<dim>     box       = body.shape->bounding_box();
-    const double           tolerance = 1e-6 * grid.edge(normal);
+    const unsigned int normal    = side / 2;
+    const Corners<dim> box       = body.shape->bounding_box();
+    const double       tolerance = 1e-6 * grid.edge(normal);
 
     dealii::Point<dim> place;
     place[normal] = side % 2 == 0 ? grid.lower[normal] + tolerance :
                                     grid.upper[normal] - tolerance;
     if (place[normal] < box.first[normal] || place[normal] > box.second[normal])
       return false;
-    const unsigned int count = dim == 2 ? samples : samples * samples;
-    for (unsigned int i = 0; i < count; ++i)
+    // Two places in a cell at least: the box may be far larger than the body
+    std::array<std::size_t, dim> samples;
+    std::size_t                  count = 1;
+    for (unsigned int d = 0; d < dim; ++d)
       {
-        for (unsigned int d = 0, rest = i; d < dim; ++d)
-          if (d != normal)
-            {
-              place[d] = box.first[d] + (rest % samples + 0.5) / samples *
+        samples[d] = d == normal ?
+                       1 :
+                       std::clamp(std::ceil(2 * (box.second[d] - box.first[d]) /
+                                            grid.finest_edge(d)),
+                                  16.,
+                                  1024.);
+        count *= samples[d];
+      }
+    for (std::size_t i = 0; i < count; ++i)
+      {
+        std::size_t rest = i;
+        for (unsigned int d = 0; d < dim; ++d)
+          {
+            if (d != normal)
+              place[d] = box.first[d] + (rest % samples[d] + 0.5) / samples[d] *
                                           (box.second[d] - box.first[d]);
-              rest /= samples;
-            }
+            rest /= samples[d];
+          }
         if (body.shape->contains(place))
           return true;
       }

@@ -85,7 +85,8 @@ namespace limber
                                           " with " + std::to_string(dim) +
                                           " components",
                                         for_each_direction(dim, "0", "; ")),
-                       "Force per mass b beside gravity, m/s^2.");
+                       "Force per mass b beside gravity, m/s^2; a constant one "
+                       "counts as part of gravity.");
     parameters.declare("Load factor",
                        "auto",
                        admissible::text("formula of t, or auto", "t / 2"),
@@ -116,7 +117,11 @@ namespace limber
                                                    dim,
                                                    read_constants(section),
                                                    corners(problem.grid));
-    if (!formula.is_zero())
+    // A constant force is gravity: liquids at rest under it need the same
+    // corrections (HydrostaticLoad).
+    if (formula.is_uniform() && !asks_for_time(section.text("Body force")))
+      problem.loads.gravity += formula.vector({}, 0);
+    else if (!formula.is_zero())
       problem.loads.body_force = formula;
     if (section.text("Load factor") == "auto")
       return;

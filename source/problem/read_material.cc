@@ -228,6 +228,37 @@ namespace limber
 
 
 
+  namespace
+  {
+    /** Notes a strength fitted to plane strain in three dimensions, where soil
+     * is mostly compressed along one axis: it is weaker there, by the slope
+     * m = sqrt(3) sin(phi) of q over p. */
+    template <int dim>
+    void
+    note_fit_to_plane_strain(const LawDescription &law,
+                             const Section        &own,
+                             const Body<dim>      &body,
+                             Problem<dim>         &problem)
+    {
+      if (dim == 2 || law.name != "drucker prager" ||
+          own.text("Fit") != "plane strain")
+        return;
+      const double phi = own.number("Friction angle"),
+                   m = std::sqrt(3) * std::sin(phi * dealii::numbers::PI / 180),
+                   angle =
+                     std::asin(3 * m / (6 + m)) * 180 / dealii::numbers::PI;
+      if (phi > 0)
+        problem.notes.push_back(
+          "Body " + in_quotes(body.name) + ": fitted to plane strain, " +
+          brief(phi) + " degrees of friction are " +
+          brief(std::round(10 * angle) / 10) +
+          " in triaxial compression. Usually 'Drucker prager/Fit = triaxial "
+          "compression' is meant in three dimensions.");
+    }
+  } // namespace
+
+
+
   template <int dim>
   void
   read_material(const Section &section, Body<dim> &body, Problem<dim> &problem)
@@ -246,6 +277,7 @@ namespace limber
                        " of body " + in_quotes(body.name) + " " + objection +
                        ".");
     note_lack_of_tension(law, body, problem);
+    note_fit_to_plane_strain(law, own, body, problem);
   }
 
 

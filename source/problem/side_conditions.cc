@@ -48,7 +48,10 @@ namespace limber
          "separating, with Coulomb friction"},
         {"velocity",
          SideKind{Held::all, Detail::velocity},
-         "prescribed by a formula"}};
+         "prescribed by a formula"},
+        {"normal velocity",
+         SideKind{Held::normal, Detail::velocity},
+         "that through the side is prescribed by a formula, as of a smooth platen"}};
       return words;
     }
   } // namespace
@@ -97,12 +100,15 @@ namespace limber
           admissible::text("formula of " + variable_names(dim) + " with " +
                              std::to_string(dim) + " components, or empty",
                            for_each_direction(dim, "0", "; ")),
-          "Velocity of the side, m/s, for 'velocity'.");
+          "Velocity of the side, m/s, for 'velocity' and 'normal velocity'.");
         parameters.only_with("Friction coefficient",
                              {"friction"},
                              side,
                              around);
-        parameters.only_with("Velocity", {"velocity"}, side, around);
+        parameters.only_with("Velocity",
+                             {"velocity", "normal velocity"},
+                             side,
+                             around);
         declare_constants(parameters);
         parameters.leave_subsection();
       }
@@ -129,6 +135,33 @@ namespace limber
                          "Add 'set " +
                          entry + " = " + example + "' in section 'Boundaries/" +
                          "Side " + side + "'.");
+    }
+
+
+
+    /** Throws InputError where a side with 'normal velocity' is given a
+     * velocity along itself; looked for at some places and times. */
+    template <int dim>
+    void
+    refuse_velocity_along(const unsigned int  side,
+                          const Section      &boundaries,
+                          const Section      &details,
+                          const Problem<dim> &problem)
+    {
+      const Formula<dim> &velocity = problem.sides[side].velocity;
+      for (const auto &place : places_in_side(side, problem.grid))
+        for (const double share : {0., 0.37, 1.})
+          for (unsigned int d = 0; d < dim; ++d)
+            if (const double time = share * problem.end_time;
+                d != side / 2 && velocity.is_finite(place, time) &&
+                velocity.value(place, time, d) != 0)
+              throw InputError(
+                "The velocity " + in_quotes(details.text("Velocity")) + " in " +
+                details.where("Velocity") +
+                " has a component along the side, where 'normal velocity' "
+                "prescribes none. Usually components are interchanged. Set it "
+                "to 0, or " +
+                boundaries.where(side_names(dim)[side]) + " to 'velocity'.");
     }
   } // namespace
 
@@ -164,6 +197,8 @@ namespace limber
                                               dim,
                                               read_constants(details),
                                               corners(problem.grid));
+            if (kind.held == HeldComponents::normal)
+              refuse_velocity_along(s, section, details, problem);
           }
       }
   }

@@ -5,6 +5,7 @@
 #include <limber/interpolation/basis.h>
 #include <limber/materials/law_list.h>
 #include <limber/points/seeding.h>
+#include <limber/problem/farthest_place.h>
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/initial_state.h>
 #include <limber/simulation/set_up.h>
@@ -175,11 +176,84 @@ namespace limber
 
 
 
+    /** Whether a place is in a side of the box that holds material, behind
+     * which it as good as continues. */
+    template <int dim>
+    bool
+    is_in_held_side(const Problem<dim>       &problem,
+                    const dealii::Point<dim> &place)
+    {
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        {
+          const unsigned int d = side / 2;
+          const double       plane =
+            side % 2 == 0 ? problem.grid.lower[d] : problem.grid.upper[d];
+          if (problem.sides[side].held != HeldComponents::none &&
+              std::abs(place[d] - plane) < 1e-6 * problem.grid.edge(d))
+            return true;
+        }
+      return false;
+    }
+
+
+
+    /** Where a place is below the surface of a shape. */
+    struct Depth
+    {
+      double value;  // m
+      double normal; // largest component of the normal of the surface
+    };
+
+
+
+    /**
+     * The depth below the surface outside of held sides, which are the nearest
+     * here: by rays along the axes. Of lengths l they see a plane with a normal
+     * proportional to 1 / l at the depth (sum of 1 / l^2)^(-1/2); but one in a
+     * corner sees two planes, and a ray along that normal is longer.
+     */
+    template <int dim>
+    Depth
+    depth_beside_sides(const Problem<dim>       &problem,
+                       const Shape<dim>         &shape,
+                       const dealii::Point<dim> &place,
+                       const double              stride)
+    {
+      dealii::Tensor<1, dim> normal;
+      Depth                  result{1e300, 1};
+      for (int d = 0; d < dim; ++d)
+        for (const double sign : {-1., 1.})
+          {
+            dealii::Tensor<1, dim> along;
+            along[d]            = sign;
+            const double length = way_out(shape, place, along, stride);
+            if (is_in_held_side<dim>(problem, place + length * along))
+              continue;
+            result.value = std::min(result.value, length);
+            if (1 > std::abs(normal[d]) * length)
+              normal[d] = sign / length;
+          }
+      if (!(normal.norm() > 0))
+        return result;
+      normal /= normal.norm();
+      const double length = way_out(shape, place, normal, stride);
+      if (length < result.value)
+        {
+          result = {length, 0};
+          for (int d = 0; d < dim; ++d)
+            result.normal = std::max(result.normal, std::abs(normal[d]));
+        }
+      return result;
+    }
+
+
+
     // Depth below the surface of points that are the last in a row of their
     // lattice: so far their material reaches.
     template <int dim>
     void
-    set_reach(const Shape<dim>                                        &shape,
+    set_reach(const Problem<dim>                                      &problem,
+              const Shape<dim>                                        &shape,
               const std::function<double(const dealii::Point<dim> &)> &density,
               MaterialPoints<dim>                                     &points)
     {
@@ -199,12 +273,15 @@ namespace limber
               view.stretch[k][p] = k < dim ? 1 : 0;
           if (const auto surface = shape.signed_distance(place))
             {
-              double along_row = 0;
+              Depth depth{-surface->value, 0};
               for (int d = 0; d < dim; ++d)
-                along_row = std::max(along_row, std::abs(surface->normal[d]));
-              const double depth = -surface->value;
-              if (depth > 0 && depth < 2 * half_edge * along_row)
-                view.reach[p] = depth;
+                depth.normal =
+                  std::max(depth.normal, std::abs(surface->normal[d]));
+              if (is_in_held_side<dim>(problem,
+                                       place + depth.value * surface->normal))
+                depth = depth_beside_sides(problem, shape, place, half_edge);
+              if (depth.value > 0 && depth.value < 2 * half_edge * depth.normal)
+                view.reach[p] = depth.value;
             }
         }
     }
@@ -257,7 +334,7 @@ namespace limber
       };
       seed<dim>(body.description, grid, density, body.points);
       set_initial_state(initial, body);
-      set_reach<dim>(*body.description.shape, density, body.points);
+      set_reach<dim>(problem, *body.description.shape, density, body.points);
       set_edges<dim>(problem.grid, body.description, density, body.points);
 
       if (body.points.n_global() == 0)

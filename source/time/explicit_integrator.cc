@@ -134,6 +134,7 @@ namespace limber
   ExplicitIntegrator<dim>::reinit()
   {
     parts.nodes.reinit();
+    keeps_velocity = false;
     sweeps.reinit();
     if (full_mass)
       full_mass->reinit();

@@ -17,11 +17,17 @@ namespace limber
   void
   ExplicitIntegrator<dim>::clear()
   {
-    if (unstrained > 0) // strain is deferred: other slots are still needed
+    if (unstrained > 0 || keeps_velocity) // other slots are still needed
       for (const std::uint32_t node : parts.nodes.active_nodes())
-        std::fill_n(parts.nodes.record(node) + Layout::force, dim, 0.);
+        {
+          double *const record = parts.nodes.record(node);
+          if (shows_velocity)
+            std::copy_n(record + Layout::force, dim, record + Layout::momentum);
+          std::fill_n(record + Layout::force, dim, 0.);
+        }
     else
       parts.nodes.clear();
+    shows_velocity = false;
     extremes.speed_squared = extremes.wave_squared = extremes.displacement = 0;
     history_time = step;
     if (full_mass)
@@ -481,7 +487,8 @@ namespace limber
 
 
 
-  // For output of nodal velocities: their slot holds momenta in a leapfrog.
+  // For output of nodal velocities: their slot holds momenta in a leapfrog,
+  // which wait in that of forces until clear().
   template <int dim>
   void
   ExplicitIntegrator<dim>::show_velocity()
@@ -489,10 +496,12 @@ namespace limber
     for (const std::uint32_t node : parts.nodes.active_nodes())
       {
         double *const record = parts.nodes.record(node);
+        std::copy_n(record + Layout::momentum, dim, record + Layout::force);
         std::copy_n(record + Layout::strain_velocity,
                     dim,
                     record + Layout::velocity);
       }
+    shows_velocity = true;
   }
 
 

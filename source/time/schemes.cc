@@ -115,7 +115,7 @@ namespace limber
   void
   ExplicitIntegrator<dim>::leapfrog(const double ahead)
   {
-    if (!(unstrained > 0))
+    if (!keeps_velocity)
       {
         p2g_momentum();
         form_velocity_before();
@@ -129,7 +129,8 @@ namespace limber
     g2p_and_remap();
     account_loads(Layout::strain_velocity);
     interpolate_hanging();
-    unstrained = step - ahead;
+    unstrained     = step - ahead;
+    keeps_velocity = true;
   }
 
 

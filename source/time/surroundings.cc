@@ -62,20 +62,23 @@ namespace limber
 
 
 
-  // Read from a corner of the face there that does not hang; one does not.
+  // Read from the corners of the face there that do not hang; one does not.
+  // Each of several smaller neighbours touches one of them: any counts.
   template <int dim>
   bool
   Surroundings<dim>::has_neighbour(const std::uint32_t cell,
                                    const unsigned int  direction,
                                    const unsigned int  end) const
   {
-    unsigned int a = end << direction;
-    for (unsigned int c = 0; c < n_corners && hangs(node_of(cell, a)); ++c)
-      if ((c >> direction & 1) == end)
-        a = c;
-    const std::uint32_t node = node_of(cell, a);
-    const unsigned int  mate = a ^ 1u << direction;
-    return static_cast<unsigned int>(holding[node]) >> mate & 1;
+    for (unsigned int a = 0; a < n_corners; ++a)
+      if ((a >> direction & 1) == end)
+        if (const std::uint32_t node = node_of(cell, a); !hangs(node))
+          {
+            const unsigned int mate = a ^ 1u << direction;
+            if (static_cast<unsigned int>(holding[node]) >> mate & 1)
+              return true;
+          }
+    return false;
   }
 
 

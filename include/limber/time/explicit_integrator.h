@@ -274,9 +274,14 @@ namespace limber
 
     // In the initial frame: time by which strain and stress lag behind, s.
     // While it is positive, nodes hold the velocity that is going to strain the
-    // points, and with leapfrog() the momentum mapped for the next step.
+    // points.
     double unstrained       = 0;
     bool   stress_is_behind = false;
+    // Whether nodes hold, from leapfrog(), the re-mapped velocity of the step
+    // before and the momentum mapped for the next, also after synchronise():
+    // whether anybody has looked changes nothing.
+    bool keeps_velocity = false;
+    bool shows_velocity = false; // for output, see show_velocity()
 
     // Of the present state, over all ranks
     double wave_speed  = 0; // m/s

@@ -86,6 +86,37 @@ TEST(Leapfrog, LookingChangesNothing)
 
 
 
+// Contact constrains the velocity that is kept from one step to the next.
+TEST(Leapfrog, LookingAtAnImpactChangesNothing)
+{
+  for (const std::string order : {"musl", "usavg"})
+    {
+      SCOPED_TRACE(order);
+      auto variant = settings("linear", order);
+      variant.insert(variant.end(),
+                     {"Boundaries/left=separating",
+                      "Body block/Box/Lower corner=0.1, 0",
+                      "Body block/Initial velocity=-0.2; 0.03*x"});
+      SceneRun<2> looked_at(thrown_block, variant);
+      SceneRun<2> left_alone(thrown_block, variant);
+      ASSERT_TRUE(looked_at.problem.sides[0].meets_surfaces);
+      constexpr unsigned int n = 120;
+      for (unsigned int k = 0; k < n; ++k)
+        looked_at.advance(0.05);
+      left_alone.advance(0.05, n);
+      EXPECT_LT(distance(looked_at.positions(), left_alone.positions()), 1e-12);
+      const auto E = looked_at.totals(), F = left_alone.totals();
+      EXPECT_GT(E.side_impulse[0][0], 0.1);
+      EXPECT_NEAR(E.all.kinetic_energy, F.all.kinetic_energy, 1e-12);
+      EXPECT_NEAR(E.all.strain_energy, F.all.strain_energy, 1e-12);
+      EXPECT_NEAR(E.contact_loss, F.contact_loss, 1e-12);
+      EXPECT_NEAR(E.energy_drift, F.energy_drift, 1e-12);
+      EXPECT_LT(std::abs(E.energy_drift), 0.02);
+    }
+}
+
+
+
 TEST(Leapfrog, BothEndsAreOfSecondOrderInTime)
 {
   for (const std::string kernel : {"linear", "quadratic", "cubic"})
