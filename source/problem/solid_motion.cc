@@ -159,7 +159,8 @@ namespace limber
               continue;
             }
           const double lag = lag_per_turn(body, problem.grid);
-          if (lag > noted_lag && !is_held(body, problem))
+          if (problem.grid.kernel == KernelKind::linear && lag > noted_lag &&
+              !is_held(body, problem))
             problem.notes.push_back(
               what + ", and falls behind by about " + brief(std::round(lag)) +
               " degrees in each, as nodes carry the "

@@ -27,7 +27,7 @@ namespace limber
         }
     else
       parts.nodes.clear();
-    shows_velocity = false;
+    shows_velocity         = false;
     extremes.speed_squared = extremes.wave_squared = extremes.displacement = 0;
     history_time = step;
     if (full_mass)

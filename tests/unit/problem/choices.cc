@@ -717,6 +717,29 @@ TEST(Choices, RotationInTheCurrentFrameIsTold)
 
 
 
+// In the initial frame with linear functions it turns too slowly, the less so
+// the smaller the cells.
+TEST(Choices, LagOfASpinIsTold)
+{
+  const auto told = [](std::vector<std::string> changes) {
+    for (const char *const change :
+         {"End time=1",
+          "Body block/Frame=initial",
+          "Body block/Initial velocity=7 - pi*y; pi*x"})
+      changes.emplace_back(change);
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("falls behind by about") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told({"Grid/Cells=8, 8"}));
+  EXPECT_FALSE(told({"Grid/Cells=200, 200"}));
+  EXPECT_FALSE(told({"Grid/Cells=8, 8", "Method/Transfer=aflip"}));
+  EXPECT_FALSE(told({"Grid/Cells=8, 8", "Method/Kernel=quadratic"}));
+}
+
+
+
 // The largest of blocks at any place, as computed, are 0.33 and 0.24 with GIMP
 // and 0.40 with splines (doc/theory/kernels.md).
 TEST(Choices, CourantNumberIsOneThatTheFilterHolds)
