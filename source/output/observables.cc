@@ -361,8 +361,9 @@ namespace limber
                 }
           }
       }
-    for (RegionSums<dim> &sum : sums)
-      sum.sum_over_ranks(state.grid.communicator);
+    for (unsigned int i = 0; i < sums.size(); ++i)
+      if (is_region(problem.observables[i].kind->looks_at))
+        sums[i].sum_over_ranks(state.grid.communicator);
     return sums;
   }
 

@@ -119,7 +119,7 @@ namespace limber
     archive &state.wave_speed &state.point_speed &state.displacement &state
       .largest_mass &state.steps_since_filter &state.step &state
       .way_since_shifting &state.largest_force &state.face_pieces &state
-      .filtered_nodes;
+      .filtered_nodes &state.kept_nodes;
   }
 
 
@@ -209,6 +209,13 @@ namespace limber
       look_at(const FilteredNode<dim> &value)
       {
         const_cast<FilteredNode<dim> &>(value).serialize(*this, 0);
+      }
+
+      template <int dim>
+      void
+      look_at(const KeptNode<dim> &value)
+      {
+        const_cast<KeptNode<dim> &>(value).serialize(*this, 0);
       }
 
       template <class T>

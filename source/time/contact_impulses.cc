@@ -443,6 +443,50 @@ namespace limber
                            Layout::increment);
         account(loss, place, {}, place.held, 0.5);
       }
+    for (const Action &action : former_actions)
+      {
+        const Vector increase =
+          vector_in<dim>(nodes.record(action.node) + Layout::increment);
+        loss.across += action.across * increase;
+        loss.along += action.along * increase;
+      }
+    former_actions.clear();
+  }
+
+
+
+  // By parts of increase in account_former().
+  template <int dim>
+  std::vector<typename ContactImpulses<dim>::Action>
+  ContactImpulses<dim>::actions_to_come() const
+  {
+    std::vector<Action> result;
+    if (!any() || at_nodes)
+      return result;
+    for (std::size_t p = 0; p < places.size(); ++p)
+      if (const Place &place = places[p]; place.is_own)
+        {
+          const Vector across = place.sticks ?
+                                  place.held :
+                                  (place.held * place.normal) * place.normal;
+          for (std::size_t k = shares.begin[p]; k < shares.begin[p + 1]; ++k)
+            {
+              const double half = 0.5 * shares.all[k].value;
+              result.push_back({seen[shares.all[k].node].number,
+                                half * across,
+                                half * (place.held - across)});
+            }
+        }
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::restore(std::vector<Action> &&actions)
+  {
+    former_actions = std::move(actions);
   }
 
 

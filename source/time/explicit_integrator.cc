@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/records_of_ranks.h>
+#include <limber/grid/node_places.h>
 #include <limber/time/explicit_integrator.h>
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 namespace limber
 {
@@ -332,7 +335,72 @@ namespace limber
             loads.pieces(),
             0,
             full_mass ? full_mass->filtered_nodes() :
-                        std::vector<FilteredNode<dim>>()};
+                        std::vector<FilteredNode<dim>>(),
+            nodes_to_keep()};
+  }
+
+
+
+  // With contact; without it the next step finds the same from the points.
+  template <int dim>
+  std::vector<KeptNode<dim>>
+  ExplicitIntegrator<dim>::nodes_to_keep() const
+  {
+    std::vector<KeptNode<dim>> own, result;
+    if (!keeps_velocity || !obstacles || !obstacles->any())
+      return result;
+    const std::vector<std::uint64_t> places = places_of_nodes(parts.grid);
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      if (parts.nodes.owns(node))
+        {
+          KeptNode<dim> kept;
+          kept.place    = places[node];
+          kept.is_owned = true;
+          std::copy_n(parts.nodes.record(node) + Layout::strain_velocity,
+                      dim,
+                      kept.velocity.begin_raw());
+          own.push_back(kept);
+        }
+    for (const auto &action : obstacles->actions_to_come())
+      {
+        KeptNode<dim> kept;
+        kept.place  = places[action.node];
+        kept.across = action.across;
+        kept.along  = action.along;
+        own.push_back(kept);
+      }
+    for (const auto &of_rank :
+         gather_records(own, parts.grid.communicator, true))
+      result.insert(result.end(), of_rank.begin(), of_rank.end());
+    return result;
+  }
+
+
+
+  template <int dim>
+  void
+  ExplicitIntegrator<dim>::restore_kept_nodes()
+  {
+    const std::vector<std::uint64_t> places = places_of_nodes(parts.grid);
+    std::unordered_map<std::uint64_t, std::uint32_t> node_at;
+    for (std::uint32_t node = 0; node < places.size(); ++node)
+      if (places[node] != no_place)
+        node_at.emplace(places[node], node);
+    std::vector<typename ObstacleContact<dim>::Action> actions;
+    for (const KeptNode<dim> &kept : kept_nodes)
+      if (const auto found = node_at.find(kept.place); found != node_at.end())
+        {
+          if (kept.is_owned)
+            std::copy_n(kept.velocity.begin_raw(),
+                        dim,
+                        parts.nodes.record(found->second) +
+                          Layout::strain_velocity);
+          else if (parts.nodes.owns(found->second))
+            actions.push_back({found->second, kept.across, kept.along});
+        }
+    if (obstacles)
+      obstacles->restore(std::move(actions));
+    kept_nodes.clear();
   }
 
 
@@ -352,6 +420,7 @@ namespace limber
     stress_is_behind = false;
     loads.restore(former.face_pieces);
     reinit();
+    kept_nodes = former.kept_nodes;
     if (full_mass)
       full_mass->restore(former.filtered_nodes);
   }

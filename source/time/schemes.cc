@@ -118,7 +118,10 @@ namespace limber
     if (!keeps_velocity)
       {
         p2g_momentum();
-        form_velocity_before();
+        if (kept_nodes.empty())
+          form_velocity_before();
+        else
+          restore_kept_nodes();
         interpolate_hanging();
       }
     strain_and_give_force(unstrained + ahead);

@@ -105,6 +105,23 @@ namespace limber
     void
     clear();
 
+    /** What the places of a step will account for at a node in the next one,
+     * with leapfrogs: see KeptNode. */
+    struct Action
+    {
+      std::uint32_t node;
+      Vector        across, along;
+    };
+
+    /** Those of nodes that this rank knows, to be summed over ranks; several
+     * for a node. */
+    std::vector<Action>
+    actions_to_come() const;
+
+    /** Restore them at nodes of this rank, from a checkpoint. */
+    void
+    restore(std::vector<Action> &&actions);
+
     /** The next place; its nodes follow by add_share(). */
     Place &
     add_place();
@@ -506,6 +523,8 @@ namespace limber
     std::vector<Place> former_places;
     PlaceShares        former_shares;
     std::vector<Node>  former_seen;
+    // The same from a checkpoint
+    std::vector<Action> former_actions;
   };
 } // namespace limber
 

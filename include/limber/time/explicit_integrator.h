@@ -185,6 +185,10 @@ namespace limber
     form_velocity(unsigned int momentum);
     void
     form_velocity_before();
+    std::vector<KeptNode<dim>>
+    nodes_to_keep() const;
+    void
+    restore_kept_nodes();
     void
     form_velocity_after();
     void
@@ -281,7 +285,8 @@ namespace limber
     // before and the momentum mapped for the next, also after synchronise():
     // whether anybody has looked changes nothing.
     bool keeps_velocity = false;
-    bool shows_velocity = false; // for output, see show_velocity()
+    bool shows_velocity = false;           // for output, see show_velocity()
+    std::vector<KeptNode<dim>> kept_nodes; // of a checkpoint, for the next step
 
     // Of the present state, over all ranks
     double wave_speed  = 0; // m/s

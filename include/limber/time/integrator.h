@@ -4,6 +4,7 @@
 
 #include <limber/state/material_body.h>
 #include <limber/time/filtered_node.h>
+#include <limber/time/kept_node.h>
 #include <limber/time/loads.h>
 
 #include <memory>
@@ -41,6 +42,7 @@ namespace limber
     typename ExternalLoads<dim>::Pieces face_pieces;
     double largest_force = 0; // so far, of steps in equilibrium, N
     std::vector<FilteredNode<dim>> filtered_nodes;
+    std::vector<KeptNode<dim>>     kept_nodes;
   };
 
 

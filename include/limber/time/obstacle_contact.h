@@ -88,6 +88,22 @@ namespace limber
       return impulses.any();
     }
 
+    /** What a step leaves to be accounted for in the next, see
+     * ContactImpulses. */
+    using Action = typename ContactImpulses<dim>::Action;
+
+    std::vector<Action>
+    actions_to_come() const
+    {
+      return impulses.actions_to_come();
+    }
+
+    void
+    restore(std::vector<Action> &&actions)
+    {
+      impulses.restore(std::move(actions));
+    }
+
     /**
      * Impose the contacts on the velocity at @p slot as they are going to be on
      * the new one, that is (p + dt f) / m + dt g, with the force in the
