@@ -118,8 +118,8 @@ namespace limber
   {
     archive &state.wave_speed &state.point_speed &state.displacement &state
       .largest_mass &state.steps_since_filter &state.step &state
-      .way_since_shifting &state.largest_force &state.face_pieces &state
-      .filtered_nodes &state.kept_nodes;
+      .way_since_shifting &state.largest_force &state.compliance &state
+      .face_pieces &state.filtered_nodes &state.kept_nodes;
   }
 
 

@@ -453,7 +453,7 @@ namespace limber
             approach += q.weight *
                         ((p.velocity - other[q.candidate].velocity) * p.normal);
           }
-        if (sum < 0.25)
+        if (sum < 0.25) // p is past the end of the other body
           continue;
         gap /= sum;
         aside /= sum;

@@ -334,6 +334,7 @@ namespace limber
             shifting.way_since(),
             loads.pieces(),
             0,
+            0,
             full_mass ? full_mass->filtered_nodes() :
                         std::vector<FilteredNode<dim>>(),
             nodes_to_keep()};

@@ -22,6 +22,12 @@ namespace limber
 
 
 
+    // Growth of the compliance since the first step from which on the load is
+    // said to be the limit load.
+    constexpr double collapsing = 10;
+
+
+
     double
     size_of(const std::vector<double> &forces)
     {
@@ -93,6 +99,7 @@ namespace limber
     result.displacement  = extremes.displacement;
     result.step          = next_step;
     result.largest_force = largest_force;
+    result.compliance    = first_compliance;
     result.face_pieces   = loads.pieces();
     return result;
   }
@@ -107,6 +114,7 @@ namespace limber
     extremes.displacement  = former.displacement;
     next_step              = std::min(longest, former.step);
     largest_force          = former.largest_force;
+    first_compliance       = former.compliance;
     loads.restore(former.face_pieces);
     reinit();
   }
@@ -131,6 +139,14 @@ namespace limber
   std::string
   NewtonIntegrator<dim>::warning()
   {
+    if (collapses && !told_of_collapse)
+      {
+        told_of_collapse = true;
+        return "loads begin to move the material ten times as far, for the "
+               "same increase, as at first. Usually it collapses or buckles "
+               "(limit load). Take the load from the rows around; what "
+               "follows depends on 'Grid/Cells'.";
+      }
     if (warned || equations.failure_of_iterations().empty())
       return "";
     warned = true;
@@ -314,6 +330,30 @@ namespace limber
 
 
 
+  // Displacement along an increase of the loads, over that: of the whole scene.
+  // Ten times that of the first step is a failure, plastic or by buckling, also
+  // if Newton's method goes on to find places of equilibrium, as surfaces that
+  // sink are held up anew.
+  template <int dim>
+  void
+  NewtonIntegrator<dim>::look_at_compliance(const Values &increase,
+                                            const Values &displacement)
+  {
+    const double size = size_of(increase);
+    if (!(size > 1e-6 * largest_force))
+      return; // constant loads: sides move
+    const double compliance = std::inner_product(increase.begin(),
+                                                 increase.end(),
+                                                 displacement.begin(),
+                                                 0.) /
+                              (size * size);
+    if (first_compliance == 0)
+      first_compliance = compliance;
+    collapses = collapses || compliance > collapsing * first_compliance;
+  }
+
+
+
   // Leaves points and ledger as they are where it returns false.
   template <int dim>
   bool
@@ -376,6 +416,14 @@ namespace limber
       }
     if (!stays_with_ranks(displacement))
       return false;
+    if (!in_motion)
+      {
+        Values increase(equations.size());
+        for (std::size_t k = 0; k < equations.size(); ++k)
+          increase[k] = question.external[k] + equations.follower_forces()[k] -
+                        former_loads[k] - former_followers[k];
+        look_at_compliance(increase, displacement);
+      }
 
     // Follower loads are known now; to the account they are loads like others,
     // and the forces of both ends count alike.

@@ -41,6 +41,7 @@ namespace limber
     double                              way_since_shifting = 0; // cells
     typename ExternalLoads<dim>::Pieces face_pieces;
     double largest_force = 0; // so far, of steps in equilibrium, N
+    double compliance    = 0; // of the first of these, m/N
     std::vector<FilteredNode<dim>> filtered_nodes;
     std::vector<KeptNode<dim>>     kept_nodes;
   };

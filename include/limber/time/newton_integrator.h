@@ -104,6 +104,8 @@ namespace limber
     try_step(double time, double step);
     bool
     stays_with_ranks(const Values &displacement);
+    void
+    look_at_compliance(const Values &increase, const Values &displacement);
     Values
     loads_at(double time, Values *given);
     double
@@ -156,6 +158,9 @@ namespace limber
     unsigned long steps = 0, iterations = 0, halvings = 0;
     unsigned long most_iterations = 0;
     bool          warned          = false; // that iterations have failed
+
+    double first_compliance = 0; // of the loads, m/N
+    bool   collapses = false, told_of_collapse = false;
   };
 } // namespace limber
 

@@ -559,6 +559,53 @@ TEST(NewtonSteps, SoftBodiesAreAsSoftBesideStiffOnes)
 
 
 
+// A bar that yields at half of the load: hardening goes on to bear it, but it
+// is fifty times as soft.
+TEST(NewtonSteps, CollapseIsTold)
+{
+  SceneRun<2> run(R"(
+    set End time = 1
+    set Bodies = bar
+    subsection Body bar
+      subsection Box
+        set Upper corner = 4, 2
+      end
+      set Material = j2
+      subsection J2
+        set Young's modulus = 1e6
+        set Poisson's ratio = 0.3
+        set Yield stress = 500
+        set Hardening modulus = 2e4
+      end
+    end
+    subsection Grid
+      set Upper corner = 6, 3
+      set Cells = 6, 3
+    end
+    subsection Boundaries
+      set right = free
+      set top = free
+    end
+    subsection Loads
+      set Face loads = pull
+      subsection Face load pull
+        set Body = bar
+        set Face = right
+        set Traction = 1000; 0
+      end
+    end
+    subsection Method
+      set Time integration = quasi-static
+    end)");
+  run.advance(0.1, 4);
+  EXPECT_EQ(run.integrator.warning(), "");
+  run.advance(0.1, 4);
+  EXPECT_NE(run.integrator.warning().find("limit load"), std::string::npos);
+  EXPECT_EQ(run.integrator.warning(), "");
+}
+
+
+
 // A body that nothing holds has no place of equilibrium, and nothing has moved.
 TEST(NewtonSteps, FreeMotionIsNamed)
 {
