@@ -455,7 +455,8 @@ namespace limber
 
 
 
-  // By parts of increase in account_former().
+  // What account_former() sums up for a place, split by the nodes that its
+  // increase is a sum over.
   template <int dim>
   std::vector<typename ContactImpulses<dim>::Action>
   ContactImpulses<dim>::actions_to_come() const
