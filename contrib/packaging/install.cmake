@@ -16,7 +16,7 @@ install(DIRECTORY contrib/plot/ DESTINATION ${CMAKE_INSTALL_DATADIR}/limber/plot
   FILES_MATCHING PATTERN "*.py" PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY prm/ DESTINATION ${CMAKE_INSTALL_DATADIR}/limber/prm
   FILES_MATCHING PATTERN "*.prm" PATTERN "README.md"
-  PATTERN "*.stl" PATTERN "*.pgm" PATTERN "*.msh")
+  PATTERN "*.stl" PATTERN "*.pgm" PATTERN "*.png" PATTERN "*.msh")
 install(FILES contrib/packaging/limber.1
   DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES contrib/packaging/completion.bash RENAME limber

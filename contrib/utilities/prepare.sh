@@ -9,7 +9,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$root/build/${preset:=release}
 
 compilers=(g++ cmake ninja-build ccache)
-libraries=(libdeal.ii-dev libgtest-dev
+libraries=(libdeal.ii-dev libpng-dev libgtest-dev
   python3-numpy python3-matplotlib python3-h5py)
 
 # Both for mpirun in a container, and for more ranks than cores.

@@ -2,6 +2,8 @@
 #include <deal.II/base/quadrature_lib.h>
 
 #include <limber/output/observables.h>
+#include <limber/output/outermost.h>
+#include <limber/state/stretch.h>
 
 #include <algorithm>
 #include <cmath>
@@ -43,34 +45,82 @@ namespace limber
 
 
 
-    /** The largest coordinate times the sign on this rank. */
+    /**
+     * Where points end in the direction of an extreme, on this rank: the
+     * coordinate of the centre times the sign and half an edge, stretched as
+     * the material is.
+     */
     template <int dim>
-    double
-    extreme_of_body(const MaterialBody<dim>    &body,
-                    const GridDescription<dim> &grid,
-                    const Observable<dim>      &observable)
+    class EndsOfPoints
     {
-      const double         sign   = observable.positive ? 1 : -1;
-      const PointView<dim> points = body.points.view();
-      const double *const  x      = points.position[observable.axis];
-      const double *const  edge   = points.edge[observable.axis];
-      const double         half   = grid.edge(observable.axis) *
-                          depth_of_points(body.description, observable.axis);
-      const bool has_classes = body.points.has_size_classes();
-      const auto half_edge   = [&](const std::size_t p) {
-        return edge != nullptr ? 0.5 * edge[p] :
-                 has_classes     ? half / (1u << body.points.size_class(p)) :
-                                   half;
-      };
-      double largest = -std::numeric_limits<double>::infinity();
-      for (std::size_t p = 0; p < points.size; ++p)
-        {
-          const double end = sign * x[p] + half_edge(p);
-          if (end > largest && is_within(points, p, observable))
-            largest = end;
-        }
-      return largest;
-    }
+    public:
+      EndsOfPoints(const MaterialBody<dim>    &body,
+                   const GridDescription<dim> &grid,
+                   const Observable<dim>      &observable)
+        : body(body)
+        , observable(observable)
+        , points(body.points.view())
+        , half(grid.edge(observable.axis) *
+               depth_of_points(body.description, observable.axis))
+      {
+        direction[observable.axis] = 1;
+      }
+
+      /** The largest one; minus infinity if there is none. */
+      double
+      largest() const
+      {
+        // further behind the foremost one none is looked at: stretching takes
+        // longer to find than all the rest
+        constexpr double largest_stretch = 10;
+        double           result = -std::numeric_limits<double>::infinity();
+        for (std::size_t p = 0; p < points.size; ++p)
+          if (centre(p) + largest_stretch * half_edge(p) > result &&
+              is_within(points, p, observable))
+            result = std::max(result, end(p));
+        return result;
+      }
+
+      /** Append all of them, with their masses. */
+      void
+      append_to(PlacesOfMass &places) const
+      {
+        for (std::size_t p = 0; p < points.size; ++p)
+          if (is_within(points, p, observable))
+            places.emplace_back(end(p), points.mass[p]);
+      }
+
+    private:
+      double
+      centre(const std::size_t p) const
+      {
+        const double x = points.position[observable.axis][p];
+        return observable.positive ? x : -x;
+      }
+
+      double
+      half_edge(const std::size_t p) const
+      {
+        if (const double *const edge = points.edge[observable.axis])
+          return 0.5 * edge[p];
+        return body.points.has_size_classes() ?
+                 half / (1u << body.points.size_class(p)) :
+                 half;
+      }
+
+      double
+      end(const std::size_t p) const
+      {
+        return centre(p) +
+               half_edge(p) * stretch_along(body, points, p, direction);
+      }
+
+      const MaterialBody<dim> &body;
+      const Observable<dim>   &observable;
+      const PointView<dim>     points;
+      const double             half; // edge at the start, m
+      dealii::Tensor<1, dim>   direction;
+    };
 
 
 
@@ -280,8 +330,9 @@ namespace limber
 
 
 
-  // By observable: the largest coordinate in its direction, or the largest
-  // value of its variable, over all ranks.
+  // By observable: the largest coordinate in its direction, or that with a
+  // share of the mass beyond, or the largest value of its variable, over all
+  // ranks.
   template <int dim>
   std::vector<double>
   Observables<dim>::extents(const State<dim> &state) const
@@ -294,13 +345,27 @@ namespace limber
         const ObservedPart     part       = observable.kind->looks_at;
         if (part != ObservedPart::extent && part != ObservedPart::largest)
           continue;
+        PlacesOfMass places;
         for (unsigned int b = 0; b < state.bodies.size(); ++b)
           if (observable.body.empty() || b == body_index(observable.body))
-            largest[i] = std::max(
-              largest[i],
-              part == ObservedPart::extent ?
-                extreme_of_body(*state.bodies[b], problem.grid, observable) :
-                largest_variable(*state.bodies[b], observable.variable));
+            {
+              const MaterialBody<dim> &body = *state.bodies[b];
+              if (part == ObservedPart::largest)
+                largest[i] =
+                  std::max(largest[i],
+                           largest_variable(body, observable.variable));
+              else if (const EndsOfPoints<dim> ends(body,
+                                                    problem.grid,
+                                                    observable);
+                       observable.share_beyond > 0)
+                ends.append_to(places);
+              else
+                largest[i] = std::max(largest[i], ends.largest());
+            }
+        if (observable.share_beyond > 0)
+          largest[i] = outermost(std::move(places),
+                                 observable.share_beyond,
+                                 state.grid.communicator);
       }
     MPI_Allreduce(MPI_IN_PLACE,
                   largest.data(),

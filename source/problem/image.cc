@@ -104,13 +104,14 @@ namespace limber
   void
   ImageShape<dim>::declare(Parameters &parameters)
   {
-    parameters.declare("File",
-                       "",
-                       admissible::text("path of an image", "slice.pgm"),
-                       "Grey image in the format PGM (only in two dimensions), "
-                       "or raw numbers, along x first, then y, then z, from "
-                       "the lower corner. Relative to the folder of the "
-                       "scene.");
+    parameters.declare(
+      "File",
+      "",
+      admissible::text("path of an image", "slice.pgm"),
+      "Image in the format PNG or PGM (only in two dimensions), "
+      "or raw numbers, along x first, then y, then z, from "
+      "the lower corner. Relative to the folder of the "
+      "scene.");
     parameters.declare("Values",
                        "128, 255",
                        admissible::numbers(2, "128, 255"),
@@ -135,7 +136,8 @@ namespace limber
                                     false,
                                     dim == 2 ? "640, 480" : "100, 100, 80")
         .or_empty(),
-      "Of raw numbers: how many there are in each direction. Empty: PGM.");
+      "Of raw numbers: how many there are in each direction. Empty: PNG or "
+      "PGM.");
     parameters.declare("Number type",
                        "uint8",
                        admissible::one_of(raw_types()),
@@ -175,7 +177,7 @@ namespace limber
           read_raw<dim>(file, format, voxels);
         }
       else if constexpr (dim == 2)
-        read_pgm(file, voxels);
+        is_png(file) ? read_png(file, voxels) : read_pgm(file, voxels);
       else
         throw InputError("The voxels of " + file.name() +
                          " have no size: " + details.where("Size") +

@@ -76,7 +76,7 @@ namespace limber
        "m",
        Part::extent,
        {"Direction"},
-       {"Body", "Within"},
+       {"Body", "Within", "Share beyond"},
        [](O, S s) { return s.extent; }},
       {"mass within",
        "kg",

@@ -93,6 +93,12 @@ namespace limber
                          "within' are taken of, m: of the points whose "
                          "centres are in it now; for extreme coordinate: only "
                          "those count.");
+      parameters.declare("Share beyond",
+                         "",
+                         admissible::number_between(0, 1, "0.01").or_empty(),
+                         "For extreme coordinate: the share of the mass that "
+                         "lies beyond it, so that single points thrown ahead "
+                         "do not count. Empty: none.");
       parameters.declare("Observable",
                          "",
                          admissible::text("name of an observable", "tip"),
@@ -149,6 +155,7 @@ namespace limber
                                       "Location",
                                       "Direction",
                                       "Within",
+                                      "Share beyond",
                                       "Observable",
                                       "From time",
                                       "Side",
@@ -360,7 +367,9 @@ namespace limber
       read_within(section, problem.grid, observable);
       read_variable(section, problem, observable);
       read_observed_obstacle(section, problem, observable);
-      observable.unit       = observable.kind->unit;
+      observable.unit = observable.kind->unit;
+      if (!section.is_empty("Share beyond"))
+        observable.share_beyond = section.number("Share beyond");
       observable.observable = section.text("Observable");
       if (!section.is_empty("From time"))
         observable.from_time = section.number("From time");

@@ -35,10 +35,9 @@ namespace limber
         file,
         netpbm ? "is of the kind " + start +
                    ", which is black and white or in colour" :
-                 "is no PGM, which begins with P2 or P5",
-        "Usually it has another format, such as PNG. Convert it, for "
-        "instance with 'convert a.png -colorspace gray a.pgm'; raw files "
-        "need 'Size'.");
+                 "is neither PNG nor PGM, which begins with P2 or P5",
+        "Usually it has another format, such as JPEG. Convert it, for "
+        "instance with 'convert a.jpg a.png'; raw files need 'Size'.");
     }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/records_of_ranks.h>
 #include <limber/fem/solid_samples.h>
+#include <limber/output/outermost.h>
 #include <limber/output/region_sums.h>
 #include <limber/simulation/reference_observables.h>
 
@@ -160,10 +161,23 @@ namespace limber
   double
   ReferenceObservables<dim>::extreme(const Observable<dim> &observable) const
   {
-    const unsigned int axis    = observable.axis;
-    const double       sign    = observable.positive ? 1 : -1;
-    const auto        &u       = solver.motion().displacement;
-    double             largest = -std::numeric_limits<double>::infinity();
+    const unsigned int axis = observable.axis;
+    const double       sign = observable.positive ? 1 : -1;
+    const auto        &u    = solver.motion().displacement;
+    if (observable.share_beyond > 0)
+      {
+        PlacesOfMass places;
+        for (const QuadratureSample<dim> &part :
+             quadrature_samples(model, u, solver.motion().velocity))
+          if (const auto place = part.start + part.here.displacement;
+              observable.is_within(place))
+            places.emplace_back(sign * place[axis],
+                                model.element->density * part.volume);
+        return outermost(std::move(places),
+                         observable.share_beyond,
+                         model.communicator);
+      }
+    double largest = -std::numeric_limits<double>::infinity();
     model.for_each_owned_node([&](dealii::Point<dim> place, const auto &dofs) {
       for (unsigned int d = 0; d < dim; ++d)
         place[d] += u[dofs[d]];

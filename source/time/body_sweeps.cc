@@ -132,10 +132,10 @@ namespace limber
 
   template <int dim>
   void
-  BodySweeps<dim>::average_gradients(const bool remapped)
+  BodySweeps<dim>::average_gradients(const unsigned int slot)
   {
     if (dual_domain)
-      dual_domain->average_gradients(parts.nodes, remapped);
+      dual_domain->average_gradients(parts.nodes, slot);
   }
 
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/records_of_ranks.h>
 #include <limber/grid/node_vector.h>
+#include <limber/state/stretch.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
 #include <limber/time/contact_geometry.h>
-#include <limber/time/point_deformation.h>
 
 #include <algorithm>
 #include <cmath>

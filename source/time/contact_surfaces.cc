@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/grid/node_vector.h>
+#include <limber/state/stretch.h>
 #include <limber/time/cell_functions.h>
 #include <limber/time/contact.h>
-#include <limber/time/point_deformation.h>
 
 /**
  * @file Contact normals at nodes by a least-squares fit of a plane to the

@@ -149,17 +149,14 @@ namespace limber
 
   template <int dim>
   void
-  DualDomain<dim>::average_gradients(NodalFields<dim> &nodes,
-                                     const bool        remapped)
+  DualDomain<dim>::average_gradients(NodalFields<dim>  &nodes,
+                                     const unsigned int slot)
   {
     clear_stress(nodes);
     const GridView<dim> view = nodes.view();
     for (const auto &[cell, weight] : cells)
       DualDomainCell<dim>(view.cells[cell], weight)
-        .add_mean_gradients(view.nodes,
-                            remapped ? NodeLayout<dim>::remapped :
-                                       NodeLayout<dim>::velocity,
-                            records.data());
+        .add_mean_gradients(view.nodes, slot, records.data());
     sum_up(nodes, 0, n_tensor<dim>);
     divide_by_volumes(nodes);
   }

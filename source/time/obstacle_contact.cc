@@ -4,9 +4,9 @@
 #include <limber/grid/node_vector.h>
 #include <limber/interpolation/point_support.h>
 #include <limber/problem/side_contact.h>
+#include <limber/state/stretch.h>
 #include <limber/time/contact_geometry.h>
 #include <limber/time/obstacle_contact.h>
-#include <limber/time/point_deformation.h>
 #include <limber/transfer/meeting_bodies.h>
 
 #include <algorithm>

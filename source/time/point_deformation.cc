@@ -1,43 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/grid/node_vector.h>
 #include <limber/interpolation/dual_domain.h>
 #include <limber/interpolation/point_support.h>
 #include <limber/time/point_deformation.h>
 #include <limber/transfer/meeting_bodies.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace limber
 {
-  namespace
-  {
-    template <int dim>
-    dealii::Tensor<2, dim>
-    deformation_gradient(const PointView<dim> &points, const std::size_t p)
-    {
-      dealii::Tensor<2, dim> F;
-      for (int d = 0; d < dim; ++d)
-        for (int e = 0; e < dim; ++e)
-          F[d][e] = points.deformation[d * dim + e][p];
-      return F;
-    }
-
-
-
-    template <int dim>
-    dealii::SymmetricTensor<2, dim>
-    kept_stretch(const PointView<dim> &points, const std::size_t p)
-    {
-      dealii::SymmetricTensor<2, dim> b;
-      for (unsigned int k = 0; k < points.stretch.size(); ++k)
-        b.access_raw_entry(k) = points.stretch[k][p];
-      return b;
-    }
-  } // namespace
-
-
-
   template <int dim>
   dealii::Tensor<2, dim>
   pull_back(const PointView<dim> &points, const std::size_t p)
@@ -120,28 +88,6 @@ namespace limber
 
 
 
-  template <int dim>
-  double
-  stretch_along(const MaterialBody<dim>      &body,
-                const PointView<dim>         &points,
-                const std::size_t             p,
-                const dealii::Tensor<1, dim> &direction)
-  {
-    if (points.in_initial_frame())
-      return (direction * deformation_gradient(points, p)).norm();
-    if (points.keeps_stretch() && is_at_surface(points, p))
-      {
-        const double stretch =
-          std::sqrt(direction * (kept_stretch(points, p) * direction));
-        return body.description.keeps_surface ? stretch : std::min(stretch, 1.);
-      }
-    std::array<double, dim> n;
-    store_vector<dim>(direction, n.data());
-    return body.stress->stretch_along(points, p, n);
-  }
-
-
-
   template dealii::Tensor<2, 2>
   pull_back(const PointView<2> &, std::size_t);
   template dealii::Tensor<2, 3>
@@ -170,14 +116,4 @@ namespace limber
                  const MaterialBody<3> &,
                  const StressSweep &,
                  const double *);
-  template double
-  stretch_along(const MaterialBody<2> &,
-                const PointView<2> &,
-                std::size_t,
-                const dealii::Tensor<1, 2> &);
-  template double
-  stretch_along(const MaterialBody<3> &,
-                const PointView<3> &,
-                std::size_t,
-                const dealii::Tensor<1, 3> &);
 } // namespace limber

@@ -80,7 +80,9 @@ namespace limber
     move_as_strained();
     interpolate_hanging();
     // a single nodal velocity to look up, where that moves points as well
-    update_stress_and_move(step, !moves_as_strained);
+    update_stress_and_move(step,
+                           moves_as_strained ? Layout::velocity :
+                                               Layout::strain_velocity);
   }
 
 
@@ -100,7 +102,7 @@ namespace limber
     account_loads(Layout::strain_velocity);
     centre_velocity();
     interpolate_hanging();
-    update_stress_and_move(0.5 * step, true);
+    update_stress_and_move(0.5 * step, Layout::strain_velocity);
   }
 
 

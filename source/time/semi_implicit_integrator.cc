@@ -200,7 +200,7 @@ namespace limber
     const double expected = energy_to_points();
     this->g2p();
     const double weighs = correct_density();
-    this->update_stress_and_move(this->step, false);
+    this->update_stress_and_move(this->step, Layout::velocity);
     this->parts.ledger.lose_by_steps(expected - weighs - energy_of_points());
   }
 
@@ -254,7 +254,7 @@ namespace limber
       strain_by_heavy_nodes();
     this->interpolate_hanging();
     const double weighs = correct_density();
-    this->update_stress_and_move(this->step, true);
+    this->update_stress_and_move(this->step, Layout::strain_velocity);
     if (!any_solid)
       this->parts.ledger.lose_by_steps(expected - weighs - energy_of_points());
   }

@@ -198,12 +198,12 @@ namespace limber
 
   template <int dim>
   void
-  ExplicitIntegrator<dim>::update_stress_and_move(const double length,
-                                                  const bool   remapped)
+  ExplicitIntegrator<dim>::update_stress_and_move(const double       length,
+                                                  const unsigned int slot)
   {
     StressSweep what;
     what.step     = length;
-    what.remapped = remapped;
+    what.remapped = slot == Layout::strain_velocity;
     what.move     = step;
     strain(what);
   }
@@ -283,7 +283,8 @@ namespace limber
     what.square      = square_of_strain();
     what.curved =
       parts.problem.method.integration == TimeIntegration::semi_implicit;
-    sweeps.average_gradients(what.remapped);
+    sweeps.average_gradients(what.remapped ? Layout::strain_velocity :
+                                             Layout::velocity);
     loads.deform(parts.nodes, what, sweeps.mean_gradients());
     for (auto &body : parts.bodies)
       deform_surface(parts.nodes, *body, what, sweeps.mean_gradients());
@@ -314,7 +315,7 @@ namespace limber
   template void
   ExplicitIntegrator<2>::update_stress(double);
   template void
-  ExplicitIntegrator<2>::update_stress_and_move(double, bool);
+  ExplicitIntegrator<2>::update_stress_and_move(double, unsigned int);
   template void
   ExplicitIntegrator<2>::g2p_update_stress_and_move();
   template void
@@ -338,7 +339,7 @@ namespace limber
   template void
   ExplicitIntegrator<3>::update_stress(double);
   template void
-  ExplicitIntegrator<3>::update_stress_and_move(double, bool);
+  ExplicitIntegrator<3>::update_stress_and_move(double, unsigned int);
   template void
   ExplicitIntegrator<3>::g2p_update_stress_and_move();
   template void

@@ -50,6 +50,21 @@ namespace limber
 
 
 
+  /** Whether a file begins as a PNG does. */
+  bool
+  is_png(const InputFile &file);
+
+  /**
+   * An image in the format PNG, its first row at the top: the luminance of its
+   * colours, as if it lay upon white, from 0 to 255, or to 65535 where the file
+   * has 16 bits. Throws InputError where libpng cannot read it, or if it has
+   * more than 1e8 pixels.
+   */
+  void
+  read_png(const InputFile &file, Voxels<2> &voxels);
+
+
+
   /** What the bytes of a file without a header mean. */
   template <int dim>
   struct RawFormat

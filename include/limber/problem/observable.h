@@ -36,9 +36,10 @@ namespace limber
     unsigned int second_axis = 0;
     // only what is in this box, where given
     std::optional<std::pair<dealii::Point<dim>, dealii::Point<dim>>> within;
-    std::string  observable;    // column: of which other observable
-    double       from_time = 0; // column: rows before it do not count, s
-    unsigned int side      = 0; // reaction force
+    double       share_beyond = 0; // extreme: of the mass that lies beyond it
+    std::string  observable;       // column: of which other observable
+    double       from_time = 0;    // column: rows before it do not count, s
+    unsigned int side      = 0;    // reaction force
 
     bool
     is_within(const dealii::Point<dim> &place) const
@@ -114,7 +115,8 @@ namespace limber
     double                 kinetic_energy   = 0; // J
     double                 strain_energy    = 0; // J
     double                 potential_energy = 0; // of gravity, J
-    // The largest coordinate in the direction with its sign, m
+    // The largest coordinate in the direction with its sign, or that with a
+    // share of the mass beyond, m
     double extent = not_known;
     // Force of the material on the side or obstacle, N
     dealii::Tensor<1, dim> force;

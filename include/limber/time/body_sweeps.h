@@ -40,10 +40,10 @@ namespace limber
 
     /**
      * With the dual domain method, before points and loaded faces are strained:
-     * the mean gradients around nodes. Collective.
+     * the mean gradients around nodes of the velocity in @p slot. Collective.
      */
     void
-    average_gradients(bool remapped);
+    average_gradients(unsigned int slot);
 
     /** These (DualDomainLayout); null with other kernels. */
     const double *

@@ -53,11 +53,10 @@ namespace limber
     add_forces(NodalFields<dim> &nodes);
 
     /**
-     * The mean gradients around nodes of the re-mapped, or else the new,
-     * velocity of the nodes.
+     * The mean gradients around nodes of the velocity in @p slot.
      */
     void
-    average_gradients(NodalFields<dim> &nodes, bool remapped);
+    average_gradients(NodalFields<dim> &nodes, unsigned int slot);
 
   private:
     using Layout = DualDomainLayout<dim>;

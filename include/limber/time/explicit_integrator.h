@@ -144,7 +144,7 @@ namespace limber
     void
     update_stress(double length);
     void
-    update_stress_and_move(double length, bool remapped);
+    update_stress_and_move(double length, unsigned int slot);
     void
     g2p_update_stress_and_move();
     void

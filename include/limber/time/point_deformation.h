@@ -2,10 +2,8 @@
 #ifndef limber_time_point_deformation_h
 #define limber_time_point_deformation_h
 
-#include <deal.II/base/tensor.h>
-
 #include <limber/grid/nodal_fields.h>
-#include <limber/state/material_body.h>
+#include <limber/state/stretch.h>
 #include <limber/stress/stress_update.h>
 
 /** @file Deformation of the material at single points: for loads on faces, and
@@ -42,19 +40,6 @@ namespace limber
                  const MaterialBody<dim> &body,
                  const StressSweep       &what,
                  const double            *mean_gradients);
-
-  /**
-   * Stretch of the material at a point along a unit vector, between surfaces
-   * across it: sqrt(n . b . n), where b is that of the initial frame, that
-   * which the point keeps, or what its law knows. Where other points come
-   * between those of the surface, as in granular flow, it is at most 1.
-   */
-  template <int dim>
-  double
-  stretch_along(const MaterialBody<dim>      &body,
-                const PointView<dim>         &points,
-                std::size_t                   p,
-                const dealii::Tensor<1, dim> &direction);
 } // namespace limber
 
 #endif

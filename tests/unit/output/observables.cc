@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/output/observables.h>
+#include <limber/output/outermost.h>
 
 #include <gtest/gtest.h>
 #include <support/scene_run.h>
@@ -193,6 +194,76 @@ namespace limber::test
     EXPECT_NEAR(values[1], 0, 1e-14);
     EXPECT_NEAR(values[2], 0.25, 1e-14);
     EXPECT_TRUE(std::isnan(values[3]));
+  }
+
+
+
+  TEST(Observables, ExtremesAreStretchedAsTheMaterialIs)
+  {
+    SceneRun<2>    run(R"(
+      set Bodies = bar
+      subsection Body bar
+        subsection Box
+          set Lower corner = 0.25, 0
+          set Upper corner = 1, 0.5
+        end
+        set Frame = initial
+        set Material = neo hookean
+      end
+      subsection Grid
+        set Upper corner = 2, 1
+        set Cells = 8, 4
+      end
+      set Observables = high
+      subsection Observable high
+        set Type = extreme coordinate
+        set Direction = x
+      end)");
+    PointView<2>   points  = run.state().bodies[0]->points.view();
+    constexpr auto stretch = 1.5;
+    for (std::size_t p = 0; p < points.size; ++p)
+      {
+        points.position[0][p] *= stretch;
+        points.deformation[0][p] = stretch;
+      }
+    EXPECT_NEAR(
+      Observables<2>(run.state()).evaluate(run.state(), run.totals())[0],
+      1.5,
+      1e-14);
+  }
+
+
+
+  TEST(Observables, OutermostLeavesOutAShareOfTheMass)
+  {
+    PlacesOfMass places;
+    for (unsigned int i = 1; i <= 100; ++i)
+      places.emplace_back(-50 + 0.01 * i, 2);
+    places.emplace_back(1e3, 1); // thrown far ahead, half as heavy
+    const auto at = [&](const double share) {
+      return outermost(places, share, MPI_COMM_SELF);
+    };
+    EXPECT_EQ(at(0), 1e3);
+    EXPECT_NEAR(at(0.5 / 201), 1e3, 1e-8);
+    EXPECT_NEAR(at(1.5 / 201), -49, 1e-8);
+    EXPECT_NEAR(at(12.0 / 201), -49.05, 1e-8);
+    EXPECT_NEAR(at(1), -49.99, 1e-8);
+    EXPECT_TRUE(std::isnan(outermost({}, 0.1, MPI_COMM_SELF)));
+    EXPECT_NEAR(outermost({{3, 1}, {3, 2}}, 0.1, MPI_COMM_SELF), 3, 1e-14);
+  }
+
+
+
+  TEST(Observables, ExtremesLeaveOutAShareOfTheMass)
+  {
+    SampleRun<2> run(false);
+    auto         most       = observe("extreme coordinate", 0);
+    most.share_beyond       = 0.4;
+    run.problem.observables = {most};
+    // one of four columns of points lies beyond the end of the next one
+    EXPECT_NEAR(Observables<2>(run.state).evaluate(run.state, run.totals)[0],
+                0.375,
+                1e-10);
   }
 
 

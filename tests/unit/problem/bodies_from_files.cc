@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <png.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -248,6 +249,82 @@ TEST(BodiesFromFiles, ImagesStandUpright)
 
 
 
+namespace
+{
+  /** A PNG file with rows of @p width pixels, the uppermost one first. */
+  template <typename Channel>
+  std::string
+  png_of(const png_uint_32           format,
+         const unsigned int          width,
+         const std::vector<Channel> &channels)
+  {
+    png_image image{};
+    image.version = PNG_IMAGE_VERSION;
+    image.format  = format;
+    image.width   = width;
+    image.height  = channels.size() / PNG_IMAGE_SAMPLE_CHANNELS(format) / width;
+    png_alloc_size_t n = 0;
+    png_image_write_to_memory(
+      &image, nullptr, &n, 0, channels.data(), 0, nullptr);
+    std::string bytes(n, ' ');
+    EXPECT_TRUE(png_image_write_to_memory(
+      &image, bytes.data(), &n, 0, channels.data(), 0, nullptr));
+    bytes.resize(n);
+    return bytes;
+  }
+
+
+
+  /** Whether pixels of a row with an edge of 0.1 m are filled: "#." */
+  std::string
+  filled_pixels(const std::string &image, const std::string &values)
+  {
+    const auto problem =
+      read<2>(image, "image", "set Pixel edge = 0.1\nset Values = " + values);
+    std::string result;
+    for (unsigned int i = 0; i < 6; ++i)
+      result +=
+        problem.bodies[0].shape->contains(Point<2>(0.05 + 0.1 * i, 0.05)) ?
+          '#' :
+          '.';
+    return result;
+  }
+} // namespace
+
+
+
+TEST(BodiesFromFiles, PngImagesAreReadByLuminance)
+{
+  using Bytes = std::vector<png_byte>;
+  const std::string grey =
+    png_of(PNG_FORMAT_GRAY, 6, Bytes{0, 49, 50, 100, 101, 255});
+  EXPECT_EQ(filled_pixels(grey, "50, 100"), "..##..");
+  EXPECT_EQ(filled_pixels(grey, "0, 49"), "##....");
+
+  // red, green, blue, white; black that nobody sees and black half seen
+  const std::string colour =
+    png_of(PNG_FORMAT_RGBA, 6, Bytes{255, 0, 0,   255, 0,   255, 0,   255,
+                                     0,   0, 255, 255, 255, 255, 255, 255,
+                                     0,   0, 0,   0,   0,   0,   0,   128});
+  EXPECT_EQ(filled_pixels(colour, "54.2, 54.3"), "#.....");
+  EXPECT_EQ(filled_pixels(colour, "182.3, 182.4"), ".#....");
+  EXPECT_EQ(filled_pixels(colour, "18.4, 18.5"), "..#...");
+  EXPECT_EQ(filled_pixels(colour, "254.9, 255.1"), "...##.");
+  EXPECT_EQ(filled_pixels(colour, "126.9, 127.1"), ".....#");
+
+  // 16 bits: the writer turns linear values into those of sRGB
+  const std::string deep =
+    png_of(PNG_FORMAT_LINEAR_Y, 2, std::vector<png_uint_16>{0, 65535});
+  EXPECT_EQ(filled_pixels(deep, "65535, 65535"), ".#....");
+
+  // the first row is at the top
+  EXPECT_EQ(filled_pixels(png_of(PNG_FORMAT_GRAY, 2, Bytes{9, 0, 0, 9}),
+                          "9, 9"),
+            ".#....");
+}
+
+
+
 TEST(BodiesFromFiles, RawVoxelsOfEveryTypeAreRead)
 {
   // 3 x 2 x 2 voxels; those of -5 to 7 are filled
@@ -297,7 +374,16 @@ TEST(BodiesFromFiles, ImagesSayWhatIsWrong)
               {"no value from 50 to 60", "10 to 20", "'data'"});
   expect_said(said<2>("P6 2 1 99\nabcdef", "image", values),
               {"P6", "colour", "convert"});
-  expect_said(said<2>("\x89PNG....", "image", values), {"no PGM", "PNG"});
+  expect_said(said<2>("\xff\xd8\xff....", "image", values),
+              {"neither PNG nor PGM", "JPEG"});
+  const std::string png =
+    png_of(PNG_FORMAT_GRAY, 2, std::vector<png_byte>{10, 20});
+  expect_said(said<2>(png, "image", values), {"no value from 50 to 60"});
+  expect_said(said<2>(png.substr(0, png.size() - 20), "image", values),
+              {"PNG", "libpng", "ends too early", "cut off"});
+  std::string damaged = png;
+  damaged[20] ^= 1; // of the width
+  expect_said(said<2>(damaged, "image", values), {"libpng", "CRC"});
   expect_said(said<2>("P5 20 10 255\nabc", "image", values),
               {"20 x 10", "3 bytes", "cut off"});
   expect_said(said<2>("P2 2 2 99\n1 2 3", "image", values),

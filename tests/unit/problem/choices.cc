@@ -108,6 +108,7 @@ TEST(Choices, ObservablesAreTheSameInTwoAndThreeDimensions)
                                          "Location",
                                          "Direction",
                                          "Within",
+                                         "Share beyond",
                                          "Observable",
                                          "From time",
                                          "Side",
