@@ -88,12 +88,12 @@ namespace limber
                          "Time integration",
                          parameters.present_section());
     parameters.declare("Spectral radius at infinity",
-                       "1",
+                       "0.9",
                        admissible::number_from_to(0, 1, "0.8"),
                        "r, no unit, of implicit steps: what a step leaves of "
                        "vibrations that are much faster than it "
                        "(generalised-alpha method); 1: all, the trapezoidal "
-                       "rule.");
+                       "rule, which can create energy in large motion.");
     parameters.only_with("Spectral radius at infinity",
                          {"implicit"},
                          "Time integration",
@@ -151,13 +151,13 @@ namespace limber
                        ". Usually one of them was changed alone. Set " +
                        remedy + ".");
     };
-    if (method.spectral_radius < 1 &&
+    if (method.spectral_radius != Method().spectral_radius &&
         method.integration != TimeIntegration::implicit_steps)
       refuse("Spectral radius at infinity",
              "damps implicit steps alone, but 'Time integration' is " +
                in_quotes(section.text("Time integration")),
              "'Time integration = implicit', or 'Spectral radius at infinity "
-             "= 1'");
+             "= 0.9'");
     const std::string transfer =
       "'Transfer = " + section.text("Transfer") + "'";
     if (!filters_velocity(method.transfer))

@@ -139,7 +139,9 @@ namespace limber
     warn_of_rotation(Problem<dim> &problem)
     {
       constexpr double noted_lag = 5; // degrees per turn
-      if (problem.method.transfer != Transfer::flip)
+      // implicit steps have the consistent mass
+      if (problem.method.transfer != Transfer::flip ||
+          problem.method.integration == TimeIntegration::implicit_steps)
         return;
       for (const Body<dim> &body : problem.bodies)
         {
@@ -163,12 +165,9 @@ namespace limber
               !is_held(body, problem))
             problem.notes.push_back(
               what + ", and falls behind by about " + brief(std::round(lag)) +
-              " degrees in each, as nodes carry the "
-              "mass further out than points. " +
-              (is_solved_by_newton(problem.method.integration) ?
-                 "Set more 'Grid/Cells'; the lag falls with their square." :
-                 "'Method/Transfer = aflip' keeps up; or set more "
-                 "'Grid/Cells'."));
+              " degrees in each, as nodes carry the mass further out than "
+              "points. 'Method/Transfer = aflip' keeps up, and so do implicit "
+              "steps; or set more 'Grid/Cells'.");
         }
     }
 

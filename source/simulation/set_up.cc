@@ -149,13 +149,15 @@ namespace limber
                                             body.frame,
                                             kernel);
       PointLayout layout;
-      layout.deviator     = stress->has_deviator();
-      layout.n_history    = stress->n_history();
-      layout.volumetric   = stress->volumetric();
-      layout.affine       = is_affine(problem.method.transfer);
-      layout.acceleration = problem.method.spectral_radius < 1;
-      layout.crossings    = !body.is_liquid && body.frame == Frame::current;
-      layout.reach        = presses_at_points(problem) && !body.is_liquid;
+      layout.deviator   = stress->has_deviator();
+      layout.n_history  = stress->n_history();
+      layout.volumetric = stress->volumetric();
+      layout.affine     = is_affine(problem.method.transfer);
+      layout.acceleration =
+        problem.method.integration == TimeIntegration::implicit_steps &&
+        problem.method.spectral_radius < 1;
+      layout.crossings = !body.is_liquid && body.frame == Frame::current;
+      layout.reach     = presses_at_points(problem) && !body.is_liquid;
       layout.stretch =
         layout.reach && body.is_plastic && body.frame == Frame::current;
       layout.domains       = domain_form(kernel);

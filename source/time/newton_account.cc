@@ -50,6 +50,21 @@ namespace limber
 
 
 
+  // In a step, kg m/s; zero in equilibrium.
+  template <int dim>
+  typename NewtonIntegrator<dim>::Values
+  NewtonIntegrator<dim>::gained_momentum(const Values &new_velocity) const
+  {
+    Values change = new_velocity;
+    if (!in_motion)
+      return change;
+    for (std::size_t k = 0; k < change.size(); ++k)
+      change[k] -= velocities[k];
+    return mass.times(change);
+  }
+
+
+
   // Loads and sides do work on the displacement with the mean of their forces
   // at both ends; the work of the ghost penalty is lost. So is, in equilibrium,
   // the work of residual forces at the start of the step: points that have
@@ -74,6 +89,7 @@ namespace limber
     ledger.viscous += equations.ghost_work();
     const double factor        = load_factor(time + step);
     double       between_steps = 0;
+    const Values gained        = gained_momentum(new_velocity);
     for (std::size_t k = 0; k < equations.size(); ++k)
       {
         const int    d = k % dim;
@@ -93,14 +109,13 @@ namespace limber
         double force = 0, mean = 0;
         if (in_motion)
           {
-            const double change = masses[k] * (new_velocity[k] - velocities[k]);
-            force = mean = change / step -
+            force = mean = gained[k] / step -
                            0.5 * (question.external[k] - equations.forces()[k]);
             // The difference between the velocities of the points and of the
             // side is lost as in an impact.
             ledger.viscous +=
-              change * (displacement[k] / step -
-                        0.5 * (new_velocity[k] + velocities[k]));
+              gained[k] * (displacement[k] / step -
+                           0.5 * (new_velocity[k] + velocities[k]));
           }
         else
           {
@@ -129,16 +144,16 @@ namespace limber
     if (!scheme.needs_acceleration() ||
         dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator) > 0)
       return;
-    double damped = 0;
+    double       damped = 0;
+    const Values gained = gained_momentum(new_velocity);
     for (std::size_t k = 0; k < equations.size(); ++k)
       if (!equations.is_held(k))
         {
           const double mean =
             0.5 * (question.external[k] - equations.forces()[k]);
-          const double change = masses[k] * (new_velocity[k] - velocities[k]);
           damped += mean * displacement[k] -
-                    0.5 * change * (new_velocity[k] + velocities[k]);
-          parts.ledger.load_impulse[k % dim] += change - step * mean;
+                    0.5 * gained[k] * (new_velocity[k] + velocities[k]);
+          parts.ledger.load_impulse[k % dim] += gained[k] - step * mean;
         }
     parts.ledger.viscous += damped;
     lost_in_time += damped;
@@ -150,6 +165,8 @@ namespace limber
   template double              NewtonIntegrator<dim>::load_factor(double) const; \
   template std::vector<double> NewtonIntegrator<dim>::loads_at(double,           \
                                                                Values *);        \
+  template std::vector<double> NewtonIntegrator<dim>::gained_momentum(           \
+    const Values &) const;                                                       \
   template void NewtonIntegrator<dim>::account(const StepQuestion &,             \
                                                const Values &,                   \
                                                const Values &,                   \

@@ -4,6 +4,7 @@
 #include <limber/time/averaged_volumes.h>
 #include <limber/time/newton_equations.h>
 #include <limber/time/newton_tangent.h>
+#include <limber/time/nodal_mass.h>
 
 #include <algorithm>
 #include <cmath>
@@ -245,7 +246,7 @@ namespace limber
   template <int dim>
   bool
   NewtonEquations<dim>::evaluate(const std::vector<double>       &displacement,
-                                 const std::vector<double> *const inertia,
+                                 const Inertia<dim> *const        inertia,
                                  const std::vector<double> *const former)
   {
     spread(displacement, by_node);
@@ -335,7 +336,8 @@ namespace limber
                           const double *const        block) {
       tangent->add(numbers, n_nodes, block);
     });
-    tangent->add_to_diagonal(*inertia);
+    if (inertia->factor > 0)
+      inertia->mass.add_to(*tangent, inertia->factor);
     tangent->finish();
     return true;
   }

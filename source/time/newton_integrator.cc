@@ -47,8 +47,9 @@ namespace limber
     , relocation(parts, loads)
     , equations(parts)
     , followers(parts, equations.numbered_nodes(), loads)
-    , newton(equations, parts.problem.method.newton_tolerance, clock)
-    , scheme(parts.problem.method.spectral_radius)
+    , mass(equations.numbered_nodes())
+    , newton(equations, mass, parts.problem.method.newton_tolerance, clock)
+    , scheme(in_motion ? parts.problem.method.spectral_radius : 1)
     , longest(parts.problem.method.time_step > 0 ?
                 parts.problem.method.time_step :
                 parts.problem.end_time / default_load_steps)
@@ -80,6 +81,7 @@ namespace limber
   NewtonIntegrator<dim>::reinit()
   {
     parts.nodes.reinit();
+    mass.clear();
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
     loads.reinit();
@@ -267,51 +269,60 @@ namespace limber
 
   namespace
   {
-    // View by which P2G and G2P of velocities map accelerations.
+    // Views of what P2G and G2P of velocities are to map.
     template <int dim>
     PointView<dim>
-    with_acceleration_as_velocity(PointView<dim> points)
+    with_velocity(const PointView<dim> &points)
     {
-      points.velocity = points.acceleration;
       return points;
+    }
+
+    template <int dim>
+    PointView<dim>
+    with_acceleration_as_velocity(const PointView<dim> &points)
+    {
+      PointView<dim> result = points;
+      result.velocity       = points.acceleration;
+      return result;
     }
   } // namespace
 
 
 
-  // Lumped masses, and in motion the velocities and accelerations that points
-  // bring.
+  // Masses, and in motion the velocities and accelerations that points bring.
   template <int dim>
   void
   NewtonIntegrator<dim>::gather_nodes()
   {
+    const Values momentum = gather(with_velocity<dim>);
+    velocities.assign(equations.size(), 0.);
+    accelerations.assign(equations.size(), 0.);
+    if (!in_motion)
+      return;
+    mass.update(parts, masses);
+    velocities = mass.velocity(momentum);
     if (scheme.needs_acceleration())
-      gather(true, accelerations);
-    else
-      accelerations.assign(equations.size(), 0.);
-    gather(false, velocities);
+      accelerations = mass.velocity(gather(with_acceleration_as_velocity<dim>));
   }
 
 
 
-  // P2G: mass-weighted means of velocities or accelerations at the nodes; also
-  // the lumped masses.
+  // P2G of what a view has as velocity: the momenta of the nodes, by equation;
+  // also their lumped masses.
   template <int dim>
-  void
-  NewtonIntegrator<dim>::gather(const bool of_acceleration, Values &means)
+  typename NewtonIntegrator<dim>::Values
+  NewtonIntegrator<dim>::gather(PointView<dim> (*view)(const PointView<dim> &))
   {
     parts.nodes.clear();
     P2GOptions what;
     what.force = false;
     for (const auto &body : parts.bodies)
-      points_to_grid<dim>(of_acceleration ?
-                            with_acceleration_as_velocity(body->points.view()) :
-                            body->points.view(),
+      points_to_grid<dim>(view(body->points.view()),
                           parts.nodes.view(),
                           what,
                           nullptr);
     masses.assign(equations.size(), 0.);
-    means.assign(equations.size(), 0.);
+    Values momentum(equations.size());
     parts.nodes.start_sum(Layout::mass, Layout::momentum + dim);
     parts.nodes.finish_sum();
     const NumberedNodes<dim> &nodes = equations.numbered_nodes();
@@ -320,12 +331,12 @@ namespace limber
         {
           const double *const record =
             parts.nodes.record(nodes.on_grid()[k / dim]);
-          masses[k] = record[Layout::mass];
-          if (masses[k] > 0)
-            means[k] = record[Layout::momentum + k % dim] / masses[k];
+          masses[k]   = record[Layout::mass];
+          momentum[k] = record[Layout::momentum + k % dim];
         }
     nodes.sum(masses);
-    nodes.sum(means);
+    nodes.sum(momentum);
+    return momentum;
   }
 
 
@@ -393,19 +404,29 @@ namespace limber
     // Consistent initial acceleration from the forces
     Values former_acceleration = accelerations;
     if (scheme.needs_acceleration() && time == 0)
-      for (std::size_t k = 0; k < equations.size(); ++k)
-        former_acceleration[k] = masses[k] > 0 ? net[k] / masses[k] : 0;
+      former_acceleration = mass.velocity(net);
 
-    question.inertia.assign(equations.size(), 0.);
     question.inertial_displacement.assign(equations.size(), 0.);
+    const Values of_sides = equations.held_velocities(time + step);
     if (in_motion)
-      for (std::size_t k = 0; k < equations.size(); ++k)
-        {
-          question.inertia[k] = scheme.inertia() * masses[k] / (step * step);
-          question.inertial_displacement[k] =
-            scheme.ahead(velocities[k], former_acceleration[k], step);
-          question.external[k] += scheme.share_of_beginning() * net[k];
-        }
+      {
+        question.inertia = scheme.inertia() / (step * step);
+        for (std::size_t k = 0; k < equations.size(); ++k)
+          {
+            // what is held gets the velocity of its side, whatever its
+            // displacement: the neighbours feel that change
+            question.inertial_displacement[k] =
+              equations.is_held(k) ?
+                question.held[k] - (1 + scheme.share_of_beginning()) / step *
+                                     (of_sides[k] - velocities[k]) /
+                                     question.inertia :
+                scheme.ahead(velocities[k], former_acceleration[k], step);
+            question.external[k] += scheme.share_of_beginning() * net[k];
+          }
+        question.former_momentum =
+          question.inertia *
+          size_of(mass.times(question.inertial_displacement));
+      }
     clock.lap(NewtonVerb::evaluate_forces);
     if (in_motion)
       newton.guess(question, displacement);
@@ -440,7 +461,7 @@ namespace limber
     Values new_velocity(equations.size()), new_acceleration(equations.size());
     if (in_motion)
       {
-        new_velocity         = equations.held_velocities(time + step);
+        new_velocity         = of_sides;
         const Values of_side = equations.held_velocities(time);
         for (std::size_t k = 0; k < equations.size(); ++k)
           if (equations.is_held(k))
@@ -540,13 +561,15 @@ namespace limber
     });
     if (in_motion)
       {
-        // G2P gives points less of short waves than the lumped masses have.
-        double expected = kinetic_energy();
+        // In the current frame G2P gives points less of short waves than the
+        // lumped masses have.
+        double       expected     = kinetic_energy();
+        const Values momentum     = mass.times(velocities),
+                     new_momentum = mass.times(new_velocity);
         for (std::size_t k = 0; k < equations.size(); ++k)
           if (nodes.owns(k / dim))
-            expected += 0.5 * masses[k] *
-                        (new_velocity[k] * new_velocity[k] -
-                         velocities[k] * velocities[k]);
+            expected += 0.5 * (new_momentum[k] * new_velocity[k] -
+                               momentum[k] * velocities[k]);
         for (const auto &body : parts.bodies)
           extremes.speed_squared =
             std::max(extremes.speed_squared,

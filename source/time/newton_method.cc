@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/time/newton_method.h>
+#include <limber/time/nodal_mass.h>
 
 #include <algorithm>
 #include <cmath>
@@ -93,6 +94,22 @@ namespace limber
 
 
   template <int dim>
+  typename NewtonMethod<dim>::Values
+  NewtonMethod<dim>::inertial_forces(const StepQuestion &question,
+                                     const Values       &displacement) const
+  {
+    Values way(displacement.size());
+    if (question.inertia == 0)
+      return way;
+    for (std::size_t k = 0; k < way.size(); ++k)
+      way[k] = question.inertia *
+               (displacement[k] - question.inertial_displacement[k]);
+    return mass.times(way);
+  }
+
+
+
+  template <int dim>
   double
   NewtonMethod<dim>::evaluate_residual(const StepQuestion &question,
                                        const Values       &displacement,
@@ -103,26 +120,17 @@ namespace limber
     if (!admissible)
       return infinite;
     residual.resize(equations.size());
-    double of_inertia = 0, of_momentum = 0;
+    const Values inertia = inertial_forces(question, displacement);
     for (std::size_t k = 0; k < equations.size(); ++k)
-      {
-        const double inertia =
-          question.inertia[k] *
-          (displacement[k] - question.inertial_displacement[k]);
-        residual[k] = equations.is_held(k) ?
-                        0 :
-                        question.external[k] + equations.follower_forces()[k] -
-                          equations.forces()[k] - inertia;
-        of_inertia += inertia * inertia;
-        const double momentum =
-          question.inertia[k] * question.inertial_displacement[k];
-        of_momentum += momentum * momentum;
-      }
+      residual[k] = equations.is_held(k) ?
+                      0 :
+                      question.external[k] + equations.follower_forces()[k] -
+                        equations.forces()[k] - inertia[k];
     const double scale         = std::max({norm(question.external),
                                            norm(equations.follower_forces()),
                                            norm(equations.forces()),
-                                           std::sqrt(of_inertia),
-                                           known_share * std::sqrt(of_momentum),
+                                           norm(inertia),
+                                           known_share * question.former_momentum,
                                            question.largest_former_force});
     const double residual_norm = norm(residual);
     return residual_norm <= equations.round_off(displacement) ?
@@ -143,11 +151,10 @@ namespace limber
                     product(question.external, displacement) -
                     0.5 * (product(question.followers_at_rest, displacement) +
                            product(equations.follower_forces(), displacement));
+    const Values inertia = inertial_forces(question, displacement);
     for (std::size_t k = 0; k < equations.size(); ++k)
-      {
-        const double way = displacement[k] - question.inertial_displacement[k];
-        result += 0.5 * question.inertia[k] * way * way;
-      }
+      result += 0.5 * inertia[k] *
+                (displacement[k] - question.inertial_displacement[k]);
     return result;
   }
 
@@ -197,9 +204,10 @@ namespace limber
         ++n_iterations;
         ++n_corrections;
 
-        const double before = potential(question, displacement);
+        const double       before = potential(question, displacement);
+        const Inertia<dim> inertia{mass, question.inertia};
         equations.evaluate(displacement,
-                           &question.inertia,
+                           &inertia,
                            search || former.empty() ? nullptr : &former);
         former = displacement;
         clock.lap(NewtonVerb::assemble_tangent);

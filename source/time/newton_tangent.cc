@@ -94,6 +94,42 @@ namespace limber
 
   template <int dim>
   void
+  NewtonTangent<dim>::add_alike(const std::uint32_t *const numbers,
+                                const unsigned int         n_nodes,
+                                const double *const        block)
+  {
+    row_places.resize(n_nodes);
+    row_values.resize(n_nodes);
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      for (int d = 0; d < dim; ++d)
+        {
+          const std::size_t row = std::size_t(numbers[i]) * dim + d;
+          if (held[row])
+            continue;
+          unsigned int found = 0;
+          for (unsigned int j = 0; j < n_nodes; ++j)
+            {
+              const std::size_t column = std::size_t(numbers[j]) * dim + d;
+              const double      value  = block[i * n_nodes + j];
+              if (held[column])
+                {
+                  rows.push_back(row);
+                  columns.push_back(column);
+                  of_columns.push_back(value);
+                  continue;
+                }
+              row_places[found]   = column;
+              row_values[found++] = value;
+            }
+          matrix.add(
+            row, found, row_places.data(), row_values.data(), false, false);
+        }
+  }
+
+
+
+  template <int dim>
+  void
   NewtonTangent<dim>::add_to_diagonal(const std::vector<double> &values)
   {
     for (std::size_t k = 0; k < size(); ++k)

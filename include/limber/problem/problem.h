@@ -384,7 +384,7 @@ namespace limber
     double ghost_penalty    = 0.03;
     // Of implicit steps, at infinite frequency: 1, or below it
     // generalised-alpha
-    double spectral_radius = 1;
+    double spectral_radius = 0.9;
   };
 
   /** What is written to the run folder, and how often. */

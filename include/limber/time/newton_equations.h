@@ -19,7 +19,20 @@ namespace limber
   template <int dim>
   class AveragedVolumes;
   template <int dim>
+  class NodalMass;
+  template <int dim>
   class NewtonTangent;
+
+
+
+  /** What accelerations take of forces, by displacements: a multiple of the
+   * mass. */
+  template <int dim>
+  struct Inertia
+  {
+    const NodalMass<dim> &mass;
+    double                factor; // 1/s^2; zero in equilibrium
+  };
 
 
 
@@ -110,13 +123,13 @@ namespace limber
 
     /**
      * Find strain energy and internal forces at these displacements, and on
-     * request the tangent, to which the diagonal @p inertia (kg/s^2) is added.
-     * False where a point is inverted (det F <= 0). @p former: see TrialStress,
-     * may be null. Collective.
+     * request the tangent, to which @p inertia is added. False where a point is
+     * inverted (det F <= 0). @p former: see TrialStress, may be null.
+     * Collective.
      */
     bool
     evaluate(const std::vector<double> &displacement,
-             const std::vector<double> *inertia,
+             const Inertia<dim>        *inertia,
              const std::vector<double> *former = nullptr);
 
     /** Strain energy of the last evaluate(), with the ghost penalty, J. */

@@ -5,6 +5,7 @@
 #include <limber/time/generalised_alpha.h>
 #include <limber/time/loads.h>
 #include <limber/time/newton_method.h>
+#include <limber/time/nodal_mass.h>
 #include <limber/time/relocation.h>
 
 namespace limber
@@ -97,9 +98,8 @@ namespace limber
     void
     begin_step();
     void
-    gather_nodes();
-    void
-    gather(bool of_acceleration, Values &means);
+           gather_nodes();
+    Values gather(PointView<dim> (*view)(const PointView<dim> &));
     bool
     try_step(double time, double step);
     bool
@@ -116,6 +116,8 @@ namespace limber
     take_motion(const Values &displacement,
                 const Values &new_velocity,
                 const Values &new_acceleration);
+    Values
+    gained_momentum(const Values &new_velocity) const;
     void
     account_for_damping(const StepQuestion &question,
                         const Values       &displacement,
@@ -139,10 +141,11 @@ namespace limber
     NewtonEquations<dim> equations;
     FollowerLoads<dim>   followers;
     NewtonClock          clock;
+    NodalMass<dim>       mass;
     NewtonMethod<dim>    newton;
 
-    // Of the nodes of the step, kg, m/s, m/s^2; accelerations of generalised-
-    // alpha alone, else zero
+    // Of the nodes of the step, kg (lumped), m/s, m/s^2; accelerations of
+    // generalised-alpha alone, else zero
     const GeneralisedAlpha scheme;
     Values                 masses, velocities, accelerations;
 

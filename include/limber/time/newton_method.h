@@ -43,9 +43,11 @@ namespace limber
     std::vector<double> held;     // displacements of held components, m; else 0
     std::vector<double> external; // forces independent of displacements, N
     std::vector<double> followers_at_rest; // follower loads at zero u, N
-    std::vector<double> inertia; // what multiplies displacements, kg/s^2
-    // displacement without acceleration (predictor), m
+    double inertia = 0; // factor of the mass, 1/s^2; zero in equilibrium
+    // displacement without acceleration (predictor), m, and the norm of the
+    // force that would stop it, N
     std::vector<double> inertial_displacement;
+    double              former_momentum = 0;
     // Quasi-static, N: a scale of forces for what is unloaded and has none at
     // the end to compare with.
     double largest_former_force = 0;
@@ -62,12 +64,14 @@ namespace limber
   class NewtonMethod
   {
   public:
-    /** @p tolerance: share of the forces that may be out of balance. Equations
-     * and clock are those of the caller. */
+    /** @p tolerance: share of the forces that may be out of balance. Equations,
+     * mass and clock are those of the caller. */
     NewtonMethod(NewtonEquations<dim> &equations,
+                 const NodalMass<dim> &mass,
                  const double          tolerance,
                  NewtonClock          &clock)
       : equations(equations)
+      , mass(mass)
       , tolerance(tolerance)
       , clock(clock)
     {}
@@ -121,7 +125,13 @@ namespace limber
              Values             &displacement,
              Values             &residual);
 
+    /** Forces that the acceleration to a displacement takes, N. */
+    Values
+    inertial_forces(const StepQuestion &question,
+                    const Values       &displacement) const;
+
     NewtonEquations<dim> &equations;
+    const NodalMass<dim> &mass;
     const double          tolerance;
     NewtonClock          &clock;
     double                relative_residual = 0;

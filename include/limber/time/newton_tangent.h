@@ -37,6 +37,13 @@ namespace limber
         unsigned int         n_nodes,
         const double        *block);
 
+    /** The same for a block of the nodes that is alike for all components, and
+     * zero between them. */
+    void
+    add_alike(const std::uint32_t *numbers,
+              unsigned int         n_nodes,
+              const double        *block);
+
     /** Add to the diagonal of free components, N/m. */
     void
     add_to_diagonal(const std::vector<double> &values);

@@ -737,6 +737,9 @@ TEST(Choices, LagOfASpinIsTold)
   EXPECT_FALSE(told({"Grid/Cells=200, 200"}));
   EXPECT_FALSE(told({"Grid/Cells=8, 8", "Method/Transfer=aflip"}));
   EXPECT_FALSE(told({"Grid/Cells=8, 8", "Method/Kernel=quadratic"}));
+  EXPECT_FALSE(told({"Grid/Cells=8, 8",
+                     "Method/Time integration=implicit",
+                     "Method/Time step=0.1"}));
 }
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/time/newton_equations.h>
+#include <limber/time/nodal_mass.h>
 
 #include <gtest/gtest.h>
 #include <support/held_strip.h>
@@ -34,12 +35,14 @@ namespace
                   most_iterations)
     {
       equations.begin_step();
-      const std::vector<double> none(equations.size()),
-        diagonal(equations.size(), inertia);
+      const std::vector<double> none(equations.size());
+      NodalMass<dim>            mass(equations.numbered_nodes());
+      mass.lump(std::vector<double>(equations.size(), inertia));
       std::vector<double> load(equations.size());
       for (std::size_t i = 1; i < load.size(); i += dim)
         load[i] = 1;
-      solved = equations.evaluate(none, &diagonal) &&
+      const Inertia<dim> of_mass{mass, 1};
+      solved = equations.evaluate(none, &of_mass) &&
                equations.solve(load, none, values);
     }
 

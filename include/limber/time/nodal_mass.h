@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#ifndef limber_time_nodal_mass_h
+#define limber_time_nodal_mass_h
+
+#include <limber/time/numbered_nodes.h>
+
+#include <vector>
+
+namespace limber
+{
+  template <int dim>
+  class NewtonTangent;
+
+
+
+  /**
+   * The mass matrix of steps by Newton's method, M_ij = sum_p m_p N_i N_j of
+   * points in the initial frame (consistent), and lumped, sum_p m_p N_i, of
+   * points in the current frame, where nodes of small cuts would get any
+   * velocity.
+   *
+   * With the consistent one points that take increments (FLIP) have the kinetic
+   * energy and the angular momentum of the nodes: none is lost between steps
+   * (D. Burgess, D. Sulsky, J. U. Brackbill, J. Comput. Phys. 103, 1992).
+   */
+  template <int dim>
+  class NodalMass
+  {
+  public:
+    using Values = std::vector<double>; // by equation, dim for each node
+
+    /** Of these nodes, those of the caller. */
+    explicit NodalMass(const NumberedNodes<dim> &nodes)
+      : nodes(nodes)
+    {}
+
+    /**
+     * Assemble, once nodes are numbered; @p lumped: masses by equation, kg.
+     * Where all bodies are in the initial frame nothing changes from step to
+     * step, until clear(). Collective.
+     */
+    void
+    update(const RunParts<dim> &parts, const Values &lumped);
+
+    /** A diagonal one, kg by equation. */
+    void
+    lump(const Values &masses)
+    {
+      lumped = diagonal = masses;
+      blocks.clear();
+    }
+
+    /** Forget what is known of former steps. */
+    void
+    clear()
+    {
+      blocks.clear();
+    }
+
+    /** M times a vector. */
+    Values
+    times(const Values &vector) const;
+
+    /**
+     * The nodal velocities whose momenta M v are @p momentum (kg m/s); with
+     * that which points bring, P2G, the velocity of the nodes that is nearest
+     * to theirs.
+     */
+    Values
+    velocity(const Values &momentum) const;
+
+    /** Add @p factor times M. */
+    void
+    add_to(NewtonTangent<dim> &tangent, double factor) const;
+
+  private:
+    void
+    lump_light_nodes();
+
+    const NumberedNodes<dim> &nodes;
+    Values                    lumped;   // row sums, kg
+    Values                    diagonal; // of what is not in blocks, kg
+    std::vector<double>       blocks;   // by cell, kg; empty: all is lumped
+  };
+} // namespace limber
+
+#endif
