@@ -59,8 +59,8 @@ WEIGHT, LENGTH = 80 * 10, 50  # N/m^3, m
 COLUMN_METHODS = {
     "linear, 2 x 2": ["Method/Kernel=linear", ".Points per cell edge=2"],
     "linear, 3 x 3": ["Method/Kernel=linear", ".Points per cell edge=3"],
-    "splines, 2 x 2": ["Method/Kernel=quadratic", ".Points per cell edge=2"],
-    "splines, 3 x 3": ["Method/Kernel=quadratic", ".Points per cell edge=3"],
+    "quadratic, 2 x 2": ["Method/Kernel=quadratic", ".Points per cell edge=2"],
+    "quadratic, 3 x 3": ["Method/Kernel=quadratic", ".Points per cell edge=3"],
     "CPDI, 2 x 2": ["Method/Kernel=cpdi", ".Points per cell edge=2"],
     "CPDI, 3 x 3": ["Method/Kernel=cpdi", ".Points per cell edge=3"],
     "initial frame, 2 x 2": ["Method/Kernel=linear", ".Frame=initial",
@@ -104,7 +104,7 @@ def draw_column(curves, target):
         for name in COLUMN_METHODS:
             axis.loglog(COLUMN_CELLS, curves[modulus, name], markersize=5,
                         linewidth=1, label=name, **charts.style_of(name))
-        begin = curves["1e7", "splines, 3 x 3"][0]
+        begin = curves["1e7", "quadratic, 3 x 3"][0]
         for power in (1, 2):
             axis.loglog(COLUMN_CELLS, [begin * (COLUMN_CELLS[0] / n)**power
                                        for n in COLUMN_CELLS], "k:",
@@ -133,7 +133,8 @@ def column(arguments):
             words = [s if isinstance(s, str) else f"{e:.2e}"
                      for e, s in zip(errors, sinks)]
             rows.append(f"| {modulus} | {name} | " + " | ".join(words) + " | " +
-                        " / ".join(f"{o:.1f}" for o in order) + " |")
+                        " / ".join("-" if np.isnan(o) else f"{o:.1f}"
+                                   for o in order) + " |")
             print(rows[-1], flush=True)
     draw_column(curves, arguments.target)
     text = ["# Column under its own weight: error of the stress", "",
@@ -161,22 +162,22 @@ BALL_METHODS = {
     "linear, assumed strain": ["Method/Kernel=linear",
                                ".Locking treatment=assumed strain",
                                ".Points per cell edge=2"],
-    "splines, none, 3 x 3": ["Method/Kernel=quadratic",
-                             ".Locking treatment=none",
-                             ".Points per cell edge=3"],
-    "splines, node, 3 x 3": ["Method/Kernel=quadratic",
-                             ".Locking treatment=node",
-                             ".Points per cell edge=3"],
-    "splines, node, 2 x 2": ["Method/Kernel=quadratic",
-                             ".Locking treatment=node",
-                             ".Points per cell edge=2"],
-    "splines, node, 3 x 3, APIC": ["Method/Kernel=quadratic",
-                                   "Method/Transfer=apic",
-                                   ".Locking treatment=node",
-                                   ".Points per cell edge=3"],
-    "splines, cell, 3 x 3": ["Method/Kernel=quadratic",
-                             ".Locking treatment=cell",
-                             ".Points per cell edge=3"],
+    "quadratic, none, 3 x 3": ["Method/Kernel=quadratic",
+                               ".Locking treatment=none",
+                               ".Points per cell edge=3"],
+    "quadratic, node, 3 x 3": ["Method/Kernel=quadratic",
+                               ".Locking treatment=node",
+                               ".Points per cell edge=3"],
+    "quadratic, node, 2 x 2": ["Method/Kernel=quadratic",
+                               ".Locking treatment=node",
+                               ".Points per cell edge=2"],
+    "quadratic, node, 3 x 3, APIC": ["Method/Kernel=quadratic",
+                                     "Method/Transfer=apic",
+                                     ".Locking treatment=node",
+                                     ".Points per cell edge=3"],
+    "quadratic, cell, 3 x 3": ["Method/Kernel=quadratic",
+                               ".Locking treatment=cell",
+                               ".Points per cell edge=3"],
     "CPDI, none, 2 x 2": ["Method/Kernel=cpdi", ".Locking treatment=none",
                           ".Points per cell edge=2"],
     "CPDI, node, 2 x 2": ["Method/Kernel=cpdi", ".Locking treatment=node",
@@ -188,7 +189,7 @@ BALL_METHODS = {
                                       ".Locking treatment=assumed strain",
                                       ".Points per cell edge=2"],
 }
-for name in ("linear, cell", "splines, node, 2 x 2",
+for name in ("linear, cell", "quadratic, node, 2 x 2",
              "initial frame, assumed strain"):
     BALL_METHODS[name + ", 20 cells"] = [*BALL_METHODS[name],
                                          "Grid/Cells=260, 74"]
@@ -262,8 +263,8 @@ def ball(arguments):
             f"{100 * distance:.2f} | {angle:+.1f} | {cost:.1f} |")
         print(rows[-1], flush=True)
         clouds[name] = last
-    names = [n for n in ("linear, cell", "splines, cell, 3 x 3",
-                         "splines, node, 3 x 3", "CPDI, node, 3 x 3",
+    names = [n for n in ("linear, cell", "quadratic, cell, 3 x 3",
+                         "quadratic, node, 3 x 3", "CPDI, node, 3 x 3",
                          "initial frame, assumed strain") if n in clouds]
     figure, axes = plt.subplots(1, len(names), figsize=(3 * len(names), 3.3),
                                 layout="constrained")

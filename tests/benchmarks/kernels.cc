@@ -2,6 +2,7 @@
 #include <limber/base/timing.h>
 #include <limber/problem/read_problem.h>
 #include <limber/simulation/set_up.h>
+#include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/grid_to_points.h>
 #include <limber/transfer/points_to_grid.h>
 
@@ -16,8 +17,9 @@
  *
  *     kernels [REPETITIONS [KERNEL]]
  *
- * 40 of them with linear functions, if not told otherwise; kernels whose nodes
- * all points of a cell share: linear, quadratic, cubic.
+ * 40 of them with linear functions, if not told otherwise. Kernels whose points
+ * have domains (gimp, cpgimp, cpdi, cpdi2) are measured with FLIP and without
+ * treatment; ddmp, whose sweeps need others before them, only by block.py.
  */
 using namespace limber;
 
@@ -25,6 +27,15 @@ namespace
 {
   unsigned int n_repetitions = 40;
   std::string  kernel        = "linear";
+
+
+
+  bool
+  has_domains()
+  {
+    return kernel == "gimp" || kernel == "cpgimp" || kernel == "cpdi" ||
+           kernel == "cpdi2";
+  }
 
 
 
@@ -84,6 +95,16 @@ namespace
       , body(*bodies[0])
     {
       cells = body.points.sort_by_cell();
+      if (const auto points = body.points.view(); points.has_domains())
+        {
+          const auto corners = cells_of_corners(points, nodes.view());
+          const auto middle  = cells.size();
+          cells.insert(cells.end(), corners.begin(), corners.end());
+          std::inplace_merge(cells.begin(),
+                             cells.begin() + middle,
+                             cells.end());
+          cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+        }
       nodes.set_occupied(std::vector<std::uint32_t>(cells));
       if (body.cell_sums)
         {
@@ -249,6 +270,14 @@ namespace
   {
     std::printf(
       "\n%dd: ns per point %28s %8s %8s\n", dim, "", "best", "median");
+    if (has_domains())
+      {
+        measure_giving<dim>("none", false);
+        measure_taking<dim>(false);
+        measure_law<dim>("linear elastic", "linear elastic", "", {"none"});
+        measure_law<dim>("neo-Hookean", "neo hookean", "", {"none"});
+        return;
+      }
     std::vector<std::string> treatments = {"none",
                                            "cell",
                                            "cell shear",
@@ -290,11 +319,12 @@ main(int argc, char **argv)
     n_repetitions = std::max(1, std::atoi(argv[1]));
   if (argc > 2)
     kernel = argv[2];
-  if (kernel != "linear" && kernel != "quadratic" && kernel != "cubic")
+  if (kernel != "linear" && kernel != "quadratic" && kernel != "cubic" &&
+      !has_domains())
     {
       std::fprintf(stderr,
                    "Error: The kernel '%s' is none of linear, quadratic, "
-                   "cubic, whose nodes all points of a cell share.\n",
+                   "cubic, gimp, cpgimp, cpdi, cpdi2.\n",
                    kernel.c_str());
       return 1;
     }

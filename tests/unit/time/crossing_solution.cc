@@ -162,6 +162,24 @@ TEST(CrossingSolution, CubicSplinesAreOfSecondOrder)
 
 
 
+// The boxes of GIMP sample linear functions continuously.
+TEST(CrossingSolution, BoxesAreOfFirstOrderAtLeast)
+{
+  for (const std::string kernel : {"gimp", "cpgimp"})
+    expect_order(kernel, "flip", {8, 16}, 1);
+}
+
+
+
+// What is continuous are the gradients; points still sample them unevenly.
+TEST(CrossingSolution, DualDomainsErrLessThanLinearFunctions)
+{
+  EXPECT_LT(crossing_error("ddmp", "flip", 16),
+            0.5 * crossing_error("linear", "flip", 16));
+}
+
+
+
 TEST(CrossingSolution, ConvectedDomainsAreOfSecondOrder)
 {
   for (const std::string kernel : {"cpdi", "cpdi2"})

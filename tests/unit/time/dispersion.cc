@@ -143,7 +143,19 @@ TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
         // alpha / 12 - (1 - alpha)^2 / 16 of K and 3/16 of S, by halves; walls
         // do to them what they do to linear ones
         Expected{{"ddmp", "flip"}, 0.2388, 0.008, {64}},
+        // domains that do not reach across the faces of cells, as those of
+        // points at rest, see linear functions
+        Expected{{"gimp", "flip"}, 0.1354, 0.006, {64}},
+        Expected{{"cpgimp", "flip"}, 0.1354, 0.006, {64}},
+        Expected{{"cpdi", "flip"}, 0.1354, 0.006, {64}},
+        Expected{{"cpdi2", "flip"}, 0.1354, 0.006, {64}},
         Expected{{"linear", "fmpm 4"}, -0.052, 0.008},
+        Expected{{"gimp", "fmpm 4"}, -0.052, 0.008},
+        Expected{{"cpgimp", "fmpm 4"}, -0.052, 0.008},
+        Expected{{"cpdi", "fmpm 4"}, -0.052, 0.008},
+        Expected{{"cpdi2", "fmpm 4"}, -0.052, 0.008},
+        // 7/12 (1 - alpha) + alpha / 12 - (1 - alpha)^2 / 16 less 3/16, by halves
+        Expected{{"ddmp", "fmpm 4"}, 0.0513, 0.004, {16}},
         Expected{{"quadratic", "fmpm 4"}, 0.0104, 0.004},
         Expected{{"cubic", "fmpm 4"}, 0.002, 0.004},
         Expected{{"quadratic", "xpic 4"}, 0.125, 0.02}})
@@ -163,7 +175,8 @@ TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
 // No node sees velocities +1 and -1 of the points of a cell.
 TEST(Dispersion, NullSpaceIsGoneAfterOneStep)
 {
-  for (const string kernel : {"linear", "quadratic", "cubic"})
+  for (const string kernel :
+       {"linear", "quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2"})
     for (const string order : {"1", "2", "4", "16"})
       {
         SCOPED_TRACE(kernel + ", FMPM(" + order + ")");
@@ -233,7 +246,10 @@ TEST(Dispersion, PicIsAViscosity)
         Expected{"quadratic", "2", 1. / 4},
         Expected{"quadratic", "8, 1", 1. / 4},
         Expected{"cubic", "2", 1. / 3},
-        Expected{"cubic", "8, 1", 1. / 3}})
+        Expected{"cubic", "8, 1", 1. / 3},
+        // domains within cells, as above
+        Expected{"gimp", "2", 3. / 16},
+        Expected{"cpdi", "2", 3. / 16}})
     for (const int component : {0, 1})
       {
         SCOPED_TRACE(kernel + ", " + points +
