@@ -77,10 +77,10 @@ _limber() {
     inf-sup) options="--help --cells --pressure --points --fill --samples
       --output-directory --replace" ;;
     advise) options="--help --for-error --seconds --set" ;;
-    plot) options="--help --field --body --enlarge --range --view --grid --labels
-      --output --time --snapshots --columns" ;;
-    animate) options="--help --field --body --enlarge --range --view --grid --labels
-      --output --rate --frames" ;;
+    plot) options="--help --field --body --others --side-by-side --enlarge --range
+      --view --grid --labels --output --time --snapshots --columns" ;;
+    animate) options="--help --field --body --others --side-by-side --enlarge --range
+      --view --grid --labels --output --rate --frames" ;;
   esac
 
   if [[ $word == -* ]]; then

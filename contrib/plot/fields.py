@@ -296,9 +296,17 @@ def of_body(cloud, source, body):
              + ", ".join(source.bodies) + ".")
     if len(source.bodies) == 1:
         return cloud
+    mine = mask_of_body(cloud, source, body)
+    return {name: values[mine] for name, values in _all(cloud).items()}
+
+
+def mask_of_body(cloud, source, body):
+    """Which points are of a body."""
+    if body not in source.bodies:
+        fail(f"There is no body '{body}' in '{source.folder}'. It has: "
+             + ", ".join(source.bodies) + ".")
     fields = _all(cloud)
     if "body" not in fields:
         fail(f"The pictures in '{source.folder}' do not say which point is of "
              f"which body. Add 'body' to 'Output/Fields' of the scene.")
-    mine = np.round(fields["body"]) == source.bodies.index(body)
-    return {name: values[mine] for name, values in fields.items()}
+    return np.round(fields["body"]) == source.bodies.index(body)

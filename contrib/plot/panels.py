@@ -11,9 +11,11 @@ from matplotlib.tri import Triangulation
 import fields
 import obstacles
 import run_folder
+import solids
 import spheres
 import squares
 
+OTHERS = 0.74  # grey of other bodies
 SLENDER = 0.15  # height over width of what stands in one column
 
 
@@ -23,8 +25,14 @@ class State:
     def __init__(self, source, index, look):
         self.source, self.index = source, index
         self.time = source.times[index]
-        cloud = fields.of_body(source.at(index), source, look.body)
+        cloud = fields.of_body(source.at(index), source,
+                               None if look.others else look.body)
         self.values = fields.value(cloud, look.field, source.folder)
+        self.others = np.zeros(len(self.values), bool)
+        if look.others and len(source.bodies) > 1:
+            mine = fields.mask_of_body(cloud, source, look.body)
+            self.others = ~mine
+            self.values = np.where(mine, self.values, np.nan)
         self.place = np.array(cloud["position"], float)
         self.start = None
         if look.enlarge != 1 or source.is_reference:
@@ -35,7 +43,7 @@ class State:
         self.cells = source.cells(index) if look.grid else None
         self.spacing = self._size(look.body)
         self.sizes = np.full(len(self.place), self.spacing)  # one a point
-        if "body" in cloud and look.body is None:
+        if "body" in cloud and (look.body is None or look.others):
             own = [self._size(name) for name in source.bodies]
             self.sizes = np.array(own)[np.round(cloud["body"]).astype(int)]
         # Points of fine cells are small.
@@ -55,12 +63,14 @@ class Look:
     field, body: names; enlarge: factor of displacements; limits: lower and upper
     end of the colours, in the unit of the field, or nothing; view: azimuth and
     elevation in degrees; zoom: (lower, upper) corner of what is seen, or nothing;
-    grid: whether the lines of the cells are drawn.
+    grid: whether the lines of the cells are drawn; others: whether the other
+    bodies are drawn in grey; side_by_side: a column for each run.
     """
 
     def __init__(self, field, body=None, enlarge=1., limits=None,
-                 view=(30., 20.), zoom=None, grid=False):
-        self.grid = grid
+                 view=(30., 20.), zoom=None, grid=False, others=False,
+                 side_by_side=False):
+        self.grid, self.others, self.side_by_side = grid, others, side_by_side
         self.field, self.body, self.enlarge = field, body, enlarge
         self.limits, self.view, self.zoom = limits, view, zoom
         self.is_body = field == "body"
@@ -103,8 +113,20 @@ class Look:
                                 axis=0) - margin
             self.upper = np.max([s.place.max(axis=0) for s in states],
                                 axis=0) + margin
+            if states[0].source.dimension == 3:
+                self._see_obstacles(states)
             if self.enlarge == 1:
                 self._keep_to_the_grid(states[0].source)
+
+    def _see_obstacles(self, states):
+        """Room for those parts of bounded obstacles that are in the grid."""
+        for state in states:
+            low, high = _box_of(state)
+            for one, other in solids.around(state.source.parameters, state.time):
+                one, other = np.maximum(one, low), np.minimum(other, high)
+                if (one < other).all():
+                    self.lower = np.minimum(self.lower, one)
+                    self.upper = np.maximum(self.upper, other)
 
     def _keep_to_the_grid(self, source):
         """The margin ends at the sides of the grid."""
@@ -170,7 +192,9 @@ def _draw_squares(axis, state, look):
     lower, upper = look.lower[:2], look.upper[:2]
     owner = squares.owners(state.place[:, :2], state.sizes, lower, upper,
                            _box_of(state), look.pixels)
-    picture = look.map(look.norm(state.values))[owner]
+    colours = look.map(look.norm(state.values))
+    colours[state.others] = OTHERS, OTHERS, OTHERS, 1
+    picture = colours[owner]
     picture[owner < 0, 3] = 0
     height = owner.shape[0] / owner.shape[1] * (upper[0] - lower[0])
     axis.imshow(picture, origin="lower", interpolation="antialiased", extent=(
@@ -220,9 +244,14 @@ def _draw_spheres(axis, state, look):
     radius = 0.75 * state.spacing
     left, right = camera.low[0], camera.high[0]
     bottom, top = camera.low[1], camera.high[1]
-    _draw_floor(axis, camera, look, state, radius)
-    axis.imshow(spheres.render(camera, state.place, look.colours(state.values),
-                               radius),
+    solid = solids.depths(camera, state.source.parameters, state.time,
+                          look.lower, look.upper)
+    _draw_floor(axis, camera, look, state, radius, solid)
+    _draw_planes(axis, camera, look, state)
+    colours = look.colours(state.values)
+    colours[state.others] = OTHERS
+    axis.imshow(spheres.render(camera, state.place, colours, radius, solid,
+                               state.others),
                 extent=(left, right, bottom, top), zorder=2,
                 interpolation="antialiased")
     margin = 0.03 * (right - left)
@@ -230,6 +259,17 @@ def _draw_spheres(axis, state, look):
     axis.set_ylim(bottom - 2.5 * margin, top + 0.3 * margin)
     axis.set_aspect("equal")
     axis.set_axis_off()
+
+
+def _draw_planes(axis, camera, look, state):
+    """The planes of half-spaces: pale behind what is drawn, their outline over
+    it."""
+    for corners in solids.polygons(state.source.parameters, state.time,
+                                   look.lower, look.upper):
+        seen = camera.project(corners)[:, :2]
+        axis.fill(*seen.T, color="0.9", zorder=0.8, linewidth=0)
+        axis.plot(*np.vstack([seen, seen[:1]]).T, color="0.5", linewidth=0.7,
+                  zorder=0.9)
 
 
 def _camera_of(look, up, pixels):
@@ -263,7 +303,7 @@ def _upwards(source):
     return int(np.argmax(abs(gravity))) if np.any(gravity) else 1
 
 
-def _draw_floor(axis, camera, look, state, radius):
+def _draw_floor(axis, camera, look, state, radius, solid):
     """Squares below the points with their shadow, and scales in metres along
     the two edges of the floor next to the eye and upwards at the left."""
     up = _upwards(state.source)
@@ -288,7 +328,10 @@ def _draw_floor(axis, camera, look, state, radius):
         for value in _marks(*ends[one], edge):
             line = [point(**{one: value, other: end}) for end in ends[other]]
             axis.plot(*seen(line).T, color="0.82", linewidth=0.6, zorder=0.5)
-    dark = spheres.shadow(camera, state.place, radius, lower[up], up)
+    places = state.place
+    if solid is not None:
+        places = np.concatenate([places, _seen_of(solid, camera)])
+    dark = spheres.shadow(camera, places, radius, lower[up], up)
     shade = axis.imshow(
         np.dstack([np.zeros((*dark.shape, 3)), 0.38 * dark]), zorder=0.7,
         extent=(camera.low[0], camera.high[0], camera.low[1], camera.high[1]))
@@ -324,6 +367,15 @@ def _draw_floor(axis, camera, look, state, radius):
             camera.high[0] - camera.low[0])], [0, 0]]), color="0.5",
             linewidth=0.7, zorder=1)
     _scale(axis, places, values * factor, f"{'xyz'[up]} [{unit}]", None)
+
+
+def _seen_of(solid, camera):
+    """Places of the surface of obstacles, for their shadow."""
+    i, j = np.nonzero(np.isfinite(solid[::3, ::3]))
+    seen = np.stack([camera.low[0] + 3 * j / camera.scale,
+                     camera.high[1] - 3 * i / camera.scale,
+                     solid[::3, ::3][i, j]], axis=1)
+    return seen @ camera.turn
 
 
 def _marks(low, high, step):
@@ -373,13 +425,31 @@ def _below_each_other(states, aspect):
     return [states[i:i + columns] for i in range(0, len(states), columns)]
 
 
+TALL = 1.3  # height over width of pictures of which several stand side by side
+
+
+def _stand_side_by_side(states, look, aspect):
+    """Whether each run has a column: as asked for, else pictures of one time each
+    that are tall."""
+    return len(states) > 1 and (look.side_by_side or
+                                len(states[0]) == 1 and aspect > TALL)
+
+
 def figure_of(states, look, labels, width=None):
-    """A figure with a row for each run and a column for each time, slender bodies
-    in one column; @p states is a list of rows. Returns the figure."""
+    """A figure with a row for each run and a column for each time, or the other
+    way round; slender bodies in one column; @p states is a list of rows. Returns
+    the figure."""
     look.fix([state for row in states for state in row])
     dimension = states[0][0].source.dimension
     aspect = look.aspect
-    if len(states) == 1:
+    if dimension == 3:
+        camera = _camera_of(look, _upwards(states[0][0].source), 100)
+        aspect = camera.shape[0] / camera.shape[1]
+    headings = None
+    if _stand_side_by_side(states, look, aspect):
+        headings, labels = labels, [""] * len(states[0])
+        states = [list(row) for row in zip(*states)]
+    elif len(states) == 1:
         labels = [""] * len(states[0])
         if dimension == 2:
             states = _below_each_other(states[0], aspect)
@@ -388,13 +458,14 @@ def figure_of(states, look, labels, width=None):
         states = [[state] for column in zip(*states) for state in column]
     rows, columns = len(states), max(len(row) for row in states)
     if dimension == 3:
-        camera = _camera_of(look, _upwards(states[0][0].source), 100)
         look.pixels = 1000 if width else 1500 if columns == 1 else 1100
-        aspect = camera.shape[0] / camera.shape[1]
     else:
         look.pixels = 1600 if columns == 1 else 1000
-    panel = (width or (6.5 if columns == 1 else min(4.2, 13 / columns)))
+    panel = (width / (columns if headings else 1) if width else
+             6.5 if columns == 1 else min(4.2, 13 / columns))
     height = np.clip(panel * aspect, 1, 6) + (0.75 if rows == 1 else 0.45)
+    if headings:
+        height += 0.25
     figure, axes = charts.plt.subplots(
         rows, columns, squeeze=False, sharex=dimension == 2,
         sharey=dimension == 2, layout="constrained",
@@ -402,7 +473,10 @@ def figure_of(states, look, labels, width=None):
     for i, (row, label) in enumerate(zip(states, labels)):
         for axis, state in zip(axes[i], row):
             draw(axis, state, look)
-            if i == 0 or state.time != states[0][row.index(state)].time:
+            if headings:
+                heading = headings[row.index(state)] + "\n" if i == 0 else ""
+                axis.set_title(heading + look.title(state))
+            elif i == 0 or state.time != states[0][row.index(state)].time:
                 axis.set_title(look.title(state))
             below = states[i + 1] if i + 1 < rows else []
             if dimension == 2 and len(below) <= row.index(state):

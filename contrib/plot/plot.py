@@ -4,9 +4,9 @@
 Draws runs, references and studies. Of one run without options: snapshots of the
 pressure (or of the first field there is), the energies, and the observables, as
 snapshots.png, energies.png and observables.png in its folder; of a study its chart.
-Several runs are drawn one below the other, with the same colours and at the same
-times, and their tables in the same charts: comparison_snapshots.png and so on in
-the folder of the first one.
+Several runs are drawn one below the other, or side by side, with the same colours
+and at the same times, and their tables in the same charts: comparison_snapshots.png
+and so on in the folder of the first one.
 
 A field is what pictures hold ('Output/Fields', all of a reference), a component of
 it ('velocity x', 'stress xy'), 'speed', 'equivalent stress', or 'body'. A field,
@@ -15,6 +15,7 @@ body or column that is not there ends with exit code 1 and no picture is touched
 
 import argparse
 import difflib
+import re
 import sys
 import textwrap
 from pathlib import Path
@@ -27,6 +28,12 @@ from charts import np, plt
 
 
 class Parser(argparse.ArgumentParser):
+    def __init__(self, *arguments, **options):
+        super().__init__(*arguments, **options)
+        # '-5e7' is a number, too, not the name of an option.
+        self._negative_number_matcher = re.compile(
+            r"-(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?$")
+
     def error(self, message):
         _, _, unknown = message.partition("unrecognized arguments: ")
         meant = difflib.get_close_matches(
@@ -55,6 +62,11 @@ def parser_for(word, description):
                         help="folder of a run, a reference or a study")
     parser.add_argument("--field", help="what the colours show")
     parser.add_argument("--body", help="only the points of this body")
+    parser.add_argument("--others", action="store_true",
+                        help="with '--body': the other bodies in grey")
+    parser.add_argument("--side-by-side", action="store_true",
+                        help="several runs in columns, their times below each "
+                        "other")
     parser.add_argument("--enlarge", type=finite, default=1., metavar="FACTOR",
                         help="draw displacements this many times as large")
     parser.add_argument("--range", type=finite, nargs=2, metavar=("LOW", "HIGH"),
@@ -77,7 +89,12 @@ def checked(arguments):
     if arguments.range and arguments.range[0] >= arguments.range[1]:
         charts.fail("'--range' takes the lower end of the colours first, and a "
                     "higher one.")
+    if arguments.others and not arguments.body:
+        charts.fail("'--others' are those beside the one behind '--body'; name "
+                    "that, too.")
     sources = [fields.Source(folder) for folder in arguments.folders]
+    if arguments.side_by_side and len(sources) == 1:
+        charts.fail("'--side-by-side' is for several runs.")
     if len({source.dimension for source in sources}) > 1:
         charts.fail("Runs in two and in three dimensions cannot be drawn side by "
                     "side.")
@@ -98,7 +115,8 @@ def look_of(arguments, sources):
         field = "pressure" if "pressure" in names else names[0]
     return panels.Look(field, arguments.body, arguments.enlarge,
                        arguments.range, tuple(arguments.view),
-                       grid=arguments.grid)
+                       grid=arguments.grid, others=arguments.others,
+                       side_by_side=arguments.side_by_side)
 
 
 def check_times(sources, latest):

@@ -6,13 +6,14 @@
 Reads study.csv and study.json, as `limber study`, `limber stability` and `limber
 inf-sup` write them. One panel for each measure and one line for each method;
 where the axis is a variation and there are others, also one panel for each of
-their values. On charts of error against cost the Pareto front is ringed, and
-the ends of lines say which variant they are; where several kernels stand there
-with and without a treatment of locking ('quadratic none', 'quadratic node'), one
-panel shows them without and one with it, in the same colours. Variants that have failed stand
-as crosses at the upper edge, and the legend says what went wrong; open triangles
-at the lower edge are values too small for the axis, with the value beside. On
-maps of stability an open triangle means that no limit was found below it.
+their values. On charts of error against cost the Pareto front is ringed, and the
+ends of lines, or the caption, say which variant they are; where several kernels
+stand there with and without a treatment of locking ('quadratic none', 'quadratic
+node'), one panel shows them without and one with it, in the same colours. Variants
+that have failed stand as crosses at the upper edge, and the legend says what went
+wrong; open triangles at the lower edge are values too small for the axis, with the
+value beside. On maps of stability an open triangle means that no limit was found
+below it.
 """
 
 import argparse
@@ -122,6 +123,37 @@ def coincide(rows, others, measure, meta):
         for x in own)
 
 
+MANY = 3  # lines that lie on each other are drawn as one
+
+
+def groups_that_coincide(rows, methods, measure, meta):
+    """Lists of three methods or more whose lines lie on each other."""
+    groups = []
+    own = {method: [row for row in rows if row["method"] == method]
+           for method in methods}
+    for method in methods:
+        group = next((g for g in groups if coincide(own[method], own[g[0]],
+                                                    measure, meta)), None)
+        if group:
+            group.append(method)
+        else:
+            groups.append([method])
+    return [group for group in groups if len(group) >= MANY]
+
+
+def draw_group(axis, group, rows, methods, measure, meta, floor, marks):
+    """One line for several methods, with their names beside."""
+    style = {"color": "0.25", "marker": "o", "linestyle": "-",
+             "fillstyle": "full"}
+    draw_line(axis, [{**row, "method": ""} for row in rows], measure,
+              {**meta, "rivals": False}, style, floor, marks)
+    text = ("all lines coincide" if group == methods else
+            ", ".join(group) + " coincide")
+    points = points_of(rows, measure, meta)
+    x, y, _ = points[len(points) // 2]
+    marks.append((3, x, y, "\n".join(textwrap.wrap(text, 30)), "0.25"))
+
+
 def draw_failed(axis, rows, meta, colour, taken):
     """Crosses at the upper edge, below those of other methods that failed at the
     same place; the reason goes into the legend. A failed run may have no cost at
@@ -156,32 +188,96 @@ def draw_closed_forms(axis, methods, meta):
                       label=f"{method}: {label}", scalex=False, scaley=False)
 
 
+def boxes_of_points(axis):
+    """What markers cover, in pixels: left, lower, right and upper ends."""
+    boxes = []
+    for line in axis.lines:
+        if line.get_transform() == axis.transData and line.get_marker() not in (
+                "None", "x"):
+            reach = (line.get_markersize() / 2 + 1) * axis.figure.dpi / 72
+            places = axis.transData.transform(
+                np.column_stack(line.get_data()).astype(float))
+            boxes += [(px - reach, py - reach, px + reach, py + reach)
+                      for px, py in places]
+    return boxes
+
+
+def pixels_of_lines(axis):
+    """Places along the lines of a panel, two pixels apart."""
+    places = [np.zeros((0, 2))]
+    for line in axis.lines:
+        if (line.get_linestyle() != "None" and len(line.get_xdata()) > 1 and
+                line.get_transform() == axis.transData):
+            corners = axis.transData.transform(
+                np.column_stack(line.get_data()).astype(float))
+            for a, b in zip(corners, corners[1:]):
+                if np.isfinite([*a, *b]).all():
+                    number = int(np.hypot(*(b - a)) / 2) + 2
+                    places.append(a + np.linspace(0, 1, number)[:, None] * (b - a))
+    return np.concatenate(places)
+
+
+# Directions in which a text stands off its point, and how far: what is farther gets
+# a line to it.
+SIDES = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
+DISTANCES = (6, 9, 14, 20)  # pixels
+WITH_LINE = 14
+
+
 def place_marks(axis, marks):
     """Small texts beside points, as many as there is room for: those that would
-    cover another one or a point move to another side or are left out."""
+    cover another one, a point or a line move away or are left out."""
     axis.figure.canvas.draw()
-    taken = [(px - 4, py - 4, px + 4, py + 4) for line in axis.lines
-             if line.get_marker() not in ("None", "x") and
-             line.get_transform() == axis.transData
-             for px, py in axis.transData.transform(
-                 np.column_stack(line.get_data()).astype(float))]
+    renderer = axis.figure.canvas.get_renderer()
+    taken, lines = boxes_of_points(axis), pixels_of_lines(axis)
     inside = axis.get_window_extent()
+
+    def is_free(box):
+        return (box[0] > inside.x0 and box[2] < inside.x1 and
+                box[1] > inside.y0 and box[3] < inside.y1 and
+                all(box[0] > o[2] or box[2] < o[0] or box[1] > o[3] or
+                    box[3] < o[1] for o in taken) and
+                not ((lines > box[:2]) & (lines < box[2:])).all(axis=1).any())
+    scale = 72 / axis.figure.dpi
     for _, x, y, text, colour in sorted(marks, key=lambda m: -m[0]):
         px, py = axis.transData.transform((x, y))
-        width, height = 5 * len(text) + 2, 10
-        for dx, dy in ((5, 3), (5, -11), (-width - 3, 3), (-width - 3, -11),
-                       (-width / 2, 6), (-width / 2, -15)):
-            box = (px + dx, py + dy, px + dx + width, py + dy + height)
-            if (box[2] < inside.x1 and box[0] > inside.x0 and
-                    box[1] > inside.y0 and all(
-                        box[0] > o[2] or box[2] < o[0] or box[1] > o[3] or
-                        box[3] < o[1] for o in taken)):
+        note = axis.annotate(text, (x, y), fontsize=7, color=colour, va="bottom",
+                             textcoords="offset points", xytext=(0, 0))
+        size = note.get_window_extent(renderer)
+        for distance, (right, up) in ((d, s) for d in DISTANCES for s in SIDES):
+            dx = (right * distance - (right < 0) * size.width -
+                  (right == 0) * size.width / 2)
+            dy = (up * distance - (up < 0) * size.height -
+                  (up == 0) * size.height / 2)
+            box = np.array([px + dx, py + dy, px + dx + size.width,
+                            py + dy + size.height])
+            if is_free(box):
                 taken.append(box)
-                scale = 72 / axis.figure.dpi
-                axis.annotate(text, (x, y), fontsize=7, color=colour,
-                              textcoords="offset points",
-                              xytext=(dx * scale, dy * scale))
+                note.set_position((dx * scale, dy * scale))
+                if distance >= WITH_LINE:
+                    line_to(axis, (x, y), box, (px, py), colour)
                 break
+        else:
+            note.remove()
+
+
+def line_to(axis, place, box, pixel, colour):
+    """From a text to the point it belongs to."""
+    end = np.clip(pixel, box[:2], box[2:])
+    axis.annotate("", place, xytext=(end - pixel) * 72 / axis.figure.dpi,
+                  textcoords="offset points", arrowprops={
+                      "arrowstyle": "-", "color": colour, "linewidth": 0.5,
+                      "shrinkA": 0, "shrinkB": 3})
+
+
+def common_ends(marks):
+    """The labels of both ends where all lines of a chart have the same ones; the
+    left end is the cheaper one. Nothing where they differ."""
+    texts = [mark[3] for panel in marks for mark in panel if mark[0] == 1]
+    firsts, lasts = set(texts[::2]), set(texts[1::2])
+    if len(texts) > 2 and len(texts) % 2 == 0 and len(firsts) == len(lasts) == 1:
+        return firsts.pop(), lasts.pop()
+    return None
 
 
 def draw_panel(axis, rows, measure, meta):
@@ -194,6 +290,8 @@ def draw_panel(axis, rows, measure, meta):
             axis.set_xmargin(0.2)
             axis.xaxis.set_minor_locator(NullLocator())
     floor, marks, taken = floor_of(rows, measure, meta), [], {}
+    together = ([] if meta["against cost"] or meta["closed forms"] else
+                groups_that_coincide(rows, methods, measure, meta))
     counts = not meta["against cost"] and all(
         y == round(y) and y < 100 for _, y, _ in points_of(rows, measure, meta))
     if counts:  # zeros among them
@@ -206,6 +304,13 @@ def draw_panel(axis, rows, measure, meta):
         if meta["closed forms"]:
             style.update(linestyle="none", fillstyle="none",
                          markeredgewidth=1.2)
+        group = next((g for g in together if method in g), None)
+        if group:
+            axis.plot([], [], label=method, **style)  # for the legend
+            if method == group[0]:
+                draw_group(axis, group, own, methods, measure, meta, floor, marks)
+            draw_failed(axis, own, meta, style["color"], taken)
+            continue
         # larger below those that would hide it
         grown = 1. if meta["against cost"] or meta["closed forms"] else (
             1 + 0.6 * min(2, sum(coincide(own, [row for row in rows
@@ -318,9 +423,12 @@ def drawn_rows(rows, meta):
     return [row for row in rows if row["method"] in drawn] if drawn else []
 
 
-def key_of(meta):
-    """What the small marks of a chart of error against cost mean."""
-    return (f"Numbers at the ends of lines: {', '.join(meta['variations'])}. "
+def key_of(meta, ends):
+    """What the small marks of a chart of error against cost mean. @p ends: labels
+    of both ends where all lines have the same ones."""
+    names = ", ".join(meta["variations"])
+    return ((f"Lines go from {ends[0]} at the left to {ends[1]} at the right "
+             f"({names}). " if ends else f"Numbers at the ends of lines: {names}. ") +
             "Ringed: none is more exact at less cost (Pareto front)."
             + (" Dotted: errors named on the page."
                if meta["error levels"] else ""))
@@ -342,11 +450,6 @@ def draw(rows, meta):
     lines = -(-number_of_panels // per_row)
     total = 2.5 + (6.5 if per_row == 1 else 4.5 * per_row)
     more = number_of_methods - len(methods_of(rows))
-    keys = ([key_of(meta)] if meta["against cost"] else []) + (
-        [f"{more} more method{'s are' if more > 1 else ' is'} in the table."]
-        if more else [])
-    caption = "\n".join(textwrap.wrap(" ".join(keys), int(16 * total)) +
-                        textwrap.wrap(meta["caption"], int(16 * total)))
     figure, axes = plt.subplots(
         lines, per_row, squeeze=False, layout="constrained",
         figsize=(total, 0.9 + (4.5 if per_row == 1 else 3.9) * lines))
@@ -365,10 +468,17 @@ def draw(rows, meta):
     if entries:
         axes[0][-1].legend(entries.values(), entries.keys(), fontsize=8,
                            loc="upper left", bbox_to_anchor=(1.01, 1))
+    ends = common_ends([texts for _, texts in marks])
+    keys = ([key_of(meta, ends)] if meta["against cost"] else []) + (
+        [f"{more} more method{'s are' if more > 1 else ' is'} in the table."]
+        if more else [])
+    caption = "\n".join(textwrap.wrap(" ".join(keys), int(16 * total)) +
+                        textwrap.wrap(meta["caption"], int(16 * total)))
     figure.suptitle(meta["title"])
     figure.supxlabel(caption, fontsize=7, color="grey")
     for axis, texts in marks:
-        place_marks(axis, texts)
+        place_marks(axis, [mark for mark in texts
+                           if mark[0] != 1 or not ends])
     return figure
 
 

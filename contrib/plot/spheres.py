@@ -37,11 +37,14 @@ class Camera:
 
 
 LIGHT = np.array([-0.45, 0.6, 0.66])
+SOLID = 0.74  # grey of obstacles
 
 
-def render(camera, places, colours, radius):
+def render(camera, places, colours, radius, solid=None, kinds=None):
     """RGBA picture, (rows, columns, 4), row 0 at the top, transparent where
-    there is nothing. colours: RGB of each point; radius in metres."""
+    there is nothing. colours: RGB of each point; radius in metres; solid: depth
+    of obstacles in metres for each pixel, -inf where there are none; kinds:
+    numbers of points; colours of different kinds do not run into each other."""
     rows, columns = camera.shape
     seen = camera.project(places)
     x = (seen[:, 0] - camera.low[0]) * camera.scale
@@ -82,16 +85,36 @@ def render(camera, places, colours, radius):
 
     flat = np.ones((rows, columns, 3))
     flat[covered] = colours[order][owner[covered]]
-    smooth, flat = _smoothed(buffer, flat, covered, r)
-    diffuse, highlight = _light(smooth, covered)
-    sky = _open_sky(smooth, covered, r)
-    # A little white light shows the shape of dark colours, too.
-    lit = (flat * (0.66 + 0.42 * diffuse)[..., None] +
-           (0.07 * diffuse + 0.14 * highlight)[..., None]) * sky[..., None]
+    kind = np.zeros((rows, columns), int)
+    if kinds is not None:
+        kind[covered] = np.asarray(kinds, int)[order][owner[covered]]
+    smooth, flat = _smoothed(buffer, flat, covered, kind, r)
+    if solid is None:
+        solid = np.full((rows, columns), -np.inf)
+    solid = solid * camera.scale
+    has_solid = np.isfinite(solid)
+    seen_points = covered & ~(solid > smooth)
+    sky = _open_sky(np.where(seen_points, smooth, solid),
+                    seen_points | has_solid, r)
     picture = np.ones((rows, columns, 4))
-    picture[covered, :3] = lit[covered]
-    picture[..., 3] = np.where(covered, cover, 0)
+    picture[..., 3] = has_solid
+    if has_solid.any():
+        picture[has_solid, :3] = _lit(np.full_like(flat, SOLID), solid, has_solid,
+                                      sky)[has_solid]
+    share = np.where(has_solid, cover, 1.)[seen_points, None]
+    picture[seen_points, :3] = (
+        share * _lit(flat, smooth, covered, sky)[seen_points] +
+        (1 - share) * picture[seen_points, :3])
+    picture[seen_points, 3] = np.where(has_solid, 1, cover)[seen_points]
     return np.clip(picture, 0, 1)
+
+
+def _lit(flat, depth, covered, sky):
+    """Colours in the light. A little white light shows the shape of dark ones,
+    too."""
+    diffuse, highlight = _light(depth, covered)
+    return (flat * (0.66 + 0.42 * diffuse)[..., None] +
+            (0.07 * diffuse + 0.14 * highlight)[..., None]) * sky[..., None]
 
 
 def _rim(covered, r):
@@ -183,13 +206,14 @@ def _closed(depth, owner, r):
     return depth, owner
 
 
-def _smoothed(depth, colours, covered, r):
+def _smoothed(depth, colours, covered, kind, r):
     """The surface that the spheres stand for, and its colours: means over
     neighbours at about the same depth, over ever shorter distances."""
     for step in (r, 0.7 * r, r, 0.5 * r, 0.7 * r, 0.3 * r):
         total = np.where(covered, depth, 0.)
         paint = colours.copy()
         count = covered.astype(float)
+        alike = count.copy()
         near = max(int(round(step)), 1)
         across = max(int(round(0.7 * step)), 1)
         for i, j in ((0, near), (0, -near), (near, 0), (-near, 0),
@@ -200,12 +224,14 @@ def _smoothed(depth, colours, covered, r):
                 same = covered & (abs(other - depth) < 4 * near)
             total += np.where(same, other, 0)
             count += same
+            same &= _shifted(kind, i, j, -1) == kind
+            alike += same
             for c in range(3):
                 paint[..., c] += np.where(
                     same, _shifted(colours[..., c], i, j, 0), 0)
-        count = np.maximum(count, 1)
+        count, alike = np.maximum(count, 1), np.maximum(alike, 1)
         depth = np.where(covered, total / count, -np.inf)
-        colours = np.where(covered[..., None], paint / count[..., None], colours)
+        colours = np.where(covered[..., None], paint / alike[..., None], colours)
     return depth, colours
 
 

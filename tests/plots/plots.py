@@ -106,6 +106,58 @@ class Plots(unittest.TestCase):
         self.refused("Runs in two and in three dimensions",
                      "plot", self.home / "flat", self.home / "solid")
 
+    def test_runs_in_columns(self):
+        path = self.home / "columns.png"
+        runs = self.home / "flat", self.home / "arrays"
+        words = ["plot", *runs, "--field", "pressure", "--time", 0.004, "--output",
+                 path]
+        limber(*words)
+        wide, high = png_size(path)
+        limber(*words, "--side-by-side")
+        self.assertLess(png_size(path)[1], 0.7 * high)
+        self.refused("is for several runs", "plot", runs[0], "--side-by-side")
+
+    def test_ends_of_the_colours_may_be_negative(self):
+        path = self.home / "range.svg"
+        limber("plot", self.home / "flat", "--field", "pressure", "--time", 0.004,
+               "--range", "-5e7", "5E+7", "--output", path)
+        self.assertIn("pressure [MPa]", path.read_text())
+        self.refused("a higher one", "plot", self.home / "flat", "--range", "5e7",
+                     "-5e7")
+
+    def test_other_bodies_in_grey(self):
+        path = self.home / "others.svg"
+        words = ["plot", self.home / "two", "--body", "jelly", "--field",
+                 "pressure", "--time", 0, "--output", path]
+        limber(*words)
+        alone = path.read_text()
+        limber(*words, "--others")
+        self.assertNotEqual(path.read_text(), alone)
+        self.refused("'--others' are those beside", "plot", self.home / "two",
+                     "--others")
+
+    def test_cells_and_points_of_several_sizes(self):
+        """Lines of the cells of all sizes; a point is as large as its cell says."""
+        folder = self.home / "levels"
+        limber(TOP / "prm/adaptive_dam_break.prm", "--set", "End time=0.01",
+               "--set", "Output/Time interval=0.01", "--set",
+               "Check front at T=3/At time=0.01", "--set",
+               "Check front at T=3/Tolerance=9",
+               "--set", "Output/Fields=pressure", "--output-directory", folder)
+        path = self.home / "levels.svg"
+        sizes = {}
+        for words in ((), ("--grid",)):
+            limber("plot", folder, "--field", "pressure", "--time", 0, *words,
+                   "--output", path)
+            sizes[words] = path.read_text().count("<path")
+        said = subprocess.run([SYSTEM, "-B", "-c", LEVELS, str(SCRIPTS), str(
+            folder)], text=True, capture_output=True)
+        self.assertEqual(said.returncode, 0, said.stdout + said.stderr)
+        # two lines a cell
+        self.assertEqual(sizes[("--grid",)] - sizes[()], 2 * int(said.stdout))
+        self.refused("lines are drawn in two dimensions only", "plot",
+                     self.home / "solid", "--field", "speed", "--grid")
+
     def test_pictures_of_several_runs_leave_those_of_the_first_alone(self):
         kept = self.home / "arrays/snapshots.png"
         kept.write_bytes(b"as it was")
@@ -293,6 +345,15 @@ class Scripts(unittest.TestCase):
     def test_a_study_names_what_is_drawn(self):
         self.run_python(DRAWN)
 
+    def test_texts_beside_points_cover_nothing(self):
+        self.run_python(TEXTS)
+
+    def test_lines_with_common_ends(self):
+        self.run_python(ENDS)
+
+    def test_obstacles_in_three_dimensions(self):
+        self.run_python(OBSTACLES)
+
 
 # Spheres that stand 1.7 diameters apart make a surface; a slot of five spacings stays.
 GAPS = """
@@ -417,6 +478,174 @@ figure = plot_study.draw(rows, meta)
 assert len(figure.axes) == 1, figure.axes
 widths = [line.get_linewidth() for line in figure.axes[0].lines]
 assert widths[0] > widths[1] == widths[2], widths
+"""
+
+# Cells of three sizes at the start; squares of points are half a cell wide, those of
+# liquids half as large again, and their areas are that of the water.
+LEVELS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import fields, panels
+source = fields.Source(sys.argv[2])
+lower, upper = source.cells(0)
+edges = np.unique((upper - lower).round(9))
+assert (edges == [0.0625, 0.125, 0.25]).all(), edges
+state = panels.State(source, 0, panels.Look("pressure", grid=True))
+assert set(np.unique((state.sizes / 1.5).round(9))) <= set(edges / 2), state.sizes
+assert abs(((state.sizes / 1.5)**2).sum() - 2) < 1e-9
+print(len(lower))
+"""
+
+# Three lines or more that lie on each other are one, which says so; the legend has
+# all. Texts cover neither lines nor points nor each other.
+TEXTS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import plot_study
+def study(lines, cost):
+    rows = [{"method": m, "outcome": "finished", "beyond": "", "n": str(k),
+             "CPU seconds": str(x), "a value": str(y), "a error": str(y),
+             "a Pareto": "0"} for m, line in lines.items()
+            for k, (x, y) in enumerate(line)]
+    return plot_study.draw(rows, {
+        "title": "", "caption": "", "measures": ["a"], "variations": ["n"],
+        "horizontal": "CPU seconds" if cost else "n", "horizontal label": "n",
+        "vertical label": "", "against cost": cost, "logarithmic": "both"
+        if cost else "none", "error levels": [], "closed forms": {}})
+same = [(1, 1.), (2, 2.), (3, 3.)]
+figure = study({"none": same, "cell": same, "node": same, "hybrid": [(1, 3.)]},
+               False)
+texts = [text.get_text().replace("\\n", " ") for text in figure.axes[0].texts]
+assert texts == ["none, cell, node coincide"], texts
+names = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+assert names == ["none", "cell", "node", "hybrid"], names
+seen = [line for line in figure.axes[0].lines if len(line.get_xdata())]
+assert len(seen) == 2, seen
+# two methods are still two lines
+figure = study({"none": same, "cell": same}, False)
+assert not figure.axes[0].texts
+
+random = np.random.RandomState(3)
+lines = {f"none with {k}": sorted((1 + 0.2 * random.rand(4 - k % 2, 2)).tolist())
+         for k in range(8)}
+figure = study(lines, True)
+axis = figure.axes[0]
+figure.canvas.draw()
+boxes = [text.get_window_extent() for text in axis.texts if text.get_text()]
+assert len(boxes) > 4, boxes
+for k, box in enumerate(boxes):
+    assert not any(box.overlaps(other) for other in boxes[:k]), axis.texts[k]
+    for line in axis.lines:
+        if line.get_transform() != axis.transData:
+            continue
+        corners = axis.transData.transform(np.column_stack(line.get_data()))
+        for a, b in zip(corners, corners[1:]):
+            along = a + np.linspace(0, 1, 500)[:, None] * (b - a)
+            assert not any(box.x0 + 2 < x < box.x1 - 2 and
+                           box.y0 + 2 < y < box.y1 - 2 for x, y in along), k
+"""
+
+# Where all lines begin and end alike the caption says it once.
+ENDS = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import plot_study
+meta = {"title": "", "caption": "", "measures": ["a"], "variations": ["cells"],
+        "horizontal": "CPU seconds", "horizontal label": "CPU seconds",
+        "vertical label": "", "against cost": True, "logarithmic": "both",
+        "error levels": [], "closed forms": {}}
+def captions(cells):
+    rows = [{"method": m, "cells": str(n), "outcome": "finished", "beyond": "",
+             "a value": str(1 / n), "a error": str(1 / n), "a Pareto": "0",
+             "CPU seconds": str((k + 2) * n)}
+            for k, m in enumerate(("none", "cell")) for n in cells[k]]
+    figure = plot_study.draw(rows, meta)
+    return figure._supxlabel.get_text(), [t.get_text() for t in
+                                          figure.axes[0].texts if t.get_text()]
+said, texts = captions([(3, 6), (3, 6)])
+assert "Lines go from 3 at the left to 6 at the right (cells)." in said, said
+assert not texts, texts
+said, texts = captions([(3, 6), (3, 7)])
+assert "Numbers at the ends of lines: cells." in said, said
+assert sorted(texts) == ["3", "3", "6", "7"], texts
+"""
+
+# Depths that a camera along z sees: tops of a ball, a box, a turned cylinder, a
+# formula and facets, also where they reach out of the box; a plane as its outline.
+OBSTACLES = """
+import struct, sys, tempfile
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import solids, spheres
+lower, upper = np.zeros(3), np.array([4., 4, 4])
+camera = spheres.Camera(lower, upper, 0, 0, 1, 400)
+def top(entries, x, y, time=0.):
+    names = {"Obstacles": "a", **{f"Obstacle a/{k}": v for k, v in entries.items()}}
+    depth = solids.depths(camera, names, time, lower, upper)
+    return None if depth is None else depth[400 - int(100 * y), int(100 * x)]
+def near(value, expected):
+    assert abs(value - expected) < 1e-3, (value, expected)
+ball = {"Shape": "ball", "Ball/Centre": "1, 1, 1", "Ball/Radius": "0.5",
+        "Displacement": "t; 0; 2*t"}
+near(top(ball, 1, 1), 1.5)
+near(top(ball, 1.3, 1), 1.4)
+assert top(ball, 1.6, 1) == -np.inf
+near(top(ball, 2, 1, 1.), 3.5)
+box = {"Shape": "box", "Box/Lower corner": "1, 1, 1", "Box/Upper corner": "2, 2, 9",
+       "Centre": "1, 1, 1", "Rotation": "t", "Axis": "0, 0, 1"}
+near(top(box, 1.5, 1.5), 4)  # cut at the side of what is seen
+assert top(box, 0.5, 1.5) == -np.inf
+near(top(box, 0.5, 1.5, np.pi / 2), 4)
+cylinder = {"Shape": "cylinder", "Cylinder/Axis": "y", "Cylinder/Centre": "1, 0, 1",
+            "Cylinder/Radius": "0.5", "Cylinder/Lower end": "1",
+            "Cylinder/Upper end": "2"}
+near(top(cylinder, 1.3, 1.5), 1.4)
+assert top(cylinder, 1.3, 2.1) == -np.inf
+formula = {"Shape": "formula", "Formula/Inside": "1 - (x - 2)^2 - (y - 2)^2 - z^2"}
+near(top(formula, 2.6, 2), 0.8)
+block = {"Shape": "block", "Block/Corners": "0,0,0; 1,0,0; 1,1,0; 0,1,0; "
+         "0,0,1; 1,0,1; 1,1,1; 0,1,1"}
+near(top(block, 0.5, 0.25), 1)
+both = {"Shape": "union", "Union/Shapes": "one, two",
+        **{f"Union/Shape one/{k}": v for k, v in ball.items()},
+        **{f"Union/Shape two/{k}": v for k, v in block.items()}}
+near(top(both, 1, 1.2), 1 + 0.21**0.5)
+near(top(both, 0.5, 0.25), 1)
+with tempfile.NamedTemporaryFile(suffix=".stl") as file:
+    facets = solids._facets_of_block(
+        {"a/Corners": block["Block/Corners"]}, "a")
+    file.write(b" " * 80 + struct.pack("<I", len(facets)) + b"".join(
+        struct.pack("<12fH", 0, 0, 0, *facet.ravel(), 0) for facet in facets))
+    file.flush()
+    stl = {"Shape": "stl", "STL/File": file.name, "STL/Scale": "2",
+           "STL/Rotation": "0, 0, 90", "STL/Translation": "2, 0, 3"}
+    near(top(stl, 1.2, 0.7), 4)  # from z = 3 to 5
+    stl["STL/Translation"] = "2, 0, 0"
+    near(top(stl, 1.2, 0.7), 2)
+    assert top(stl, 2.2, 0.7) == -np.inf
+    low, high = next(solids.around({"Obstacles": "a", **{
+        f"Obstacle a/{k}": v for k, v in stl.items()}}, 0.))
+    assert abs(low - [0, 0, 0]).max() < 1e-6 and abs(high - 2).max() < 1e-6
+plane = {"Obstacles": "a", "Obstacle a/Shape": "half-space",
+         "Obstacle a/Half-space/Point": "0, 1, 0",
+         "Obstacle a/Half-space/Normal": "-1, 1, 0"}
+assert solids.depths(camera, plane, 0., lower, upper) is None
+(corners,) = solids.polygons(plane, 0., lower, upper)
+assert len(corners) == 4, corners
+assert abs(corners[:, 1] - corners[:, 0] - 1).max() < 1e-12
+edges = np.linalg.norm(corners - np.roll(corners, 1, axis=0), axis=1)
+assert np.allclose(sorted(edges), [4, 4, 3 * 2**0.5, 3 * 2**0.5]), edges
+# What is in front hides what is behind: a ball before and behind a point.
+place, blue = np.array([[1., 1, 2]]), np.array([[0., 0, 1]])
+names = {"Obstacles": "a", **{f"Obstacle a/{k}": v for k, v in ball.items()}}
+for time, colour in ((0., True), (0.7, False)):
+    depth = solids.depths(camera, {**names, "Obstacle a/Displacement": "0; 0; 2*t"},
+                          time, lower, upper)
+    pixel = spheres.render(camera, place, blue, 0.2, depth)[300, 100]
+    assert (pixel[2] > 2 * pixel[0]) == colour, pixel
+    assert pixel[3] == 1
 """
 
 # Of many methods and measures those are drawn that the study names, and the

@@ -7,6 +7,7 @@
 import argparse
 import json
 import os
+import re
 import resource
 import subprocess
 import sys
@@ -230,6 +231,58 @@ def meshes(folder):
                 limber("reference", TOP / "prm/cantilever.prm", "--validate",
                        changes=("Reference/Mesh file=" + str(mesh),),
                        ranks=ranks), said)
+
+
+COMMANDS = ("", "reference", "compare", "study", "stability", "inf-sup", "advise",
+            "plot", "animate")
+
+
+def helps(folder):
+    """Every command explains itself; what it takes is in the page of 'man' and is
+    completed by bash."""
+    page = (TOP / "contrib/packaging/limber.1").read_text().replace("\\-", "-")
+    bash = (TOP / "contrib/packaging/completion.bash").read_text()
+    code, overview, _ = limber("--help")
+    for command in COMMANDS:
+        words = (command,) if command else ()
+        code, said, complaint = limber(*words, "--help")
+        short = limber(*words, "-h")
+        expect(code == 0 and not complaint and
+               said.startswith(f"limber {command}".rstrip()) and
+               short == (0, said, ""), f"'limber {command}' -h and --help",
+               code, said, complaint, short)
+        expect(not command or re.search(rf"^  {command} ", overview, re.M),
+               f"'limber --help' lists {command}", overview)
+        options = set(re.findall(r"^  (?:-h, )?(--[a-z-]+)", said, re.M))
+        expect(len(options) > (0 if command in ("", "compare") else 2) or
+               command == "compare", f"options of '{command}'", said)
+        part = re.search(rf"^    {command or 'run'}\) options=\"(.*?)\"", bash,
+                         re.M | re.S)[1].split()
+        for option in options - {"--help"}:
+            expect(re.search(rf"^\.B[IR]? \"?{option}\b", page, re.M),
+                   f"{option} of '{command}' is in limber.1")
+            expect(option in part, f"{option} of '{command}' is completed", part)
+        for option in set(part) - {"--help"}:
+            expect(option in said, f"'{command}' takes {option}", said)
+
+
+def intended(folder):
+    """Nothing is said about an entry that '--set' gives and the run uses; one that
+    has no effect is told."""
+    for changes in (("Method/Courant number=0.4",),
+                    ("Output/Statistics interval=7",),
+                    ("Body block/Locking treatment=cell",), ("End step=2",),
+                    ("Body block/History=relax", "Body block/Relaxation time=0.1")):
+        code, out, said = limber(BLOCK, "--validate", changes=changes)
+        told = [line for line in (out + said).splitlines() if "--set" in line or
+                "arning" in line or "no effect" in line]
+        expect(code == 0 and not told, f"{changes}: no warning", told, said)
+    expect_refused(limber(BLOCK, "--validate",
+                          changes=("Body block/Relaxation time=0.1",)),
+                   "has no effect", "History = relax")
+    expect_refused(limber(BLOCK, "--validate",
+                          changes=("Method/Courant numbr=0.4",)),
+                   "Courant number")
 
 
 def main():

@@ -86,6 +86,16 @@ class Behaviour(unittest.TestCase):
         self.assertEqual(code, 0, said)
         self.assertIn("error 1e-09: reached by no variant", said)
 
+    def test_an_error_of_the_study_is_told_once(self):
+        """Also if the command line names it again, with other digits."""
+        code, said = self.run_study(self.write(), "--for-error", "0.50",
+                                    "--for-error", "0.25")
+        self.assertEqual(code, 0, said)
+        self.assertEqual(said.count("error 0.5:"), 1, said)
+        self.assertEqual(said.count("error 0.25:"), 1, said)
+        table = (self.folder / "out/study.md").read_text()
+        self.assertEqual(table.count("error 0.5:"), 1, table)
+
     def test_resume_repeats_only_what_changed(self):
         self.run_study(self.write())
         kept = self.folder / "out/runs/good_4_4/summary.json"
