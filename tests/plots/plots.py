@@ -289,7 +289,8 @@ class Scripts(unittest.TestCase):
             scripts = [*SCRIPTS.glob("*.py"),
                        *(TOP / "contrib/studies").glob("*.py")]
             no_modules = {"advice_table.py", "all_studies.py",
-                          "make_bracket.py", "oedometer_reference.py"}
+                          "cut_positions.py", "make_bracket.py",
+                          "oedometer_reference.py"}
             libraries = {"run_folder.py"}
             self.assertGreater(len(scripts), 15)
             for script in scripts:

@@ -3,6 +3,8 @@
 
     failures.py --limber build/release/limber \\
         --scene tests/restart/two_dimensions.prm
+
+With --case only what is named; --set changes entries of the scene.
 """
 
 import argparse
@@ -34,7 +36,7 @@ class Runs:
         """Runs the scene; the code and the words of the message must fit."""
         command = [self.arguments.limber, self.arguments.scene,
                    "--output-directory", str(self.folder)]
-        for change in changes:
+        for change in (*self.arguments.set, *changes):
             command += ["--set", change]
         if resume:
             command.append("--resume")
@@ -107,18 +109,25 @@ def unstable(runs):
           "the summary names the checkpoint")
 
 
+CASES = {case.__name__: case
+         for case in (folder_is_taken, disk_is_full, other_scene,
+                      nothing_to_resume, unstable)}
+
+
 def main():
     parser = argparse.ArgumentParser(
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--limber", required=True)
     parser.add_argument("--scene", required=True)
+    parser.add_argument("--set", metavar="NAME=VALUE", action="append",
+                        default=[])
+    parser.add_argument("--case", choices=CASES, action="append")
     arguments = parser.parse_args()
-    for case in (folder_is_taken, disk_is_full, other_scene,
-                 nothing_to_resume, unstable):
-        print(case.__name__, flush=True)
+    for name in arguments.case or CASES:
+        print(name, flush=True)
         with tempfile.TemporaryDirectory() as folder:
-            case(Runs(arguments, Path(folder) / "run"))
+            CASES[name](Runs(arguments, Path(folder) / "run"))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,11 @@
 An expectation is a path into summary.json and, unless the value itself is
 true or false, a comparison with ==, !=, <=, >=, < or >. 'summary.' leads to
 the top of that file, 'checks.NAME.' into the check of this name. Names may
-hold blanks and dots.
+hold blanks and dots. What the program says, but does not write into that file,
+is compared with --expect-said: words of it with # in the place of the number,
+and a comparison.
+
+    --expect-said "iterations a step, at most #<=5"
 """
 
 import argparse
@@ -21,6 +25,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+NUMBER = r"([-+]?[0-9]+(?:[.][0-9]+)?(?:e[-+]?[0-9]+)?)"
 OPERATORS = {"==": operator.eq, "!=": operator.ne, "<=": operator.le,
              ">=": operator.ge, "<": operator.lt, ">": operator.gt}
 
@@ -72,6 +77,19 @@ def check_expectation(text, summary):
     return f"{text}: it is {json.dumps(value)}"
 
 
+def check_said(text, words):
+    """Returns what is wrong with a number in the output, or nothing."""
+    said, comparison, wanted = re.split(r"(==|!=|<=|>=|<|>)", text, maxsplit=1)
+    pattern = re.escape(" ".join(said.split())).replace(r"\#", NUMBER)
+    found = re.findall(pattern, words)
+    if not found:
+        return f"nowhere said: {said}"
+    for value in found:
+        if not OPERATORS[comparison](float(value), float(wanted)):
+            return f"{text}: it is {value}"
+    return None
+
+
 def run(arguments, folder):
     """Returns the exit code, all output, and summary.json if there is one."""
     command = [str(Path(arguments.limber).resolve()),
@@ -101,6 +119,10 @@ def problems(arguments, code, output, summary):
     for message in arguments.expect_message:
         if " ".join(message.split()) not in words:
             yield f"nowhere said: {message}"
+    for text in arguments.expect_said:
+        problem = check_said(text, words)
+        if problem:
+            yield problem
     if arguments.expect and summary is None:
         yield "no summary.json was written"
     elif arguments.expect:
@@ -120,6 +142,7 @@ def main():
     parser.add_argument("--ranks", type=int, default=1)
     parser.add_argument("--expect-code", type=int, default=0)
     parser.add_argument("--expect-message", metavar="TEXT", **several)
+    parser.add_argument("--expect-said", metavar="WORDS", **several)
     parser.add_argument("--expect", metavar="CONDITION", **several)
     arguments = parser.parse_args()
 
