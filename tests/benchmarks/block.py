@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the sliding block: time per point and step, ranks, memory.
 
-    block.py [LIMBER] [RUNS]
+    block.py [--laws] [LIMBER] [RUNS]
     block.py --table [--steps N] [--only WORD] [LIMBER] [RUNS]
 
 Prints best and median over the runs (default 5) of CPU time in ns per point
@@ -9,7 +9,7 @@ and step for both treatments in 2D and 3D, with splines and cubic ones, with
 splines and FMPM, with CPDI, in the initial frame, in a box with 16 times the
 cells, the laws at finite strain with two kernels, the speed-up of two ranks in
 wall time, and bytes per point (peak resident set, program included) for a finer
-block.
+block. With --laws only the laws are measured, with fewer steps.
 
 --table prints instead one Markdown table of every kernel, transfer and frame,
 without a cure for locking and with each that it has, with the ratios to linear
@@ -44,7 +44,7 @@ INITIAL = "Body block/Frame=initial"
 ASSUMED = "Body block/Locking treatment=assumed strain"
 FMPM = ["Method/Transfer=fmpm", "Method/Stress update=usl", NONE]
 # Laws at finite strain; those that flow once where nothing does and once where
-# all points do in every step
+# all points do in every step. Clay does where it is pressed by its weight.
 MODULI = ["Density=1000", "Young's modulus=1e6", "Poisson's ratio=0.3"]
 
 
@@ -59,7 +59,22 @@ LAWS = {"neo hookean": law("neo hookean"),
         "j2, flowing": law("j2", "Yield stress=1e-3"),
         "drucker prager, elastic": law("drucker prager", "Friction angle=30",
                                        "Cohesion=1e9", "Tensile strength=1e9"),
-        "drucker prager, flowing": law("drucker prager", "Friction angle=5")}
+        "drucker prager, flowing": law("drucker prager", "Friction angle=5"),
+        "j2 with saturation, flowing": law("j2", "Yield stress=1e-3",
+                                           "Saturation hardening=1e-3"),
+        "Bingham, flowing": law("j2", "Yield stress=1e-3", "Viscosity=1"),
+        "Herschel-Bulkley, flowing": law("j2", "Yield stress=1e-3",
+                                         "Viscosity=1", "Flow exponent=0.5"),
+        "mu(I), flowing": law("drucker prager", "Friction angle=5",
+                              "Limit friction angle=30")}
+CLAY = ["Body block/Material=cam clay", *(f"Body block/Cam clay/{entry}" for entry in (
+    "Density=1000", "Shear modulus=4e5", "Compression index=0.002",
+    "Swelling index=0.0012", "Critical state slope=1.2"))]
+LAWS |= {"cam clay, elastic": [
+             *CLAY, "Body block/Cam clay/Preconsolidation pressure=1e9"],
+         "cam clay, flowing": [
+             *CLAY, "Body block/Cam clay/Preconsolidation pressure=1"]}
+SHORT = {"2d": ["End time=0.0125"], "3d": ["End time=0.006"]}
 FINE = {"2d": ["Grid/Cells=1984, 1984", "End time=0.00025"],
         "3d": ["Grid/Cells=160, 160, 160", "End time=0.001"]}
 
@@ -203,6 +218,7 @@ def main():
     parser.add_argument("limber", nargs="?",
                         default=str(TOP / "build/release/limber"))
     parser.add_argument("runs", nargs="?", type=int, default=5)
+    parser.add_argument("--laws", action="store_true")
     parser.add_argument("--table", action="store_true")
     parser.add_argument("--parts", action="store_true")
     parser.add_argument("--steps", type=int, default=0)
@@ -213,7 +229,8 @@ def main():
         return print_table(limber, runs, arguments.steps, arguments.only,
                            arguments.parts)
     for scene in ("2d", "3d"):
-        variants = {"cell": ([], 1),
+        variants = {} if arguments.laws else {
+                    "cell": ([], 1),
                     "none": ([NONE], 1),
                     "splines, cell": ([SPLINES], 1),
                     "splines, none": ([SPLINES, NONE], 1),
@@ -232,7 +249,9 @@ def main():
         for kernel, settings in {"cell": [], "splines, node": [
                 SPLINES, "Body block/Locking treatment=node"]}.items():
             for name, entries in LAWS.items():
-                variants[f"{name}, {kernel}"] = ([*entries, *settings], 1)
+                variants[f"{name}, {kernel}"] = (
+                    [*entries, *settings, *(SHORT[scene] if arguments.laws else [])],
+                    1)
         found = {name: [] for name in variants}
         for _ in range(runs):
             for name, (settings, ranks) in variants.items():
@@ -244,6 +263,8 @@ def main():
                   f"{min(cost):6.1f} median {statistics.median(cost):6.1f}"
                   f"   wall s: best {min(wall):.3f} "
                   f"median {statistics.median(wall):.3f}", flush=True)
+        if arguments.laws:
+            continue
         memory = run(limber, f"block_{scene}", FINE[scene])
         print(f"{scene} {memory['points']} points: "
               f"{memory['bytes_per_point']:.0f} bytes per point", flush=True)

@@ -925,6 +925,53 @@ TYPED_TEST(ClayPaths, UndrainedShearFollowsTheClosedForm)
 
 
 
+// The same in numbers: normally consolidated clay at four stress ratios q / x, and
+// the undrained strength q / 2 of clay that has borne once and twice the pressure.
+TYPED_TEST(ClayPaths, UndrainedStressesAreThoseOfTheTable)
+{
+  constexpr int    dim     = TypeParam::dim;
+  constexpr double x0      = 1e5;
+  constexpr int    n_steps = 10000;
+  constexpr double ratios[]    = {0.3, 0.6, 0.9};
+  constexpr double pressures[] = {0.95266, 0.83651, 0.69975};
+  for (const double borne : {1., 2.})
+    {
+      const CamClay law   = clay(borne * x0 - a);
+      auto          state = law.template initialise<dim>(x0 - a);
+      // to the Kirchhoff pressure x0 - a
+      state.history[0] = std::pow(x0 / a, -kappa);
+      move<dim>(law, state, {});
+      const double e = 0.3 / n_steps;
+      const double wide =
+        dim == 2 ? 1 / (1 - e) - 1 : 1 / std::sqrt(1 - e) - 1;
+      double eta = 0, x = x_of(state);
+      int    n_passed = 0;
+      for (int k = 0; k < n_steps; ++k)
+        {
+          move<dim>(law, state, diagonal<dim>(-e, wide, wide));
+          const double x_now   = x_of(state);
+          const double eta_now = q_of<dim>(state) / x_now;
+          if (borne == 1 && n_passed < 3 && eta_now >= ratios[n_passed])
+            {
+              const double share =
+                (ratios[n_passed] - eta) / (eta_now - eta);
+              EXPECT_NEAR((x + share * (x_now - x)) / x0,
+                          pressures[n_passed],
+                          1e-5);
+              ++n_passed;
+            }
+          eta = eta_now;
+          x   = x_now;
+        }
+      EXPECT_EQ(n_passed, borne == 1 ? 3 : 0);
+      EXPECT_NEAR(eta, M, 2e-3);
+      EXPECT_NEAR(x / x0, borne == 1 ? 0.57435 : 1., 1e-3);
+      EXPECT_NEAR(q_of<dim>(state) / 2 / x0, borne == 1 ? 0.3446 : 0.6, 1e-3);
+    }
+}
+
+
+
 // At constant lateral stress (Kirchhoff's) q = 3 (p - p0) up to q = M x; the
 // volume there is that of the critical state line. Clay that has borne ten
 // times the pressure dilates.
