@@ -73,10 +73,12 @@ namespace limber
     ++memory.steps;
     if (memory.times_asked == 0 && looks_ahead())
       return true;
+    // however rarely one wants to ask: no coarse point shall enter fine cells
+    if (memory.way + displacement > longest_way)
+      return true;
     if (grid.description.adapt_every > 0)
       return memory.steps >= grid.description.adapt_every;
-    return memory.way + displacement > longest_way ||
-           (memory.steps * fine_steps_in_one >= steps_at_rest &&
+    return (memory.steps * fine_steps_in_one >= steps_at_rest &&
             (grid.description.may_change_at_rest() ||
              problem.splits_stretched_points()));
   }

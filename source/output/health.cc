@@ -155,11 +155,16 @@ namespace limber
           is_elastic &= !body.is_liquid && !body.is_plastic;
         }
       HealthLine line;
-      line.entry         = "Grid/Cells";
-      const bool created = figures.contact < 0;
-      const bool counts  = figures.may_hit && (created ? is_solid : is_elastic);
+      line.entry = "Grid/Cells";
+      // where something creeps within the friction, heat and loss are two
+      // shares of nothing
+      const double lost    = figures.contact < 0 ?
+                               std::min(0., figures.contact + figures.friction) :
+                               figures.contact;
+      const bool   created = lost < 0;
+      const bool counts = figures.may_hit && (created ? is_solid : is_elastic);
       if (counts && figures.energy_scale > 0)
-        line.value = figures.contact / figures.energy_scale;
+        line.value = lost / figures.energy_scale;
       line.verdict = created ? created_bounds.verdict(line.value) :
                                check.verdict(line.value);
       line.text =

@@ -210,6 +210,42 @@ namespace limber
 
 
 
+    /**
+     * Notes two solids that are apart at the start and in no pair: nobody may
+     * have meant them to stick together where they meet.
+     */
+    template <int dim>
+    void
+    look_at_bodies_in_no_pair(Problem<dim> &problem)
+    {
+      if (!problem.contacts.empty())
+        return;
+      for (const Body<dim> &first : problem.bodies)
+        for (const Body<dim> &second : problem.bodies)
+          {
+            if (&first == &second)
+              break;
+            const Corners<dim> a = first.shape->bounding_box(),
+                               b = second.shape->bounding_box();
+            bool apart           = false;
+            for (unsigned int d = 0; d < dim; ++d)
+              {
+                const double gap = 1e-6 * problem.grid.edge(d);
+                apart |= a.first[d] > b.second[d] + gap ||
+                         b.first[d] > a.second[d] + gap;
+              }
+            if (apart && !first.is_liquid && !second.is_liquid)
+              return problem.notes.push_back(
+                "Bodies " + in_quotes(second.name) + " and " +
+                in_quotes(first.name) +
+                " are apart and in no pair of 'Contact': should they meet, "
+                "they stick together, from a cell apart. 'Contact/Pairs' makes "
+                "them bounce, slide and part.");
+          }
+    }
+
+
+
     template <int dim>
     bool
     any_solids_part(const Problem<dim> &problem)
@@ -248,6 +284,7 @@ namespace limber
           }
       }
     choose_fields(problem);
+    look_at_bodies_in_no_pair(problem);
     if (std::all_of(problem.bodies.begin(),
                     problem.bodies.end(),
                     [](const auto &body) { return body.nodal_field == 0; }))

@@ -39,11 +39,11 @@ namespace limber
       "Adapt every",
       "auto",
       admissible::positive_integer("200").or_word("auto"),
-      "Steps after which criteria are asked again; 'auto': "
-      "when a point may have moved by 1.5 of the smallest cells (11.5, in three "
-      "dimensions 5.5, where 'body' wants all bodies fine and "
-      "nothing else is asked), and for formulas of the time and criteria with "
-      "a scale after 50 at most.");
+      "Steps after which criteria are asked again at the latest; they are "
+      "whenever a point may have moved by 1.5 of the smallest cells (11.5, in "
+      "three dimensions 5.5, where 'body' wants all bodies fine and nothing "
+      "else is asked). 'auto': only then, but formulas of the time and "
+      "criteria with a scale after 50.");
     parameters.declare("Join points",
                        "false",
                        admissible::flag(),

@@ -198,8 +198,8 @@ namespace limber
                                    "waves in solids" :
                                    "what moves (|v| + sqrt(g h))");
       if (!(speeds.sound > fast_sound * other))
-        return say("'explicit', as " + ratio + ", at most " +
-                   brief(fast_sound));
+        return say("'explicit', as " + ratio + "; other steps pay from " +
+                   brief(fast_sound) + " times on");
 
       double edge = 1e300; // of the finest cells
       for (unsigned int d = 0; d < dim; ++d)

@@ -404,7 +404,12 @@ namespace limber
     // Consistent initial acceleration from the forces
     Values former_acceleration = accelerations;
     if (scheme.needs_acceleration() && time == 0)
-      former_acceleration = mass.velocity(net);
+      {
+        std::vector<bool> held(equations.size());
+        for (std::size_t k = 0; k < equations.size(); ++k)
+          held[k] = equations.is_held(k);
+        former_acceleration = mass.velocity(net, held);
+      }
 
     question.inertial_displacement.assign(equations.size(), 0.);
     const Values of_sides = equations.held_velocities(time + step);

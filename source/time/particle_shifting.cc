@@ -13,8 +13,9 @@ namespace limber
     // points clump meanwhile, so long that it costs little.
     constexpr double interval = 0.2;
 
-    // Limit of C s: more would overshoot.
-    constexpr double largest_factor = 0.5;
+    // Limit of C s. An excess that alternates from node to node along one axis
+    // is multiplied by 1 - 4.5 C s, and must not grow.
+    constexpr double largest_factor = 0.4;
 
     // Limit of each shift along an axis, in cells.
     constexpr double largest_shift = 0.1;

@@ -64,10 +64,11 @@ namespace limber
     /**
      * The nodal velocities whose momenta M v are @p momentum (kg m/s); with
      * that which points bring, P2G, the velocity of the nodes that is nearest
-     * to theirs.
+     * to theirs. Components that are @p fixed, if any are, are zero.
      */
     Values
-    velocity(const Values &momentum) const;
+    velocity(const Values            &momentum,
+             const std::vector<bool> &fixed = {}) const;
 
     /** Add @p factor times M. */
     void

@@ -925,13 +925,14 @@ TYPED_TEST(ClayPaths, UndrainedShearFollowsTheClosedForm)
 
 
 
-// The same in numbers: normally consolidated clay at four stress ratios q / x, and
-// the undrained strength q / 2 of clay that has borne once and twice the pressure.
+// The same in numbers: normally consolidated clay at four stress ratios q / x,
+// and the undrained strength q / 2 of clay that has borne once and twice the
+// pressure.
 TYPED_TEST(ClayPaths, UndrainedStressesAreThoseOfTheTable)
 {
-  constexpr int    dim     = TypeParam::dim;
-  constexpr double x0      = 1e5;
-  constexpr int    n_steps = 10000;
+  constexpr int    dim         = TypeParam::dim;
+  constexpr double x0          = 1e5;
+  constexpr int    n_steps     = 10000;
   constexpr double ratios[]    = {0.3, 0.6, 0.9};
   constexpr double pressures[] = {0.95266, 0.83651, 0.69975};
   for (const double borne : {1., 2.})
@@ -941,11 +942,10 @@ TYPED_TEST(ClayPaths, UndrainedStressesAreThoseOfTheTable)
       // to the Kirchhoff pressure x0 - a
       state.history[0] = std::pow(x0 / a, -kappa);
       move<dim>(law, state, {});
-      const double e = 0.3 / n_steps;
-      const double wide =
-        dim == 2 ? 1 / (1 - e) - 1 : 1 / std::sqrt(1 - e) - 1;
-      double eta = 0, x = x_of(state);
-      int    n_passed = 0;
+      const double e    = 0.3 / n_steps;
+      const double wide = dim == 2 ? 1 / (1 - e) - 1 : 1 / std::sqrt(1 - e) - 1;
+      double       eta = 0, x = x_of(state);
+      int          n_passed = 0;
       for (int k = 0; k < n_steps; ++k)
         {
           move<dim>(law, state, diagonal<dim>(-e, wide, wide));
@@ -953,8 +953,7 @@ TYPED_TEST(ClayPaths, UndrainedStressesAreThoseOfTheTable)
           const double eta_now = q_of<dim>(state) / x_now;
           if (borne == 1 && n_passed < 3 && eta_now >= ratios[n_passed])
             {
-              const double share =
-                (ratios[n_passed] - eta) / (eta_now - eta);
+              const double share = (ratios[n_passed] - eta) / (eta_now - eta);
               EXPECT_NEAR((x + share * (x_now - x)) / x0,
                           pressures[n_passed],
                           1e-5);

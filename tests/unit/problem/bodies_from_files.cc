@@ -185,7 +185,7 @@ namespace
     double                 mass = 0, volume = 0;
     std::size_t            n = 0;
     dealii::Tensor<1, dim> momentum;
-    dealii::Tensor<1, dim> first;  // moments of the mass about the origin
+    dealii::Tensor<1, dim> first; // moments of the mass about the origin
     dealii::Tensor<2, dim> second;
 
     explicit Seeded(const Problem<dim> &problem)
@@ -662,8 +662,8 @@ TEST(BodiesFromFiles, AreFilledToOneThousandthOfTheirVolume)
 
 
 
-// Second moments, of which inertia is made, within half a per cent of those of the
-// facets; a point fills a cube of half a cell.
+// Second moments, of which inertia is made, within half a per cent of those of
+// the facets; a point fills a cube of half a cell.
 TEST(BodiesFromFiles, TurnAsTheirFacetsDo)
 {
   const TestFacets facets = icosphere(3, 0.35, Point<3>(0.5, 0.5, 0.5));

@@ -154,7 +154,8 @@ TEST(Dispersion, LoweredFrequenciesFollowTheClosedFormula)
         Expected{{"cpgimp", "fmpm 4"}, -0.052, 0.008},
         Expected{{"cpdi", "fmpm 4"}, -0.052, 0.008},
         Expected{{"cpdi2", "fmpm 4"}, -0.052, 0.008},
-        // 7/12 (1 - alpha) + alpha / 12 - (1 - alpha)^2 / 16 less 3/16, by halves
+        // 7/12 (1 - alpha) + alpha / 12 - (1 - alpha)^2 / 16 less 3/16, by
+        // halves
         Expected{{"ddmp", "fmpm 4"}, 0.0513, 0.004, {16}},
         Expected{{"quadratic", "fmpm 4"}, 0.0104, 0.004},
         Expected{{"cubic", "fmpm 4"}, 0.002, 0.004},
