@@ -108,8 +108,8 @@ namespace limber
        "else and everything in the scene goes with it, otherwise 'explicit'"},
       {"implicit",
        TimeIntegration::implicit_steps,
-       "Newmark's trapezoidal rule, or with 'Spectral radius at infinity' "
-       "generalised-alpha; solids, solved by Newton's method, "
+       "the generalised-alpha method, or with 'Spectral radius at infinity = "
+       "1' Newmark's trapezoidal rule; solids, solved by Newton's method, "
        "with steps of any length"},
       {"quasi-static",
        TimeIntegration::quasi_static,

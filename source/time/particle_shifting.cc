@@ -14,8 +14,8 @@ namespace limber
     constexpr double interval = 0.2;
 
     // Limit of C s. An excess that alternates from node to node along one axis
-    // is multiplied by 1 - 4.5 C s, and must not grow.
-    constexpr double largest_factor = 0.4;
+    // is multiplied by 1 - 4.5 C s, and grows from 0.44 on.
+    constexpr double largest_factor = 0.43;
 
     // Limit of each shift along an axis, in cells.
     constexpr double largest_shift = 0.1;

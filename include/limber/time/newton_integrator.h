@@ -12,11 +12,12 @@ namespace limber
 {
   /**
    * Quasi-static steps, at whose end forces are in equilibrium, or implicit
-   * ones with inertia (Newmark's trapezoidal rule, beta = 1/4, gamma = 1/2, or
-   * GeneralisedAlpha, whose acceleration points carry). The displacements of
-   * the nodes in the step are found by Newton's method with line search; points
-   * are updated only afterwards, so that a step that fails leaves all as it
-   * was. It is then tried with half the length. doc/theory/implicit_steps.md
+   * ones with inertia (GeneralisedAlpha, whose acceleration points carry, or
+   * without damping Newmark's trapezoidal rule, beta = 1/4, gamma = 1/2). The
+   * displacements of the nodes in the step are found by Newton's method with
+   * line search; points are updated only afterwards, so that a step that fails
+   * leaves all as it was. It is then tried with half the length.
+   * doc/theory/implicit_steps.md
    */
   template <int dim>
   class NewtonIntegrator final : public Integrator<dim>

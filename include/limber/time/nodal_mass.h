@@ -67,8 +67,7 @@ namespace limber
      * to theirs. Components that are @p fixed, if any are, are zero.
      */
     Values
-    velocity(const Values            &momentum,
-             const std::vector<bool> &fixed = {}) const;
+    velocity(const Values &momentum, const std::vector<bool> &fixed = {}) const;
 
     /** Add @p factor times M. */
     void
