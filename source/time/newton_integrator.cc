@@ -566,8 +566,8 @@ namespace limber
     });
     if (in_motion)
       {
-        // In the current frame G2P gives points less of short waves than the
-        // lumped masses have.
+        // G2P gives points less of short waves than the lumped masses of light
+        // nodes have.
         double       expected     = kinetic_energy();
         const Values momentum     = mass.times(velocities),
                      new_momentum = mass.times(new_velocity);

@@ -15,7 +15,7 @@ namespace limber
 
     // Limit of C s. An excess that alternates from node to node along one axis
     // is multiplied by 1 - 4.5 C s, and grows from 0.44 on.
-    constexpr double largest_factor = 0.43;
+    constexpr double largest_factor = 0.42;
 
     // Limit of each shift along an axis, in cells.
     constexpr double largest_shift = 0.1;
