@@ -401,15 +401,13 @@ namespace limber
     followers.add_forces(displacement, question.followers_at_rest);
     equations.numbered_nodes().sum(question.followers_at_rest);
 
-    // Consistent initial acceleration from the forces
+    // Initial acceleration from the forces. By lumped masses: those of light
+    // nodes would have a large part in the others.
     Values former_acceleration = accelerations;
     if (scheme.needs_acceleration() && time == 0)
-      {
-        std::vector<bool> held(equations.size());
-        for (std::size_t k = 0; k < equations.size(); ++k)
-          held[k] = equations.is_held(k);
-        former_acceleration = mass.velocity(net, held);
-      }
+      for (std::size_t k = 0; k < equations.size(); ++k)
+        former_acceleration[k] =
+          masses[k] > 0 && !equations.is_held(k) ? net[k] / masses[k] : 0;
 
     question.inertial_displacement.assign(equations.size(), 0.);
     const Values of_sides = equations.held_velocities(time + step);

@@ -117,15 +117,14 @@ namespace limber
   // its range.
   template <int dim>
   typename NodalMass<dim>::Values
-  NodalMass<dim>::velocity(const Values            &momentum,
-                           const std::vector<bool> &fixed) const
+  NodalMass<dim>::velocity(const Values &momentum) const
   {
     constexpr unsigned int most_iterations = 200;
     constexpr double       tolerance       = 1e-14; // of the momentum
     const auto             by_lumped       = [&](const Values &values) {
       Values result(values.size());
       for (std::size_t k = 0; k < values.size(); ++k)
-        if (lumped[k] > 0 && (fixed.empty() || !fixed[k]))
+        if (lumped[k] > 0)
           result[k] = values[k] / lumped[k];
       return result;
     };

@@ -64,10 +64,10 @@ namespace limber
     /**
      * The nodal velocities whose momenta M v are @p momentum (kg m/s); with
      * that which points bring, P2G, the velocity of the nodes that is nearest
-     * to theirs. Components that are @p fixed, if any are, are zero.
+     * to theirs.
      */
     Values
-    velocity(const Values &momentum, const std::vector<bool> &fixed = {}) const;
+    velocity(const Values &momentum) const;
 
     /** Add @p factor times M. */
     void
