@@ -14,14 +14,13 @@ namespace limber
 
 
   /**
-   * The mass matrix of steps by Newton's method, M_ij = sum_p m_p N_i N_j of
-   * points in the initial frame (consistent), and lumped, sum_p m_p N_i, of
-   * points in the current frame, where nodes of small cuts would get any
-   * velocity.
+   * The (consistent) mass matrix of implicit steps, M_ij = sum_p m_p N_i N_j.
+   * With it points that take increments (FLIP) gain the kinetic energy and the
+   * angular momentum that the nodes gain: none is lost between steps (D.
+   * Burgess, D. Sulsky, J. U. Brackbill, J. Comput. Phys. 103, 1992).
    *
-   * With the consistent one points that take increments (FLIP) have the kinetic
-   * energy and the angular momentum of the nodes: none is lost between steps
-   * (D. Burgess, D. Sulsky, J. U. Brackbill, J. Comput. Phys. 103, 1992).
+   * Nodes that points see only from afar would get any velocity; their mass is
+   * lumped in part.
    */
   template <int dim>
   class NodalMass

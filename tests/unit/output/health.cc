@@ -356,6 +356,22 @@ namespace limber::test
 
 
 
+  // What creeps within its friction has heat and a negative loss, both next to
+  // nothing: only what is left of the two counts.
+  TEST(Health, FrictionHeatMakesUpForNegativeLosses)
+  {
+    HealthFigures figures = sound();
+    figures.may_hit       = true;
+    figures.contact       = -3;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::bad);
+    figures.friction = 3.5;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
+    figures.friction = 0.5;
+    EXPECT_EQ(line("impacts", figures).verdict, Verdict::bad);
+  }
+
+
+
   // Where 'Kernel = auto' does not take splines, they are no remedy.
   TEST(Health, SplinesAreNoRemedyForScenesWithWater)
   {

@@ -718,6 +718,34 @@ TEST(Choices, RotationInTheCurrentFrameIsTold)
 
 
 
+// Two solids that are apart and in no pair would stick together.
+TEST(Choices, SolidsApartInNoPairAreTold)
+{
+  const auto told = [](std::vector<std::string> changes) {
+    for (const char *const change : {"Bodies=block, other",
+                                     "Body other/Material=linear elastic",
+                                     "Body other/Box/Lower corner=0, 2",
+                                     "Body other/Box/Upper corner=1, 2.5"})
+      changes.insert(changes.begin(), change);
+    changes.emplace_back("Grid/Upper corner=4, 4");
+    changes.emplace_back("Body block/Box/Lower corner=0, 0");
+    changes.emplace_back("Body block/Box/Upper corner=1, 1");
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("Bodies 'block' and 'other' are apart and in no pair") !=
+             std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told({}));
+  EXPECT_FALSE(told({"Body other/Box/Lower corner=0, 1"})); // on top
+  EXPECT_FALSE(told({"Contact/Pairs=both",
+                     "Contact/Pair both/Bodies=block, other",
+                     "Contact/Pair both/Law=stick"}));
+  EXPECT_FALSE(told({"Body other/Material=newtonian fluid"}));
+}
+
+
+
 // In the initial frame with linear functions it turns too slowly, the less so
 // the smaller the cells.
 TEST(Choices, LagOfASpinIsTold)
