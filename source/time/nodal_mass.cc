@@ -48,16 +48,15 @@ namespace limber
 
   // Of nodes that points see only from afar: blocks become t_i t_j M_ij, and
   // the rest of a row goes to the diagonal. With linear functions M_ii over m_i
-  // is (2/3)^dim times the filled part of the cells of a node i.
+  // is (2/3)^dim times the filled part of the cells of a node i. Outermost
+  // splines have 3/10 along a direction, and less by the square of that part.
   template <int dim>
   void
   NodalMass<dim>::lump_light_nodes()
   {
-    constexpr double  filled  = 0.2; // part of a cell
-    const std::size_t in_cell = nodes.of_cell(0).size();
-    const double      full =
-      std::pow(nodes.n_along() == 2 ? 2. / 3. : 3. / 10., // outermost spline
-               dim);
+    constexpr double    filled  = 0.2; // part of a cell
+    const std::size_t   in_cell = nodes.of_cell(0).size();
+    const double        full    = std::pow(2. / 3., dim);
     std::vector<double> mass(nodes.size()), squares(nodes.size());
     const auto          for_entries = [&](const auto &work) {
       double *entry = blocks.data();
