@@ -311,7 +311,7 @@ namespace limber
   // also their lumped masses.
   template <int dim>
   typename NewtonIntegrator<dim>::Values
-  NewtonIntegrator<dim>::gather(PointView<dim> (*view)(const PointView<dim> &))
+  NewtonIntegrator<dim>::gather(const View view)
   {
     parts.nodes.clear();
     P2GOptions what;

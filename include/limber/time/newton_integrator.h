@@ -93,14 +93,17 @@ namespace limber
   private:
     using Layout = NodeLayout<dim>;
     using Values = std::vector<double>; // by equation
+    // Points with what P2G is to map in the place of the velocity
+    using View = PointView<dim> (*)(const PointView<dim> &);
 
     void
     measure_waves();
     void
     begin_step();
     void
-           gather_nodes();
-    Values gather(PointView<dim> (*view)(const PointView<dim> &));
+    gather_nodes();
+    Values
+    gather(View view);
     bool
     try_step(double time, double step);
     bool
