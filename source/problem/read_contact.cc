@@ -199,8 +199,6 @@ namespace limber
     check_method(const Section &root, const Problem<dim> &problem)
     {
       const Section method = root.subsection("Method");
-      if (has_domains(problem.grid.kernel))
-        refuse(method, "Kernel", "'Kernel = linear' or 'quadratic'");
       if (problem.method.integration != TimeIntegration::explicit_steps)
         refuse(method, "Time integration", "'Time integration = explicit'");
       // two colliding balls would gain half of their energy
@@ -258,6 +256,22 @@ namespace limber
                                   !problem.bodies[pair.bodies[1]].is_liquid;
                          });
     }
+
+
+
+    /** What goes wrong where solids touch at nodes (doc/theory/contact.md). */
+    std::string
+    trouble_at_nodes(const KernelKind kernel)
+    {
+      return has_domains(kernel) ?
+               "round bodies touch over too wide a patch, with three quarters "
+               "of the pressure." :
+             kernel == KernelKind::ddmp ?
+               "the stress in the middle of the contact of round bodies is up "
+               "to two thirds too high." :
+               "what rolls may lose a fifth of its momentum, and what is "
+               "pressed creeps.";
+    }
   } // namespace
 
 
@@ -290,14 +304,14 @@ namespace limber
                     [](const auto &body) { return body.nodal_field == 0; }))
       return;
     check_method(root, problem);
-    if (problem.grid.kernel == KernelKind::linear && any_solids_part(problem))
+    if (!is_spline(problem.grid.kernel) && any_solids_part(problem))
       problem.notes.push_back(
-        "Solids touch with linear functions: what rolls may lose a fifth of "
-        "its momentum, and what is pressed creeps. " +
+        "Solids touch at nodes, as functions are linear: " +
+        trouble_at_nodes(problem.grid.kernel) + " " +
         (problem.grid.against_splines.empty() ?
-           std::string(
-             "'Method/Kernel = quadratic' keeps it within 1 to 3 %.") :
-           "Splines would keep it, but " + problem.grid.against_splines + "."));
+           std::string("'Method/Kernel = quadratic' errs by 1 to 3 %.") :
+           "Splines would be better, but " + problem.grid.against_splines +
+             "."));
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/interpolation/domain_means.h>
 #include <limber/time/body_sweeps.h>
+#include <limber/time/contact.h>
 #include <limber/transfer/convected_transfer.h>
 #include <limber/transfer/dual_domain_transfer.h>
 #include <limber/transfer/project_on_nodes.h>
@@ -54,7 +55,9 @@ namespace limber
     : parts(parts)
   {
     if (parts.problem.grid.kernel == KernelKind::ddmp)
-      dual_domain.emplace(parts.grid.nodes());
+      for (unsigned int field = 0; field < n_nodal_fields(parts.problem);
+           ++field)
+        dual_domains.emplace_back(parts.grid.nodes(), field);
     if (is_affine(parts.problem.method.transfer) && parts.grid.has_levels())
       affine_at_levels.emplace();
     reinit();
@@ -66,8 +69,8 @@ namespace limber
   void
   BodySweeps<dim>::reinit()
   {
-    if (dual_domain)
-      dual_domain->reinit();
+    for (DualDomain<dim> &dual_domain : dual_domains)
+      dual_domain.reinit();
     if (affine_at_levels)
       affine_at_levels->reinit(parts.grid);
   }
@@ -78,10 +81,10 @@ namespace limber
   std::size_t
   BodySweeps<dim>::points_to_grid(P2GOptions what)
   {
-    if (what.force && dual_domain)
-      dual_domain->clear_stress(parts.nodes);
     if (what.force)
       {
+        for (DualDomain<dim> &dual_domain : dual_domains)
+          dual_domain.clear_stress(parts.nodes);
         project_on_nodes([&](MaterialBody<dim> &body, double *const records) {
           sum_pressure<dim>(body.points.view(), nodes_of(body), records);
         });
@@ -120,12 +123,13 @@ namespace limber
   void
   BodySweeps<dim>::finish_points_to_grid(const P2GOptions &what)
   {
-    if (!dual_domain)
-      return;
-    if (what.momentum)
-      dual_domain->find_volumes(parts.nodes, parts.bodies);
-    if (what.force)
-      dual_domain->add_forces(parts.nodes);
+    for (DualDomain<dim> &dual_domain : dual_domains)
+      {
+        if (what.momentum)
+          dual_domain.find_volumes(parts.nodes, parts.bodies);
+        if (what.force)
+          dual_domain.add_forces(parts.nodes);
+      }
   }
 
 
@@ -134,8 +138,8 @@ namespace limber
   void
   BodySweeps<dim>::average_gradients(const unsigned int slot)
   {
-    if (dual_domain)
-      dual_domain->average_gradients(parts.nodes, slot);
+    for (DualDomain<dim> &dual_domain : dual_domains)
+      dual_domain.average_gradients(parts.nodes, slot);
   }
 
 
@@ -298,7 +302,7 @@ namespace limber
     average_over_cells([&](MaterialBody<dim> &body, double *const records) {
       const auto points = body.points.view();
       const auto nodes  = nodes_of(body);
-      if (dual_domain)
+      if (!dual_domains.empty())
         sum_divergence_of_dual_domain<CellMeanSums<dim>>(points,
                                                          nodes,
                                                          what.remapped,

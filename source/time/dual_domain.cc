@@ -17,8 +17,10 @@ namespace limber
 
 
   template <int dim>
-  DualDomain<dim>::DualDomain(const NodeTable<dim> &table)
+  DualDomain<dim>::DualDomain(const NodeTable<dim> &table,
+                              const unsigned int    field)
     : table(table)
+    , field(field)
   {
     reinit();
   }
@@ -102,13 +104,14 @@ namespace limber
     NodalFields<dim>                                      &nodes,
     const std::vector<std::unique_ptr<MaterialBody<dim>>> &bodies)
   {
-    const GridView<dim> view = nodes.view();
+    const GridView<dim> view = nodes.view(field);
     if (met.size() == 0)
       met.reinit(nodes.grid.n_cells());
     ++turn;
     cells.clear();
     for (const auto &body : bodies)
-      if (!body->description.is_liquid)
+      if (body->description.nodal_field == field &&
+          !body->description.is_liquid)
         for_each_batch(body->points.view(), [&](const CellBatch &batch) {
           if (batch.cell == invalid_cell || met[batch.cell] == turn)
             return;
@@ -134,14 +137,14 @@ namespace limber
     divide_by_volumes(nodes);
 
     clear(nodes, Layout::force, dim);
-    const GridView<dim> view = nodes.view();
+    const GridView<dim> view = nodes.view(field);
     for (const auto &[cell, weight] : cells)
       DualDomainCell<dim>(view.cells[cell], weight)
         .add_forces_of_stress(records.data());
     sum_up(nodes, Layout::force, dim);
     for (const std::uint32_t node : nodes.active_nodes())
       for (int d = 0; d < dim; ++d)
-        nodes.record(node)[NodeLayout<dim>::force + d] +=
+        nodes.record(field, node)[NodeLayout<dim>::force + d] +=
           record(node)[Layout::force + d];
   }
 
@@ -153,7 +156,7 @@ namespace limber
                                      const unsigned int slot)
   {
     clear_stress(nodes);
-    const GridView<dim> view = nodes.view();
+    const GridView<dim> view = nodes.view(field);
     for (const auto &[cell, weight] : cells)
       DualDomainCell<dim>(view.cells[cell], weight)
         .add_mean_gradients(view.nodes, slot, records.data());

@@ -207,9 +207,9 @@ namespace limber
 
   template <int dim>
   void
-  ExternalLoads<dim>::deform(NodalFields<dim>   &nodes,
-                             const StressSweep  &what,
-                             const double *const mean_gradients)
+  ExternalLoads<dim>::deform(NodalFields<dim>                   &nodes,
+                             const StressSweep                  &what,
+                             const std::vector<DualDomain<dim>> &mean_gradients)
   {
     for (LoadedFace<dim> &face : faces)
       {

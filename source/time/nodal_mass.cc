@@ -54,9 +54,8 @@ namespace limber
   void
   NodalMass<dim>::lump_light_nodes()
   {
-    constexpr double    filled  = 0.2; // part of a cell
-    const std::size_t   in_cell = nodes.of_cell(0).size();
-    const double        full    = std::pow(2. / 3., dim);
+    constexpr double    filled = 0.2; // part of a cell
+    const double        full   = std::pow(2. / 3., dim);
     std::vector<double> mass(nodes.size()), squares(nodes.size());
     const auto          for_entries = [&](const auto &work) {
       double *entry = blocks.data();

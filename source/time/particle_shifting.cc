@@ -177,7 +177,22 @@ namespace limber
         for (MaterialBody *const body : group.liquids)
           move_points(*body);
       }
-    travelled = 0;
+    travelled = way_left();
+  }
+
+
+
+  // What largest_factor has cut off counts for the next shift; in long steps,
+  // of which each shifts, it never ends.
+  template <int dim>
+  double
+  ParticleShifting<dim>::way_left() const
+  {
+    double largest = 0; // C
+    for (const Group &group : groups)
+      for (const MaterialBody *const body : group.liquids)
+        largest = std::max(largest, body->description.particle_shifting);
+    return std::clamp(travelled - largest_factor / largest, 0., interval);
   }
 
 

@@ -19,12 +19,12 @@ namespace limber
 
   template <int dim>
   dealii::Tensor<2, dim>
-  change_of_deformation(NodalFields<dim>     &nodes,
-                        const PointView<dim> &points,
-                        const unsigned int    field,
-                        const std::size_t     p,
-                        const StressSweep    &what,
-                        const double *const   mean_gradients)
+  change_of_deformation(NodalFields<dim>                   &nodes,
+                        const PointView<dim>               &points,
+                        const unsigned int                  field,
+                        const std::size_t                   p,
+                        const StressSweep                  &what,
+                        const std::vector<DualDomain<dim>> &mean_gradients)
   {
     using Mean               = DualDomainLayout<dim>;
     const GridView<dim> grid = nodes.view();
@@ -37,9 +37,10 @@ namespace limber
         for (int e = 0; e < dim; ++e)
           velocity_gradient[d][e] +=
             nodes.record(field, at.node[i])[slot + d] * at.gradient[i][e];
-    if (mean_gradients != nullptr)
+    if (!mean_gradients.empty())
       {
-        const double own =
+        const double *const means = mean_gradients[field].data();
+        const double        own =
           own_share<dim>(natural_place(points, grid.cells[points.cell[p]], p));
         velocity_gradient *= own;
         for (int i = 0; i < at.n; ++i)
@@ -47,7 +48,7 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               velocity_gradient[d][e] +=
                 (1 - own) * at.value[i] *
-                mean_gradients[at.node[i] * Mean::stride + Mean::tensor(d, e)];
+                means[at.node[i] * Mean::stride + Mean::tensor(d, e)];
       }
     dealii::Tensor<2, dim> change =
       what.step * velocity_gradient * pull_back(points, p);
@@ -60,10 +61,10 @@ namespace limber
 
   template <int dim>
   void
-  deform_surface(NodalFields<dim>        &nodes,
-                 const MaterialBody<dim> &body,
-                 const StressSweep       &what,
-                 const double *const      mean_gradients)
+  deform_surface(NodalFields<dim>                   &nodes,
+                 const MaterialBody<dim>            &body,
+                 const StressSweep                  &what,
+                 const std::vector<DualDomain<dim>> &mean_gradients)
   {
     const PointView<dim> points = body.points.view();
     if (!points.keeps_stretch())
@@ -98,22 +99,22 @@ namespace limber
                         unsigned int,
                         std::size_t,
                         const StressSweep &,
-                        const double *);
+                        const std::vector<DualDomain<2>> &);
   template dealii::Tensor<2, 3>
   change_of_deformation(NodalFields<3> &,
                         const PointView<3> &,
                         unsigned int,
                         std::size_t,
                         const StressSweep &,
-                        const double *);
+                        const std::vector<DualDomain<3>> &);
   template void
   deform_surface(NodalFields<2> &,
                  const MaterialBody<2> &,
                  const StressSweep &,
-                 const double *);
+                 const std::vector<DualDomain<2>> &);
   template void
   deform_surface(NodalFields<3> &,
                  const MaterialBody<3> &,
                  const StressSweep &,
-                 const double *);
+                 const std::vector<DualDomain<3>> &);
 } // namespace limber

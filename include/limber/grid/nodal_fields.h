@@ -192,7 +192,8 @@ namespace limber
      * With several fields: register which cells contain points of which. Call
      * begin_noting() after P2G, then note_cell() for each cell with points of a
      * field; known cells need not be repeated unless begin_noting() returns
-     * true. Not used with hanging nodes.
+     * true. Not used with hanging nodes, nor with domains of points, which
+     * reach into cells that these are not in.
      */
     bool
     begin_noting();
@@ -286,7 +287,8 @@ namespace limber
     bool
     notes_fields() const
     {
-      return !of_fields.empty() && table.hanging.empty();
+      return !of_fields.empty() && table.hanging.empty() &&
+             !has_domains(grid.description.kernel);
     }
 
     void

@@ -45,11 +45,11 @@ namespace limber
     void
     average_gradients(unsigned int slot);
 
-    /** These (DualDomainLayout); null with other kernels. */
-    const double *
+    /** These, by nodal field; empty with other kernels. */
+    const std::vector<DualDomain<dim>> &
     mean_gradients() const
     {
-      return dual_domain ? dual_domain->data() : nullptr;
+      return dual_domains;
     }
 
     void
@@ -80,9 +80,10 @@ namespace limber
     GridView<dim>
     nodes_of(const MaterialBody<dim> &body)
     {
-      GridView<dim> view = parts.nodes.view(body.description.nodal_field);
-      if (dual_domain && !body.description.is_liquid)
-        view.dual_domain = dual_domain->data();
+      const unsigned int field = body.description.nodal_field;
+      GridView<dim>      view  = parts.nodes.view(field);
+      if (!dual_domains.empty() && !body.description.is_liquid)
+        view.dual_domain = dual_domains[field].data();
       return view;
     }
 
@@ -104,8 +105,8 @@ namespace limber
     void
     relax_deviators(const Pace &pace);
 
-    const RunParts<dim>            parts;
-    std::optional<DualDomain<dim>> dual_domain; // with that kernel alone
+    const RunParts<dim>          parts;
+    std::vector<DualDomain<dim>> dual_domains; // by field, that kernel alone
     // With affine velocities on cells of several sizes
     std::optional<AffineAtLevels<dim>> affine_at_levels;
   };

@@ -9,15 +9,15 @@ namespace limber
   /**
    * Nodal part of the dual domain method (DDMP) between the sweeps over points
    * (interpolation/dual_domain.h): volumes around nodes, the stress mapped from
-   * points and its forces, mean velocity gradients. Points must be on the ranks
-   * that own their cells, all cells of one size. All functions but data() and
-   * clear_stress() are collective.
+   * points and its forces, mean velocity gradients, of the bodies of one nodal
+   * field. Points must be on the ranks that own their cells, all cells of one
+   * size. All functions but data() and clear_stress() are collective.
    */
   template <int dim>
   class DualDomain
   {
   public:
-    explicit DualDomain(const NodeTable<dim> &table);
+    DualDomain(const NodeTable<dim> &table, unsigned int field);
 
     /** Adopt a changed mesh: all records zero. */
     void
@@ -81,6 +81,7 @@ namespace limber
     divide_by_volumes(const NodalFields<dim> &nodes);
 
     const NodeTable<dim>    &table;
+    const unsigned int       field;
     LazyArray<double>        records;
     std::vector<WeighedCell> cells; // that points are in
     LazyArray<std::uint32_t> met;   // per cell: last turn with points in it

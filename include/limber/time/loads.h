@@ -3,6 +3,7 @@
 #define limber_time_loads_h
 
 #include <limber/stress/stress_update.h>
+#include <limber/time/dual_domain.h>
 #include <limber/time/hydrostatic_load.h>
 #include <limber/time/loaded_face.h>
 
@@ -49,12 +50,12 @@ namespace limber
     /**
      * Deform the pieces of faces with the velocity gradient at their carriers,
      * before points are moved. @p mean_gradients: those around nodes in the
-     * dual domain method (DualDomainLayout), else null.
+     * dual domain method, by nodal field, else empty.
      */
     void
-    deform(NodalFields<dim>  &nodes,
-           const StressSweep &what,
-           const double      *mean_gradients = nullptr);
+    deform(NodalFields<dim>                   &nodes,
+           const StressSweep                  &what,
+           const std::vector<DualDomain<dim>> &mean_gradients = {});
 
     /** After points have changed ranks; collective. */
     void

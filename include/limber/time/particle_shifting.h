@@ -137,6 +137,8 @@ namespace limber
 
     void
     find_excess(const Group &group);
+    double
+    way_left() const;
     void
     find_holders(const Group &group);
     void

@@ -114,7 +114,7 @@ namespace
     EXPECT_FALSE(shifting.is_due());
     for (unsigned int time = 0; time < 20; ++time)
       {
-        shifting.follow(0.25);
+        shifting.follow(0.205);
         ASSERT_TRUE(shifting.is_due());
         shifting.shift();
         EXPECT_FALSE(shifting.is_due());
@@ -141,6 +141,26 @@ TEST(ParticleShifting, SpreadsWhatHasGathered)
 {
   expect_to_spread<2>();
   expect_to_spread<3>();
+}
+
+
+
+// A shift serves a way of 0.42 / C = 0.21 cells; what is left of a longer one
+// counts for the next.
+TEST(ParticleShifting, LongWaysLeaveSomethingToShift)
+{
+  SceneRun<2>       run(half_full_box(2));
+  const RunParts<2> parts{
+    run.problem, run.grid, run.nodes, run.bodies, run.ledger};
+  ParticleShifting<2> shifting(parts, nullptr);
+  shifting.follow(0.3);
+  shifting.shift();
+  EXPECT_NEAR(shifting.way_since(), 0.09, 1e-12);
+  EXPECT_FALSE(shifting.is_due());
+  shifting.follow(0.12);
+  EXPECT_TRUE(shifting.is_due());
+  shifting.shift();
+  EXPECT_NEAR(shifting.way_since(), 0, 1e-12);
 }
 
 
