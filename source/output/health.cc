@@ -108,8 +108,10 @@ namespace limber
       if (line.verdict != Verdict::good)
         line.text +=
           "; on record are " + brief(figures.loads) + " J from loads, " +
-          brief(figures.sides) + " J from sides, and as taken out " +
-          brief(figures.viscous - figures.lost_by_steps) + " J by viscosity, " +
+          brief(figures.sides) +
+          " J from sides and obstacles, and as taken out " +
+          brief(figures.viscous - figures.lost_by_steps) +
+          " J by viscosity and damping, " +
           (figures.is_semi_implicit ?
              brief(figures.lost_by_steps) + " J by semi-implicit steps, " :
              "") +

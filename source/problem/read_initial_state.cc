@@ -78,6 +78,40 @@ namespace limber
 
 
 
+    /** A part "name: formula" of an entry that has several. */
+    struct NamedFormula
+    {
+      std::string name, formula;
+    };
+
+
+
+    /** @p example shows how the entry is written. */
+    NamedFormula
+    named_formula(const std::string &part,
+                  const std::string &where,
+                  const std::string &example)
+    {
+      const std::string what  = "The part " + in_quotes(part) + " in " + where;
+      const std::size_t colon = part.find(':');
+      if (colon == std::string::npos)
+        throw InputError(what +
+                         " has no ':' between a name and a formula. "
+                         "Write " +
+                         example + ", for instance.");
+      const std::string formula = part.substr(colon + 1);
+      // '?' and ':' make a choice in a formula
+      if (formula.find(':') != std::string::npos &&
+          formula.find('?') == std::string::npos)
+        throw InputError(what +
+                         " has a second ':'. Usually parts were "
+                         "separated by ','. Write ';' between them: " +
+                         example + ", for instance.");
+      return {trimmed(part.substr(0, colon)), formula};
+    }
+
+
+
     /** One variable of 'Initial state', "name: formula". */
     template <int dim>
     void
@@ -88,15 +122,11 @@ namespace limber
                   Body<dim>                        &body)
     {
       const std::string where = section.where("Initial state");
-      const std::size_t colon = part.find(':');
-      if (colon == std::string::npos)
-        throw InputError("The part " + in_quotes(part) + " in " + where +
-                         " has no ':' between a name and a formula. Write "
-                         "'equivalent plastic strain: 0.01', for instance.");
+      const auto [name, formula] =
+        named_formula(part, where, "'equivalent plastic strain: 0.01'");
       std::vector<std::string> names;
       for (const StateVariable &variable : variables)
         names.push_back(variable.name);
-      const std::string name = trimmed(part.substr(0, colon));
       if (names.empty())
         throw InputError("The variable " + in_quotes(name) + " in " + where +
                          " has no meaning for the material " +
@@ -106,8 +136,7 @@ namespace limber
       check_name("variable of the material", name, names, where);
       const unsigned int k =
         std::find(names.begin(), names.end(), name) - names.begin();
-      body.initial_state[k] =
-        Formula<dim>(part.substr(colon + 1), constants, 1, where);
+      body.initial_state[k] = Formula<dim>(formula, constants, 1, where);
     }
 
 
@@ -145,17 +174,15 @@ namespace limber
                 const std::string  &where,
                 InitialStress<dim> &stress)
     {
-      const std::size_t colon = part.find(':');
-      if (colon == std::string::npos)
-        throw InputError("The part " + in_quotes(part) + " in " + where +
-                         " has no ':' between a name and a formula. Write "
-                         "'K0: 0.5', or 'xx: -1e4*(1 - y)', for instance.");
+      const auto [name, text] =
+        named_formula(part,
+                      where,
+                      "'K0: 0.5; overburden: 1e4', or 'xx: -1e4*(1 - y)'");
       const auto               components = names_of_components<dim>();
       std::vector<std::string> names      = components;
       names.insert(names.end(), {"K0", "overburden"});
-      const std::string name = trimmed(part.substr(0, colon));
       check_name("initial stress", name, names, where);
-      const Formula<dim> formula(part.substr(colon + 1), constants, 1, where);
+      const Formula<dim> formula(text, constants, 1, where);
       const auto found = std::find(components.begin(), components.end(), name);
       if (found != components.end())
         stress.components[found - components.begin()] = formula;

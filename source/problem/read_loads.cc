@@ -91,8 +91,8 @@ namespace limber
                        "auto",
                        admissible::text("formula of t, or auto", "t / 2"),
                        "Of a quasi-static run: share of gravity, body force "
-                       "and face loads that acts at time t, no unit; auto: t "
-                       "/ 'End time'.");
+                       "and face loads that acts at time t, no unit; auto: 1 "
+                       "if a load is a formula of t, else t / 'End time'.");
     declare_constants(parameters);
     parameters.declare_list("Face loads",
                             "",
@@ -225,6 +225,39 @@ namespace limber
                                        body.shape->bounding_box());
       return load;
     }
+
+
+
+    /** What in the loads depends on the time, in words; empty if nothing. */
+    template <int dim>
+    std::string
+    load_of_time(const Loads<dim> &loads)
+    {
+      for (const FaceLoad<dim> &load : loads.faces)
+        if (asks_for_time(load.formula.expression()))
+          return "face load " + in_quotes(load.name);
+      return loads.body_force && asks_for_time(loads.body_force->expression()) ?
+               "the body force" :
+               "";
+    }
+
+
+
+    // A load that is written as a formula of t would be multiplied by t / 'End
+    // time' besides, and nobody means that.
+    template <int dim>
+    void
+    choose_load_factor(const Section &section, Problem<dim> &problem)
+    {
+      const std::string load = load_of_time(problem.loads);
+      if (!problem.loads_grow_until_the_end() || load.empty())
+        return;
+      problem.loads.factor =
+        Formula<dim>("1", Constants(), 1, section.where("Load factor"));
+      problem.notes.push_back("Load factor 'auto' is 1, as " + load +
+                              " is a formula of t: all loads act as they are "
+                              "written.");
+    }
   } // namespace
 
 
@@ -236,6 +269,7 @@ namespace limber
     for (const std::string &name : section.list("Face loads"))
       problem.loads.faces.push_back(
         read_face_load(section.subsection("Face load " + name), name, problem));
+    choose_load_factor(section, problem);
   }
 
 

@@ -114,6 +114,39 @@ namespace limber
                value));
       return result;
     }
+
+
+
+    /** Says once, of all bodies concerned, what several notes say of one. */
+    std::vector<std::string>
+    joined(const std::vector<std::string> &notes)
+    {
+      const std::string        begin = "Body ", end = ": ";
+      std::vector<std::string> result;
+      std::vector<std::string> rests; // of these: what is said, of whom
+      std::vector<std::string> bodies;
+      for (const std::string &note : notes)
+        {
+          const std::size_t colon =
+            note.rfind(begin, 0) == 0 ? note.find(end) : std::string::npos;
+          const bool        is_of_body = colon != std::string::npos;
+          const std::string rest       = is_of_body ? note.substr(colon) : note;
+          const std::string body =
+            is_of_body ? note.substr(begin.size(), colon - begin.size()) : "";
+          const std::size_t same =
+            std::find(rests.begin(), rests.end(), rest) - rests.begin();
+          if (is_of_body && same < rests.size())
+            {
+              bodies[same] += ", " + body;
+              result[same] = "Bodies " + bodies[same] + rest;
+              continue;
+            }
+          result.push_back(note);
+          rests.push_back(is_of_body ? rest : "");
+          bodies.push_back(body);
+        }
+      return result;
+    }
   } // namespace
 
 
@@ -160,6 +193,7 @@ namespace limber
     read_observables(root, problem);
     read_checks(root, problem);
     check_levels(root, problem);
+    problem.notes         = joined(problem.notes);
     problem.fixed_entries = fixed_entries(scene.parameters(), problem);
     return problem;
   }

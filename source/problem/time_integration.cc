@@ -24,12 +24,12 @@ namespace limber
     constexpr double fast_sound = 30;
 
     // Cost of a semi-implicit step over that of an explicit one, as measured in
-    // doc/theory/implicit_pressure.md (7 to 12); of one that viscosity limits,
-    // in which the pressure hardly changes, 3
-    constexpr double cost_of_step         = 10;
-    constexpr double cost_of_viscous_step = 3;
+    // doc/theory/implicit_pressure.md (7 to 12); of a short one, that viscosity
+    // or waves in solids limit, in which the pressure hardly changes, 3
+    constexpr double cost_of_step       = 10;
+    constexpr double cost_of_short_step = 3;
 
-    // Saving of time from which steps that viscosity limits are worth it
+    // Saving of time from which short steps are worth it
     constexpr double worthwhile = 2;
 
 
@@ -191,15 +191,16 @@ namespace limber
       // neither motion nor weight: nothing to compare with
       if (!(other > 0))
         return say("'explicit', as nothing moves at first and nothing weighs");
-      const std::string ratio = "sound in the liquid is " +
-                                brief(speeds.sound / other) +
-                                " times as fast as " +
-                                (speeds.waves > speeds.motion + speeds.surface ?
-                                   "waves in solids" :
-                                   "what moves (|v| + sqrt(g h))");
-      if (!(speeds.sound > fast_sound * other))
+      const bool waves_limit = speeds.waves > speeds.motion + speeds.surface;
+      const std::string ratio =
+        "sound in the liquid is " + brief(speeds.sound / other) +
+        " times as fast as " +
+        (waves_limit ? "waves in solids" : "what moves (|v| + sqrt(g h))");
+      const double fast =
+        waves_limit ? worthwhile * cost_of_short_step : fast_sound;
+      if (!(speeds.sound > fast * other))
         return say("'explicit', as " + ratio + "; other steps pay from " +
-                   brief(fast_sound) + " times on");
+                   brief(fast) + " times on");
 
       double edge = 1e300; // of the finest cells
       for (unsigned int d = 0; d < dim; ++d)
@@ -210,10 +211,11 @@ namespace limber
       const double steps        = std::max({other / (C * edge),
                                             5 * std::sqrt(speeds.acceleration / edge),
                                             of_viscosity});
-      if (!(former_steps > worthwhile * cost_of_viscous_step * of_viscosity))
+      if (!(former_steps > worthwhile * cost_of_short_step * of_viscosity))
         return say("'explicit', as viscosity would limit other steps as well");
-      const double cost =
-        steps > of_viscosity ? cost_of_step : cost_of_viscous_step;
+      const double      cost = waves_limit || !(steps > of_viscosity) ?
+                                 cost_of_short_step :
+                                 cost_of_step;
       const std::string gain = "about " + brief(former_steps / steps) +
                                " times fewer steps, which take some " +
                                brief(cost) + " times as long";

@@ -124,80 +124,6 @@ namespace limber
 
 
   template <int dim>
-  std::vector<std::pair<std::string, double>>
-  NewtonIntegrator<dim>::verb_seconds() const
-  {
-    const auto &seconds = clock.seconds; // in the order of NewtonVerb
-    return {{"number nodes", seconds[0]},
-            {"evaluate forces", seconds[1]},
-            {"assemble tangent", seconds[2]},
-            {"solve equations", seconds[3]},
-            {"move points", seconds[4]}};
-  }
-
-
-
-  template <int dim>
-  std::string
-  NewtonIntegrator<dim>::warning()
-  {
-    if (collapses && !told_of_collapse)
-      {
-        told_of_collapse = true;
-        return "loads begin to move the material ten times as far, for the "
-               "same increase, as at first. Usually it collapses or buckles "
-               "(limit load). Take the load from the rows around; what "
-               "follows depends on 'Grid/Cells'.";
-      }
-    if (warned || equations.failure_of_iterations().empty())
-      return "";
-    warned = true;
-    return equations.failure_of_iterations() +
-           (equations.gave_up_iterating() ?
-              ". All " + std::to_string(equations.size()) +
-                " unknowns are factorised from now on, which takes longer." :
-              ". The step was tried again with half the length.") +
-           " Usually Poisson's ratio is close to 0.5 or the body buckles. Set "
-           "'Locking treatment = cell', a shorter 'Method/Time step', or "
-           "coarser 'Grid/Cells'.";
-  }
-
-
-
-  template <int dim>
-  std::string
-  NewtonIntegrator<dim>::effort() const
-  {
-    return "Newton's method: " +
-           brief(double(iterations) / double(std::max(1ul, steps))) +
-           " iterations a step, at most " + std::to_string(most_iterations) +
-           "; steps halved: " + std::to_string(halvings) +
-           (lost_between_steps != 0 ?
-              "; lost to forces out of balance between steps: " +
-                brief(lost_between_steps) + " J" :
-              "") +
-           (lost_in_time != 0 ?
-              "; damped by generalised-alpha: " + brief(lost_in_time) + " J" :
-              "") +
-           (equations.linear_iterations() > 0 ?
-              std::string(
-                equations.is_mixed() ?
-                  "; generalised minimal residuals of displacements and "
-                  "pressures: " :
-                  "; conjugate gradients: ") +
-                brief(double(equations.linear_iterations()) /
-                      double(std::max(1ul, newton.corrections()))) +
-                " iterations a correction" +
-                (equations.gave_up_iterating() ?
-                   ", until " + equations.failure_of_iterations() +
-                     "; factorised since" :
-                   "") :
-              "");
-  }
-
-
-
-  template <int dim>
   double
   NewtonIntegrator<dim>::advance(const double time, const double length)
   {
@@ -217,28 +143,13 @@ namespace limber
     ++steps;
     iterations += newton.iterations();
     most_iterations = std::max(most_iterations, newton.iterations());
+    look_at_stability();
 
     relocation.end_step(extremes);
     relocation.reinit(); // sorted, as the equations want the points
     measure_waves();
     clock.lap(NewtonVerb::move_points);
     return step;
-  }
-
-
-
-  template <int dim>
-  void
-  NewtonIntegrator<dim>::fail(const double time, const double step) const
-  {
-    throw ComputationError(
-      "No step was found from time " + brief(time) + " s on, down to one of " +
-      brief(step) + " s: " + obstacle +
-      ". Usually the load is the largest that can be borne "
-      "(limit load), or the body buckles, tears or is "
-      "crushed. Look at the last state, refine "
-      "'Grid/Cells', or set 'Time integration = "
-      "explicit'.");
   }
 
 
@@ -361,6 +272,27 @@ namespace limber
     if (first_compliance == 0)
       first_compliance = compliance;
     collapses = collapses || compliance > collapsing * first_compliance;
+  }
+
+
+
+  // Of elastic bodies: plastic flow shows in the compliance. Not in every step
+  // where it takes as long as a correction; a straight column stays unstable.
+  template <int dim>
+  void
+  NewtonIntegrator<dim>::look_at_stability()
+  {
+    constexpr unsigned long interval = 4; // steps
+    if (in_motion || is_unstable ||
+        (equations.is_iterated() && steps % interval != 0) ||
+        std::any_of(parts.bodies.begin(),
+                    parts.bodies.end(),
+                    [](const auto &body) {
+                      return body->description.is_plastic;
+                    }))
+      return;
+    is_unstable = !equations.is_stable();
+    clock.lap(NewtonVerb::solve_equations);
   }
 
 

@@ -191,6 +191,14 @@ namespace limber
           const std::vector<double> &of_held,
           std::vector<double>       &correction);
 
+    /**
+     * Whether the last tangent is positive along its softest motion, as far as
+     * that is found: the equilibrium is a minimum of the potential. Not so of a
+     * straight column above its buckling load. True before there is a tangent.
+     */
+    bool
+    is_stable();
+
     /** Why solve() found nothing. */
     const std::string &
     obstacle() const
@@ -228,6 +236,13 @@ namespace limber
       return mixed;
     }
 
+    /** Solutions are iterative, and take about as long each. */
+    bool
+    is_iterated() const
+    {
+      return size() > largest_direct && !factorises_all;
+    }
+
     /** Iterations have failed; all is factorised since. */
     bool
     gave_up_iterating() const
@@ -263,11 +278,6 @@ namespace limber
     condense_volumes();
     std::vector<double>
     rigid_motions() const;
-    bool
-    is_iterated() const
-    {
-      return size() > largest_direct && !factorises_all;
-    }
     unsigned int
     solve_condensed(NodalVector &solution, const NodalVector &right_side);
     void

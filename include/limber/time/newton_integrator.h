@@ -109,6 +109,8 @@ namespace limber
     bool
     stays_with_ranks(const Values &displacement);
     void
+    look_at_stability();
+    void
     look_at_compliance(const Values &increase, const Values &displacement);
     Values
     loads_at(double time, Values *given);
@@ -168,6 +170,7 @@ namespace limber
 
     double first_compliance = 0; // of the loads, m/N
     bool   collapses = false, told_of_collapse = false;
+    bool   is_unstable = false, told_of_instability = false;
   };
 } // namespace limber
 

@@ -806,3 +806,58 @@ TEST(Choices, CourantNumberIsOneThatTheFilterHolds)
               0.19,
               0.01);
 }
+
+
+
+// What a note says of several bodies is one line; of single ones it stays.
+TEST(Choices, NotesOfSeveralBodiesAreOneLine)
+{
+  const std::string two_blocks = R"(
+    set Bodies = one, other
+    subsection Body one
+      set Material = linear elastic
+      subsection Box
+        set Upper corner = 0.25, 1
+      end
+    end
+    subsection Body other
+      set Material = linear elastic
+      subsection Box
+        set Lower corner = 0.75, 0
+      end
+    end)";
+  std::string       notes;
+  for (const std::string &note :
+       read_problem<2>(scene_with(two_blocks, {})).notes)
+    notes += note + "\n";
+  EXPECT_NE(notes.find("Bodies 'one', 'other': frame 'auto' is"),
+            std::string::npos)
+    << notes;
+  EXPECT_EQ(notes.find("Body 'one': frame"), std::string::npos) << notes;
+  EXPECT_EQ(notes.find("Body 'other': frame"), std::string::npos) << notes;
+}
+
+
+
+// A load that is a formula of t acts as it is written.
+TEST(Choices, LoadFactorOfLoadsThatDependOnTime)
+{
+  const auto factor_at_half = [](const std::string &traction,
+                                 const std::string &factor) {
+    const Problem<2> problem =
+      read_problem<2>(scene_with(block,
+                                 {"Method/Time integration=quasi-static",
+                                  "Boundaries/bottom=no slip",
+                                  "End time=2",
+                                  "Loads/Face loads=top",
+                                  "Loads/Load factor=" + factor,
+                                  "Loads/Face load top/Body=block",
+                                  "Loads/Face load top/Face=top",
+                                  "Loads/Face load top/Traction=" + traction}));
+    return problem.loads.factor.empty() ? -1 :
+                                          problem.loads.factor.value({}, 1);
+  };
+  EXPECT_EQ(factor_at_half("1; 0", "auto"), -1); // t / 'End time'
+  EXPECT_EQ(factor_at_half("t; 0", "auto"), 1);
+  EXPECT_EQ(factor_at_half("t; 0", "t/4"), 0.25);
+}

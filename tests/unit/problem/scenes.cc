@@ -312,6 +312,16 @@ TEST(Scenes, AutomaticTimeIntegration)
         << notes;
       EXPECT_NE(notes.find(example.reason), std::string::npos) << notes;
     }
+  // Sound is 8.6 and 2.7 times as fast as waves in the solid
+  for (const bool pays : {true, false})
+    EXPECT_EQ(
+      read_problem<2>(
+        SceneFile(prm_folder() + "verification/rising_disc.prm",
+                  {"Body water/Newtonian fluid/Bulk modulus=2e9",
+                   std::string("Body disc/Neo hookean/Young's modulus=") +
+                     (pays ? "1e7" : "1e8")}))
+        .method.integration,
+      pays ? TimeIntegration::semi_implicit : TimeIntegration::explicit_steps);
   // Also where nothing moves or weighs but an obstacle
   const auto with_moving_obstacle = [](const std::string &displacement) {
     return read_problem<2>(scene_of(R"(
