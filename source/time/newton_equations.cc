@@ -535,8 +535,9 @@ namespace limber
   bool
   NewtonEquations<dim>::is_stable()
   {
-    if (displacement_of_tangent.empty())
-      return true; // nothing has moved, and nothing was asked
+    if (displacement_of_tangent.empty() ||
+        std::find(held.begin(), held.end(), 0) == held.end())
+      return true; // nothing was to move, or nothing can
     constexpr unsigned int    n_solutions = 2;
     std::minstd_rand          noise;
     const std::vector<double> at_rest(size());

@@ -41,10 +41,10 @@ namespace limber
    * With linear functions the velocity extrapolated out of a point's cell
    * depends on nodes with hardly any mass, and jumps when points cross cells.
    * There impulses act at nodes at which both have mass, w = v_a - v_b, if the
-   * points around them touch, min_b (x . n - R) - max_a (x . n + R) <= 0. So do
-   * they in all methods of linear functions (GIMP, CPDI, DDMP): means over
-   * domains are smooth, but their gradients see light nodes as well, and held
-   * at points such bodies were thrown off (doc/theory/contact.md).
+   * points around them touch, min_b (x . n - R) - max_a (x . n + R) <= 0. They
+   * do so in all methods of linear functions (GIMP, CPDI, DDMP): means over
+   * domains are smooth, but their gradients see light nodes as well, and bodies
+   * held at points were thrown off (doc/theory/contact.md).
    *
    * Contacts that are active in the new velocity are so in every other velocity
    * of the step. So momentum is conserved, and energy does not grow.

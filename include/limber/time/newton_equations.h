@@ -236,7 +236,8 @@ namespace limber
       return mixed;
     }
 
-    /** Solutions are iterative, and take about as long each. */
+    /** Equations are solved by iterations; else by a factorisation, which
+     * serves several right-hand sides. */
     bool
     is_iterated() const
     {
