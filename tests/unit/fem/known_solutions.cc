@@ -441,7 +441,12 @@ TEST(ReferenceInEquilibrium, FollowsTheLoadsOfTheScene)
                             "Loads/Load factor=if(t<0.5, 2*t, 2-2*t)"},
                            4),
              {0.625, 1.5, 0.875, 0});
+  // a load of t acts as it is written, if the scene gives no factor
   expect_all(displacements({quasi_static, "Reference/Load steps=2"}, 2),
+             {1.5, 2});
+  expect_all(displacements(
+               {quasi_static, "Loads/Load factor=t", "Reference/Load steps=2"},
+               2),
              {0.75, 2});
   expect_all(displacements(
                {"Reference/Method=quasi-static", "Reference/Load steps=2"}, 2),
