@@ -61,7 +61,8 @@ namespace limber
        KernelKind::automatic,
        "'quadratic' if points of a solid may cross cells, or a body that a "
        "side holds may bend across them, where the time integration knows "
-       "splines and no liquid is in the scene; else 'linear'"},
+       "splines and no liquid is in the scene; on cells of several sizes "
+       "'cpdi' instead; else 'linear'"},
       {"linear", KernelKind::linear, "Q1 shape functions of the grid"},
       {"quadratic",
        KernelKind::quadratic,
