@@ -221,8 +221,8 @@ namespace limber
       problem.notes.push_back(
         "Body " + in_quotes(body.name) +
         " has cohesion but bears no tension: it comes apart where it is "
-        "pulled, and a footing may lose half of its load by that. 'Tensile "
-        "strength' gives it some" +
+        "pulled, and may bear less under a footing. 'Tensile strength' gives "
+        "it some" +
         (*angle > 0 ? ", at most " + brief(apex) + " Pa, c cot(phi)." : "."));
     }
   } // namespace
