@@ -5,6 +5,9 @@
 #include <limber/base/text.h>
 #include <limber/fem/linear_solver.h>
 #include <limber/fem/multigrid.h>
+#include <limber/fem/sparse_cholesky.h>
+
+#include <optional>
 
 namespace limber
 {
@@ -51,6 +54,7 @@ namespace limber
 
   struct LinearSolver::Methods
   {
+    std::optional<SparseCholesky>                           cholesky;
     dealii::SolverControl                                   control;
     std::unique_ptr<dealii::TrilinosWrappers::SolverDirect> factors;
     dealii::TrilinosWrappers::PreconditionAMG               multigrid;
@@ -59,11 +63,11 @@ namespace limber
 
 
 
-  LinearSolver::LinearSolver(const bool                 direct,
+  LinearSolver::LinearSolver(const SolutionMethod       method,
                              const unsigned int         dim,
                              const std::vector<double> &rigid_motions,
                              const unsigned int         most_iterations)
-    : direct(direct)
+    : method(method)
     , dim(dim)
     , rigid_motions(rigid_motions)
     , methods(std::make_unique<Methods>())
@@ -76,11 +80,29 @@ namespace limber
 
 
 
+  bool
+  LinearSolver::has_cholesky_factors(
+    const dealii::TrilinosWrappers::SparseMatrix &matrix)
+  {
+    if (method != SolutionMethod::cholesky ||
+        dealii::Utilities::MPI::n_mpi_processes(matrix.get_mpi_communicator()) >
+          1)
+      return false;
+    if (!methods->cholesky)
+      methods->cholesky.emplace();
+    return methods->cholesky->factorise(matrix);
+  }
+
+
+
   void
   LinearSolver::set_matrix(const dealii::TrilinosWrappers::SparseMatrix &matrix)
   {
     methods->matrix = &matrix;
-    if (direct)
+    methods->factors.reset();
+    if (has_cholesky_factors(matrix))
+      return;
+    if (method != SolutionMethod::conjugate_gradients)
       {
         using Direct = dealii::TrilinosWrappers::SolverDirect;
         // MUMPS factorises on all ranks; on one, KLU is faster for small
@@ -109,8 +131,13 @@ namespace limber
   unsigned int
   LinearSolver::solve(NodalVector &solution, const NodalVector &right_side)
   {
-    if (direct)
+    if (method != SolutionMethod::conjugate_gradients)
       {
+        if (methods->factors == nullptr)
+          {
+            methods->cholesky->solve(solution, right_side);
+            return 0;
+          }
         try
           {
             methods->factors->solve(solution, right_side);

@@ -73,7 +73,10 @@ namespace limber
     typename SolidModel<dim>::Matrix matrix;
     model.reinit(matrix);
     model.assemble(model.make_vector(), shift, matrix);
-    LinearSolver solver(is_small(model), dim, model.rigid_motions());
+    LinearSolver solver(is_small(model) ? SolutionMethod::cholesky :
+                                          SolutionMethod::conjugate_gradients,
+                        dim,
+                        model.rigid_motions());
     solver.set_matrix(matrix);
 
     const unsigned int n_modes   = count + (dim == 2 ? 3 : 6);

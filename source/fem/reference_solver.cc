@@ -55,11 +55,26 @@ namespace limber
 
 
 
+  namespace
+  {
+    template <int dim>
+    SolutionMethod
+    solution_method(const SolidModel<dim> &model)
+    {
+      if (!is_small(model))
+        return SolutionMethod::conjugate_gradients;
+      return model.element->has_symmetric_tangent() ? SolutionMethod::cholesky :
+                                                      SolutionMethod::lu;
+    }
+  } // namespace
+
+
+
   template <int dim>
   ReferenceSolver<dim>::ReferenceSolver(SolidModel<dim> &model)
     : model(model)
     , method(model.problem.reference.method)
-    , linear_solver(is_small(model), dim, model.rigid_motions())
+    , linear_solver(solution_method(model), dim, model.rigid_motions())
     , matrix(std::make_unique<typename SolidModel<dim>::Matrix>())
   {
     state.displacement = state.acceleration = model.make_vector();

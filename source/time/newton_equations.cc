@@ -47,7 +47,7 @@ namespace limber
                                                    body->description.hourglass,
                                                    body->description.frame,
                                                    parts.problem.grid.kernel));
-        factorises_all |= !responses.back()->has_symmetric_tangent();
+        has_symmetric_laws &= responses.back()->has_symmetric_tangent();
         // the preconditioner of the pressures is for linear functions
         mixed |= parts.problem.grid.kernel == KernelKind::linear &&
                  responses.back()->bulk_over_shear() > mixed_beyond;
@@ -62,22 +62,26 @@ namespace limber
 
 
   template <int dim>
-  void
+  bool
   NewtonEquations<dim>::begin_step()
   {
-    nodes.update();
-    find_held();
+    const bool renumbered = nodes.update();
+    if (renumbered)
+      find_held();
     find_places();
     // in motion nodes have inertia, and the penalty would damp it
     if (parts.problem.method.ghost_penalty > 0 &&
         parts.problem.method.integration == TimeIntegration::quasi_static)
-      ghost.find(nodes, moduli_of_penalty());
-    else
-      ghost.clear();
+      {
+        std::vector<double> now = moduli_of_penalty();
+        if (renumbered || now != moduli)
+          ghost.find(nodes, now);
+        moduli = std::move(now);
+      }
     begin_of_jumps.assign(size(), 0.);
-    solver.reset();
     is_factorised = false;
-    tangent->reinit(ghost);
+    if (renumbered)
+      tangent->reinit(ghost);
     displacement_of_tangent.clear();
     total_forces.assign(size(), 0.);
     forces_of_followers.assign(size(), 0.);
@@ -86,6 +90,7 @@ namespace limber
     noise = 1e-14 * largest_modulus() *
             std::pow(parts.grid.smallest_edge, dim - 1) *
             std::sqrt(double(size()));
+    return renumbered;
   }
 
 
@@ -528,13 +533,33 @@ namespace limber
 
 
   template <int dim>
+  SolutionMethod
+  NewtonEquations<dim>::solution_method() const
+  {
+    if (is_iterated())
+      return SolutionMethod::conjugate_gradients;
+    const bool is_symmetric =
+      has_symmetric_laws && (followers == nullptr || !followers->any());
+    return is_symmetric ? SolutionMethod::cholesky : SolutionMethod::lu;
+  }
+
+
+
+  template <int dim>
   unsigned int
   NewtonEquations<dim>::solve_condensed(NodalVector       &solution,
                                         const NodalVector &right_side)
   {
-    if (!is_factorised || solver->direct == is_iterated())
+    const SolutionMethod method = solution_method();
+    if (!is_factorised || solver->method != method)
       {
-        solver.emplace(!is_iterated(), dim, rigid_motions(), most_iterations);
+        // Factors keep the order of the equations, multigrid nothing.
+        if (!solver || solver->method != method || is_iterated())
+          solver.emplace(method,
+                         dim,
+                         is_iterated() ? rigid_motions() :
+                                         std::vector<double>(),
+                         most_iterations);
         solver->set_matrix(tangent->values());
       }
     is_factorised = true;

@@ -81,6 +81,7 @@ namespace limber
   NewtonIntegrator<dim>::reinit()
   {
     parts.nodes.reinit();
+    equations.reinit();
     mass.clear();
     for (auto &body : parts.bodies)
       body->reinit_sums(parts.grid);
@@ -160,8 +161,8 @@ namespace limber
   {
     extremes.speed_squared = extremes.displacement = 0;
     relocation.begin_step();
-    equations.begin_step();
-    if (!in_motion)
+    const bool renumbered = equations.begin_step();
+    if (!in_motion && renumbered)
       {
         if (const auto free = equations.free_motion())
           throw ComputationError(

@@ -40,6 +40,11 @@ namespace limber
     for (const auto &face : ghost.faces())
       add(face.nodes);
     matrix.reinit(pattern);
+    // Trilinos' own functions look up and lock each row.
+    if (matrix.trilinos_matrix().ExtractCrsDataPointers(row_start,
+                                                        row_columns,
+                                                        entries) != 0)
+      throw std::logic_error("the tangent is not stored in one piece");
   }
 
 
@@ -48,10 +53,59 @@ namespace limber
   void
   NewtonTangent<dim>::clear()
   {
-    matrix = 0;
+    std::fill_n(entries, row_start[size()], 0.);
     rows.clear();
     columns.clear();
     of_columns.clear();
+  }
+
+
+
+  // Components of a node are next to each other, in rows and columns.
+  template <int dim>
+  std::size_t
+  NewtonTangent<dim>::place_in_row(const std::uint32_t row_node,
+                                   const std::uint32_t column_node) const
+  {
+    const std::size_t row  = std::size_t(row_node) * dim;
+    const int *const begin = row_columns + row_start[row], *const end =
+                                                             row_columns +
+                                                             row_start[row + 1];
+    return std::lower_bound(begin, end, int(column_node) * dim) - begin;
+  }
+
+
+
+  template <int dim>
+  template <class Value>
+  void
+  NewtonTangent<dim>::add_block(const std::uint32_t *const numbers,
+                                const unsigned int         n_nodes,
+                                const Value               &value)
+  {
+    for (unsigned int i = 0; i < n_nodes; ++i)
+      for (unsigned int j = 0; j < n_nodes; ++j)
+        {
+          const std::size_t place = place_in_row(numbers[i], numbers[j]);
+          for (int d = 0; d < dim; ++d)
+            {
+              const std::size_t row = std::size_t(numbers[i]) * dim + d;
+              if (held[row])
+                continue;
+              double *const entry = entries + row_start[row] + place;
+              value(i, j, d, [&](const int e, const double summand) {
+                const std::size_t column = std::size_t(numbers[j]) * dim + e;
+                if (!held[column])
+                  {
+                    entry[e] += summand;
+                    return;
+                  }
+                rows.push_back(row);
+                columns.push_back(column);
+                of_columns.push_back(summand);
+              });
+            }
+        }
   }
 
 
@@ -62,32 +116,17 @@ namespace limber
                           const unsigned int         n_nodes,
                           const double *const        block)
   {
-    const unsigned int n = n_nodes * dim;
-    row_places.resize(n);
-    row_values.resize(n);
-    for (unsigned int k = 0; k < n; ++k)
-      {
-        const std::size_t row = std::size_t(numbers[k / dim]) * dim + k % dim;
-        if (held[row])
-          continue;
-        unsigned int found = 0;
-        for (unsigned int l = 0; l < n; ++l)
-          {
-            const std::size_t column =
-              std::size_t(numbers[l / dim]) * dim + l % dim;
-            if (held[column])
-              {
-                rows.push_back(row);
-                columns.push_back(column);
-                of_columns.push_back(block[k * n + l]);
-                continue;
-              }
-            row_places[found]   = column;
-            row_values[found++] = block[k * n + l];
-          }
-        matrix.add(
-          row, found, row_places.data(), row_values.data(), false, false);
-      }
+    add_block(numbers,
+              n_nodes,
+              [&](const unsigned int i,
+                  const unsigned int j,
+                  const int          d,
+                  const auto        &give) {
+                const double *const from =
+                  block + std::size_t(i * dim + d) * n_nodes * dim + j * dim;
+                for (int e = 0; e < dim; ++e)
+                  give(e, from[e]);
+              });
   }
 
 
@@ -98,32 +137,22 @@ namespace limber
                                 const unsigned int         n_nodes,
                                 const double *const        block)
   {
-    row_places.resize(n_nodes);
-    row_values.resize(n_nodes);
-    for (unsigned int i = 0; i < n_nodes; ++i)
-      for (int d = 0; d < dim; ++d)
-        {
-          const std::size_t row = std::size_t(numbers[i]) * dim + d;
-          if (held[row])
-            continue;
-          unsigned int found = 0;
-          for (unsigned int j = 0; j < n_nodes; ++j)
-            {
-              const std::size_t column = std::size_t(numbers[j]) * dim + d;
-              const double      value  = block[i * n_nodes + j];
-              if (held[column])
-                {
-                  rows.push_back(row);
-                  columns.push_back(column);
-                  of_columns.push_back(value);
-                  continue;
-                }
-              row_places[found]   = column;
-              row_values[found++] = value;
-            }
-          matrix.add(
-            row, found, row_places.data(), row_values.data(), false, false);
-        }
+    add_block(numbers,
+              n_nodes,
+              [&](const unsigned int i,
+                  const unsigned int j,
+                  const int          d,
+                  const auto &give) { give(d, block[i * n_nodes + j]); });
+  }
+
+
+
+  template <int dim>
+  double &
+  NewtonTangent<dim>::on_diagonal(const std::size_t row)
+  {
+    const std::uint32_t node = row / dim;
+    return entries[row_start[row] + place_in_row(node, node) + row % dim];
   }
 
 
@@ -134,7 +163,7 @@ namespace limber
   {
     for (std::size_t k = 0; k < size(); ++k)
       if (!held[k])
-        matrix.add(k, k, values[k]);
+        on_diagonal(k) += values[k];
   }
 
 
@@ -143,16 +172,9 @@ namespace limber
   void
   NewtonTangent<dim>::sum_over_ranks(const MPI_Comm communicator)
   {
-    matrix.compress(dealii::VectorOperation::add);
     if (!nodes.is_parallel())
       return;
-    const Epetra_CrsMatrix &stored = matrix.trilinos_matrix();
-    int                    *starts = nullptr, *places = nullptr;
-    double                 *values = nullptr;
-    if (stored.ExtractCrsDataPointers(starts, places, values) != 0)
-      throw std::logic_error("the tangent is not stored in one piece");
-    nodes.sum(values, stored.NumMyNonzeros());
-
+    nodes.sum(entries, row_start[size()]);
     unite(rows, communicator);
     unite(columns, communicator);
     unite(of_columns, communicator);
@@ -164,15 +186,13 @@ namespace limber
   void
   NewtonTangent<dim>::finish()
   {
-    matrix.compress(dealii::VectorOperation::add);
     largest = 0;
     for (std::size_t k = 0; k < size(); ++k)
       if (!held[k])
-        largest = std::max(largest, matrix.diag_element(k));
+        largest = std::max(largest, on_diagonal(k));
     for (std::size_t k = 0; k < size(); ++k)
       if (held[k])
-        matrix.set(k, k, largest);
-    matrix.compress(dealii::VectorOperation::insert);
+        on_diagonal(k) = largest;
   }
 
 

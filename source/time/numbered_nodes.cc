@@ -88,20 +88,29 @@ namespace limber
 
 
   template <int dim>
-  void
+  bool
   NumberedNodes<dim>::update()
   {
-    std::vector<std::uint32_t> own_cells;
-    std::vector<Key>           own;
+    std::vector<std::uint32_t> cells;
     for (const auto &body : parts.bodies)
       for_each_batch(body->points.view(), [&](const CellBatch &batch) {
-        own_cells.push_back(batch.cell);
-        own.push_back(key_of(cell_at(batch.cell), n_cells_along));
+        cells.push_back(batch.cell);
       });
+    int differs = cell_keys.empty() || cells != own_cells;
+    if (parallel)
+      differs = dealii::Utilities::MPI::max(differs, parts.grid.communicator);
+    if (!differs)
+      return false;
+    own_cells = std::move(cells);
+    std::vector<Key> own;
+    own.reserve(own_cells.size());
+    for (const std::uint32_t cell : own_cells)
+      own.push_back(key_of(cell_at(cell), n_cells_along));
     cell_keys = united(std::move(own));
     number_nodes();
     find_places();
-    find_on_grid(own_cells);
+    find_on_grid();
+    return true;
   }
 
 
@@ -162,7 +171,7 @@ namespace limber
   // Nodes on this rank's grid, and the owners of all
   template <int dim>
   void
-  NumberedNodes<dim>::find_on_grid(const std::vector<std::uint32_t> &own_cells)
+  NumberedNodes<dim>::find_on_grid()
   {
     local.assign(keys.size(), invalid_cell);
     index_of_local.assign(parts.grid.n_cells(), invalid_cell);

@@ -42,10 +42,23 @@ namespace limber
 
 
   /**
-   * Solver for symmetric positive definite elasticity matrices, for many
-   * right-hand sides with one matrix: small systems by factorisation (Amesos),
-   * large ones by conjugate gradients with algebraic multigrid (ML), whose near
-   * null space is the rigid motions of the body.
+   * How LinearSolver solves. Cholesky factors are for symmetric matrices; what
+   * is not positive definite, or lies on several ranks, gets LU factors.
+   */
+  enum class SolutionMethod
+  {
+    cholesky,
+    lu,
+    conjugate_gradients
+  };
+
+
+
+  /**
+   * Solver for elasticity matrices, for many right-hand sides with one matrix:
+   * small systems by factorisation (SparseCholesky, Amesos), large symmetric
+   * positive definite ones by conjugate gradients with algebraic multigrid
+   * (ML), whose near null space is the rigid motions of the body.
    */
   class LinearSolver
   {
@@ -55,7 +68,7 @@ namespace limber
      * of freedom, one motion after the other; @p dim: components of a node.
      * Iterations have failed where they do not converge in @p most_iterations.
      */
-    LinearSolver(const bool                 direct,
+    LinearSolver(const SolutionMethod       method,
                  const unsigned int         dim,
                  const std::vector<double> &rigid_motions,
                  const unsigned int         most_iterations = 2000);
@@ -74,10 +87,13 @@ namespace limber
     unsigned int
     solve(NodalVector &solution, const NodalVector &right_side);
 
-    const bool direct;
+    const SolutionMethod method;
 
   private:
     struct Methods;
+
+    bool
+    has_cholesky_factors(const dealii::TrilinosWrappers::SparseMatrix &matrix);
 
     const unsigned int        dim;
     const std::vector<double> rigid_motions;

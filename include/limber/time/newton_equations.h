@@ -77,10 +77,17 @@ namespace limber
     /**
      * Number the nodes of the cells that hold points, and find which components
      * the sides hold. Points must be sorted, and all of a cell on one rank.
-     * Collective.
+     * False if the cells are those of the step before. Collective.
      */
-    void
+    bool
     begin_step();
+
+    /** The mesh, or the points of this rank, have been replaced. */
+    void
+    reinit()
+    {
+      nodes.forget();
+    }
 
     /** Number of unknowns. */
     std::size_t
@@ -279,6 +286,8 @@ namespace limber
     condense_volumes();
     std::vector<double>
     rigid_motions() const;
+    SolutionMethod
+    solution_method() const;
     unsigned int
     solve_condensed(NodalVector &solution, const NodalVector &right_side);
     void
@@ -287,12 +296,13 @@ namespace limber
 
     const RunParts<dim> parts;
     const std::size_t   largest_direct, most_factorised;
-    bool                mixed = false;
+    bool                mixed = false, has_symmetric_laws = true;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
     NumberedNodes<dim>                                   nodes;
     std::vector<unsigned char>      held, side_of; // by equation
     GhostPenalty<dim>               ghost;
+    std::vector<double>             moduli; // of the penalty, by cell, Pa
     std::vector<double>             begin_of_jumps, since_jumps;
     std::vector<dealii::Point<dim>> places; // of nodes, as the step begins
     std::vector<double>             displacement_of_tangent; // m

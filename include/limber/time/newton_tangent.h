@@ -76,15 +76,25 @@ namespace limber
       return held.size();
     }
 
+    std::size_t
+    place_in_row(std::uint32_t row_node, std::uint32_t column_node) const;
+    template <class Value>
+    void
+    add_block(const std::uint32_t *numbers,
+              unsigned int         n_nodes,
+              const Value         &value);
+    double &
+    on_diagonal(std::size_t row);
+
     const NumberedNodes<dim>              &nodes;
     const std::vector<unsigned char>      &held;
     dealii::TrilinosWrappers::SparseMatrix matrix;
     std::vector<std::uint32_t>             rows, columns; // eliminated entries
     std::vector<double>                    of_columns;
-    // Buffers for a row of a block
-    std::vector<dealii::types::global_dof_index> row_places;
-    std::vector<double>                          row_values;
-    double                                       largest = 0; // of the diagonal
+    double                                 largest = 0; // of the diagonal
+    // Storage of the matrix
+    int    *row_start = nullptr, *row_columns = nullptr;
+    double *entries = nullptr;
   };
 } // namespace limber
 

@@ -31,9 +31,18 @@ namespace limber
 
     explicit NumberedNodes(const RunParts<dim> &parts);
 
-    /** Number the nodes anew; points must be sorted. Collective. */
-    void
+    /** Number the nodes of the cells that hold points now, which must be
+     * sorted; false if these are the same as before. Collective. */
+    bool
     update();
+
+    /** Number the nodes anew in any case: the mesh has changed. */
+    void
+    forget()
+    {
+      own_cells.clear();
+      cell_keys.clear();
+    }
 
     std::size_t
     size() const
@@ -168,16 +177,17 @@ namespace limber
     void
     find_places();
     void
-    find_on_grid(const std::vector<std::uint32_t> &own_cells);
+    find_on_grid();
 
     const RunParts<dim>             parts;
     const bool                      parallel;
     const unsigned int              along, in_cell; // nodes of a cell
     dealii::Point<dim>              edges;
     Place                           n_nodes, n_cells_along; // of the lattice
-    std::vector<Key>                keys, cell_keys;        // sorted
-    std::vector<std::uint32_t>      numbers;        // in_cell for each cell
-    std::vector<std::uint32_t>      index_of_local; // cells
+    std::vector<std::uint32_t>      own_cells; // of this rank, with points
+    std::vector<Key>                keys, cell_keys; // sorted
+    std::vector<std::uint32_t>      numbers;         // in_cell for each cell
+    std::vector<std::uint32_t>      index_of_local;  // cells
     std::vector<std::uint32_t>      local;
     std::vector<int>                speakers; // ranks, by number
     int                             this_rank = 0;
