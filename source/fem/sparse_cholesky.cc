@@ -49,6 +49,9 @@ namespace limber
       common.print              = 0; // says nothing
       common.nmethods           = 1; // METIS takes more time than it saves
       common.method[0].ordering = CHOLMOD_AMD;
+      // With Debian's default BLAS dense blocks are slower than rows for all
+      // but the largest matrices.
+      common.supernodal = CHOLMOD_SIMPLICIAL;
       // L L^T, which ends where a matrix is not definite, unlike L D L^T
       common.final_ll                   = true;
       common.quick_return_if_not_posdef = true;

@@ -79,7 +79,7 @@ namespace limber
         moduli = std::move(now);
       }
     begin_of_jumps.assign(size(), 0.);
-    is_factorised = false;
+    is_factorised = set_up_serves = false;
     if (renumbered)
       tangent->reinit(ghost);
     displacement_of_tangent.clear();
@@ -545,25 +545,46 @@ namespace limber
 
 
 
+  // The multigrid of a step's first tangent serves the others as long as it
+  // takes few more iterations: to set it up takes as long as thirteen of them (a
+  // bar in torsion).
   template <int dim>
   unsigned int
   NewtonEquations<dim>::solve_condensed(NodalVector       &solution,
                                         const NodalVector &right_side)
   {
-    const SolutionMethod method = solution_method();
+    constexpr double     still_serves = 1.5; // times the iterations
+    const SolutionMethod method       = solution_method();
+    const bool           is_former    = is_iterated() && set_up_serves;
     if (!is_factorised || solver->method != method)
       {
         // Factors keep the order of the equations, multigrid nothing.
-        if (!solver || solver->method != method || is_iterated())
+        if (!solver || solver->method != method ||
+            (is_iterated() && !is_former))
           solver.emplace(method,
                          dim,
                          is_iterated() ? rigid_motions() :
                                          std::vector<double>(),
                          most_iterations);
-        solver->set_matrix(tangent->values());
+        if (!is_former)
+          solver->set_matrix(tangent->values());
       }
-    is_factorised = true;
-    return solver->solve(solution, right_side);
+    is_factorised = set_up_serves = true;
+    try
+      {
+        const unsigned int n = solver->solve(solution, right_side);
+        if (!is_former)
+          iterations_of_set_up = n;
+        set_up_serves = n <= still_serves * iterations_of_set_up;
+        return n;
+      }
+    catch (const IterationsFailed &)
+      {
+        if (!is_former)
+          throw;
+        is_factorised = set_up_serves = false;
+        return solve_condensed(solution, right_side);
+      }
   }
 
 

@@ -314,12 +314,14 @@ namespace limber
     const std::unique_ptr<NewtonTangent<dim>>   tangent;
     const std::unique_ptr<AveragedVolumes<dim>> volumes;
     std::optional<LinearSolver>                 solver;
-    bool                                        is_factorised       = false;
-    unsigned long                               n_linear_iterations = 0;
-    bool                                        factorises_all      = false;
-    bool                                        too_large           = false;
-    std::string                                 why_unsolved, failed_iterations;
-    const unsigned int                          most_iterations;
+    bool                                        is_factorised = false;
+    bool               set_up_serves = false; // multigrid of a former tangent
+    unsigned int       iterations_of_set_up = 0;
+    unsigned long      n_linear_iterations  = 0;
+    bool               factorises_all       = false;
+    bool               too_large            = false;
+    std::string        why_unsolved, failed_iterations;
+    const unsigned int most_iterations;
   };
 } // namespace limber
 
