@@ -398,8 +398,6 @@ namespace limber
         refuse_with_obstacles(method,
                               "Time integration",
                               "'Time integration = explicit'");
-      if (filters_velocity(problem.method.transfer))
-        refuse_with_obstacles(method, "Transfer", "'Transfer = flip'");
     }
 
 

@@ -36,8 +36,6 @@ namespace limber
   {
     if (problem.method.integration != TimeIntegration::explicit_steps)
       return "steps are not explicit";
-    if (filters_velocity(problem.method.transfer))
-      return "the transfer is 'fmpm' or 'xpic'";
     const Body<dim> *const flowing = who_flows(body, problem);
     if (flowing == &body)
       return "its material flows without end";

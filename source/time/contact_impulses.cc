@@ -500,9 +500,7 @@ namespace limber
     ContactLoss loss;
     if (!any())
       return loss;
-    for (Place &place : places)
-      place.held = 0;
-    hold_and_tell(slot, true);
+    hold_and_note(slot);
     for (const Place &place : places)
       account(loss,
               place,
@@ -519,6 +517,17 @@ namespace limber
   ContactImpulses<dim>::hold(const unsigned int slot)
   {
     hold_and_tell(slot, false);
+  }
+
+
+
+  template <int dim>
+  void
+  ContactImpulses<dim>::hold_and_note(const unsigned int slot)
+  {
+    for (Place &place : places)
+      place.held = 0;
+    hold_and_tell(slot, true);
   }
 
 

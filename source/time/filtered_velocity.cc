@@ -35,8 +35,13 @@ namespace limber
     if (steps_since_filter == 0)
       {
         typename FullMassFilter<dim>::Hold hold;
-        if (contact)
-          hold = [this](const unsigned int slot) { contact->hold(slot); };
+        if (contact || obstacles)
+          hold = [this](const unsigned int slot) {
+            if (contact)
+              contact->hold(slot);
+            if (obstacles)
+              obstacles->hold_filtered(slot);
+          };
         const auto action = full_mass->apply(parts.nodes,
                                              parts.bodies,
                                              method.transfer_order,
@@ -47,6 +52,8 @@ namespace limber
         // the loss of the points by the filter contains this work
         parts.ledger.boundary_work += action.work;
         parts.ledger.transfer += action.work;
+        if (obstacles && method.transfer_order > 1)
+          parts.ledger.transfer += obstacles->account_filtered();
       }
     lap(Verb::grid_to_points);
   }

@@ -546,8 +546,8 @@ namespace limber
 
 
   // The multigrid of a step's first tangent serves the others as long as it
-  // takes few more iterations: to set it up takes as long as thirteen of them (a
-  // bar in torsion).
+  // takes few more iterations: to set it up takes as long as thirteen of them
+  // (a bar in torsion).
   template <int dim>
   unsigned int
   NewtonEquations<dim>::solve_condensed(NodalVector       &solution,

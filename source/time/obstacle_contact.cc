@@ -480,6 +480,25 @@ namespace limber
 
 
 
+  // To the balance of an obstacle or a side
+  template <int dim>
+  void
+  ObstacleContact<dim>::add_impulse(const Touch &touch, const Vector &impulse)
+  {
+    if (touch.obstacle >= n_obstacles())
+      {
+        const unsigned int side =
+          sides_that_meet[touch.obstacle - n_obstacles()];
+        parts.ledger.side_impulse[side] += impulse;
+        return;
+      }
+    ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
+    action.impulse += impulse;
+    action.moment += moment_of<dim>(touch.arm, impulse);
+  }
+
+
+
   // In the frame of the box, impulses also do work with the velocity of the
   // obstacle, besides what points lose.
   template <int dim>
@@ -489,21 +508,13 @@ namespace limber
     parts.ledger.add(impulses.exchange());
     for (std::size_t p = 0; p < touches.size(); ++p)
       {
-        const Place &place = impulses.all()[p];
-        const Touch &touch = touches[p];
+        const Place &place  = impulses.all()[p];
+        const Touch &touch  = touches[p];
+        const Vector beyond = touch.beyond * place.normal;
+        add_impulse(touch, place.impulse + beyond);
         if (touch.obstacle >= n_obstacles())
-          {
-            const unsigned int side =
-              sides_that_meet[touch.obstacle - n_obstacles()];
-            parts.ledger.side_impulse[side] += place.impulse;
-            continue;
-          }
-        ObstacleAction<dim> &action = parts.ledger.obstacles[touch.obstacle];
-        const Vector         beyond = touch.beyond * place.normal,
-                     impulse        = place.impulse + beyond;
+          continue;
         parts.ledger.load_impulse -= beyond; // counted there as a load
-        action.impulse += impulse;
-        action.moment += moment_of<dim>(touch.arm, impulse);
         parts.ledger.boundary_work += place.impulse * place.velocity;
       }
     impulses.for_each_given_to_side([this](const unsigned int side,
@@ -511,6 +522,32 @@ namespace limber
                                            const double       impulse) {
       parts.ledger.side_impulse[side][component] -= impulse;
     });
+  }
+
+
+
+  template <int dim>
+  void
+  ObstacleContact<dim>::hold_filtered(const unsigned int slot)
+  {
+    impulses.hold_and_note(slot);
+  }
+
+
+
+  template <int dim>
+  double
+  ObstacleContact<dim>::account_filtered()
+  {
+    double work = 0;
+    for (std::size_t p = 0; p < touches.size(); ++p)
+      {
+        const Place &place = impulses.all()[p];
+        add_impulse(touches[p], place.held);
+        work += place.held * place.velocity;
+      }
+    parts.ledger.boundary_work += work;
+    return work;
   }
 
 

@@ -313,6 +313,10 @@ namespace limber
     void
     hold(unsigned int slot);
 
+    /** The same; the impulses that this takes are then in Place::held. */
+    void
+    hold_and_note(unsigned int slot);
+
   private:
     using Layout = NodeLayout<dim>;
 

@@ -178,6 +178,16 @@ namespace limber
     void
     hold(unsigned int slot);
 
+    /** Impose the contacts on a velocity of the series that the full-mass
+     * filter sums up; the last one of the step has the impulses of them all. */
+    void
+    hold_filtered(unsigned int slot);
+
+    /** Account for these impulses, also in the balances of obstacles and sides.
+     * Returns their work by the motion of obstacles, J. */
+    double
+    account_filtered();
+
     /** Impose the contacts on the re-mapped velocity, and account for what
      * points lose by this beyond exchange(), times the share of FLIP. */
     void
@@ -282,6 +292,8 @@ namespace limber
       }
     };
 
+    void
+    add_impulse(const Touch &touch, const Vector &impulse);
     Walls
     walls_at(unsigned int field, std::uint32_t node) const;
     unsigned int
