@@ -9,12 +9,12 @@ from charts import np
 
 class Camera:
     """Looks at a box from @p azimuth and @p elevation, in degrees; @p up is the
-    axis that points upwards in the picture. Azimuth 0 looks along the last of
-    the other two axes, from its positive end."""
+    axis that points upwards in the picture. Azimuth 0 looks along one of
+    the other two axes; right, up and towards the eye are right-handed."""
 
     def __init__(self, lower, upper, azimuth, elevation, up, pixels):
         right0 = {1: (1., 0, 0), 2: (1., 0, 0), 0: (0, 1., 0)}[up]
-        eye0 = {1: (0, 0, 1.), 2: (0, -1., 0), 0: (0, 0, 1.)}[up]
+        eye0 = {1: (0, 0, 1.), 2: (0, -1., 0), 0: (0, 0, -1.)}[up]
         top0 = np.eye(3)[up]
         a, e = np.radians((azimuth, elevation))
         right = np.cos(a) * np.array(right0) - np.sin(a) * np.array(eye0)

@@ -3,8 +3,10 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 
 #include <limber/base/exceptions.h>
+#include <limber/base/records_of_ranks.h>
 #include <limber/fem/reference_solver.h>
 #include <limber/fem/solid_totals.h>
+#include <limber/time/free_motions.h>
 
 #include <cmath>
 #include <string>
@@ -106,6 +108,44 @@ namespace limber
 
 
 
+  // A body in equilibrium that nothing holds could be anywhere.
+  template <int dim>
+  void
+  ReferenceSolver<dim>::check_free_motion() const
+  {
+    struct Node
+    {
+      dealii::Point<dim>    place;
+      std::array<bool, dim> held;
+    };
+    std::vector<Node> own;
+    model.for_each_owned_node([&](const auto &place, const auto &dofs) {
+      Node node{place, {}};
+      for (unsigned int d = 0; d < dim; ++d)
+        node.held[d] = model.held().constraints().is_constrained(dofs[d]);
+      own.push_back(node);
+    });
+    std::vector<dealii::Point<dim>>         places;
+    std::vector<std::array<bool, dim>>      held;
+    std::vector<std::vector<std::uint32_t>> parts(1);
+    for (const auto &of_rank : gather_records(own, model.communicator))
+      for (const Node &node : of_rank)
+        {
+          parts[0].push_back(places.size());
+          places.push_back(node.place);
+          held.push_back(node.held);
+        }
+    if (const auto free = free_rigid_motion<dim>(places, held, parts))
+      throw ComputationError(
+        "Nothing holds the body of the finite element reference against " +
+        free->motion +
+        ", so it has no place of equilibrium. Usually a side in 'Boundaries' "
+        "is free or slip by mistake. Set a side that it touches to 'no slip', "
+        "or 'Reference/Method = implicit'.");
+  }
+
+
+
   template <int dim>
   void
   ReferenceSolver<dim>::start()
@@ -113,6 +153,7 @@ namespace limber
     const ReferenceRequest &request = model.problem.reference;
     if (method == ReferenceMethod::quasi_static)
       {
+        check_free_motion();
         step_limit = model.problem.end_time / request.load_steps;
         choose_loads(0);
         evaluate_residual(time_of_loads, 0);

@@ -61,6 +61,7 @@ namespace limber
     held_nodes = std::make_unique<const HeldNodes<dim>>(problem, dof_handler);
     assemble_masses();
     begin_memory();
+    find_loaded_faces();
   }
 
 
@@ -443,6 +444,107 @@ namespace limber
 
 
 
+  namespace
+  {
+    /**
+     * Quadrature over a part of a face, given by a fine one of equal weights
+     * and whether its points are in that part: of each of the pieces of the
+     * face the centroid of those points, so that linear functions are
+     * integrated as by the fine one. Gauss points would miss up to a half of
+     * the face.
+     */
+    template <int d>
+    dealii::Quadrature<d>
+    over_part(const dealii::Quadrature<d> &fine,
+              const std::vector<bool>     &is_in_part)
+    {
+      constexpr unsigned int        n_pieces = 8; // in each direction
+      std::vector<dealii::Point<d>> centroids(
+        dealii::Utilities::pow(n_pieces, d));
+      std::vector<double> weights(centroids.size());
+      for (unsigned int q = 0; q < fine.size(); ++q)
+        if (is_in_part[q])
+          {
+            unsigned int piece = 0;
+            for (int c = 0; c < d; ++c)
+              piece = piece * n_pieces +
+                      static_cast<unsigned int>(fine.point(q)[c] * n_pieces);
+            centroids[piece] += fine.weight(q) * fine.point(q);
+            weights[piece] += fine.weight(q);
+          }
+      std::vector<dealii::Point<d>> places;
+      std::vector<double>           of_places;
+      for (std::size_t piece = 0; piece < weights.size(); ++piece)
+        if (weights[piece] > 0)
+          {
+            places.push_back(centroids[piece] / weights[piece]);
+            of_places.push_back(weights[piece]);
+          }
+      return {places, of_places};
+    }
+  } // namespace
+
+
+
+  template <int dim>
+  void
+  SolidModel<dim>::find_loaded_faces()
+  {
+    const dealii::QGauss<dim - 1>    whole(degree + 1);
+    const dealii::QIterated<dim - 1> fine(dealii::QMidpoint<1>(),
+                                          dim == 2 ? 1024 : 128);
+    dealii::FEFaceValues<dim>        on_face(fe,
+                                      fine,
+                                      dealii::update_quadrature_points);
+    std::vector<bool>                is_loaded(fine.size());
+    for (unsigned int l = 0; l < problem.loads.faces.size(); ++l)
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        for (const unsigned int f : cell->face_indices())
+          {
+            const FaceLoad<dim> &load = problem.loads.faces[l];
+            const auto           face = cell->face(f);
+            if (!cell->is_locally_owned() || !face->at_boundary() ||
+                !(load.face ? face->boundary_id() == *load.face :
+                              problem.grid.has_inside(face->center())))
+              continue;
+            if (load.where.empty())
+              {
+                loaded_faces.push_back({cell, f, l, whole});
+                continue;
+              }
+            on_face.reinit(cell, f);
+            for (unsigned int q = 0; q < fine.size(); ++q)
+              is_loaded[q] = load.acts_at(on_face.quadrature_point(q));
+            const auto n = std::count(is_loaded.begin(), is_loaded.end(), true);
+            if (n == long(fine.size()))
+              loaded_faces.push_back({cell, f, l, whole});
+            else if (n > 0)
+              loaded_faces.push_back({cell, f, l, over_part(fine, is_loaded)});
+          }
+  }
+
+
+
+  template <int dim>
+  std::vector<double>
+  SolidModel<dim>::loaded_areas() const
+  {
+    std::vector<double> result(problem.loads.faces.size());
+    for (const LoadedFace &loaded : loaded_faces)
+      {
+        dealii::FEFaceValues<dim> face(fe,
+                                       loaded.places,
+                                       dealii::update_JxW_values);
+        face.reinit(loaded.cell, loaded.face);
+        for (const unsigned int q : face.quadrature_point_indices())
+          result[loaded.load] += face.JxW(q);
+      }
+    dealii::Utilities::MPI::sum(result, communicator, result);
+    return result;
+  }
+
+
+
   template <int dim>
   void
   SolidModel<dim>::loads(const NodalVector &displacement,
@@ -452,58 +554,55 @@ namespace limber
     forces = 0;
     if (!has_loads())
       return;
-    const dealii::QGauss<dim - 1> face_quadrature(degree + 1);
-    dealii::FEValues<dim>         values(shape_values(quadrature));
-    dealii::FEFaceValues<dim>     faces(
-      fe, face_quadrature, update_flags | dealii::update_normal_vectors);
-    dealii::Vector<double>                       on_cell(fe.dofs_per_cell);
+    dealii::FEValues<dim>  values(shape_values(quadrature));
+    dealii::Vector<double> on_cell(fe.dofs_per_cell);
     std::vector<dealii::types::global_dof_index> dofs(fe.dofs_per_cell);
+    const auto                                   give = [&](const auto &cell) {
+      cell->get_dof_indices(dofs);
+      none.distribute_local_to_global(on_cell, dofs, forces);
+    };
     const auto &body_force = problem.loads.body_force;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          on_cell = 0;
-          if (body_force)
-            {
-              values.reinit(cell);
-              const auto u = values_of(cell, displacement);
-              for (const unsigned int q : values.quadrature_point_indices())
-                {
-                  dealii::Point<dim> place = values.quadrature_point(q);
-                  for (unsigned int i = 0; i < u.size(); ++i)
-                    place[fe.system_to_component_index(i).first] +=
-                      u[i] * values.shape_value(i, q);
-                  const auto force = element->density * values.JxW(q) *
-                                     body_force->vector(place, time);
-                  for (unsigned int i = 0; i < u.size(); ++i)
-                    on_cell[i] += force[fe.system_to_component_index(i).first] *
-                                  values.shape_value(i, q);
-                }
-            }
-          for (const FaceLoad<dim> &load : problem.loads.faces)
-            for (const unsigned int f : cell->face_indices())
-              if (cell->face(f)->at_boundary() &&
-                  (load.face ?
-                     cell->face(f)->boundary_id() == *load.face :
-                     problem.grid.has_inside(cell->face(f)->center())))
-                {
-                  faces.reinit(cell, f);
-                  const auto u = values_of(cell, displacement);
-                  for (const unsigned int q : faces.quadrature_point_indices())
-                    {
-                      if (!load.acts_at(faces.quadrature_point(q)))
-                        continue;
-                      const auto traction =
-                        face_traction(load, faces, q, u, time);
-                      for (unsigned int i = 0; i < fe.dofs_per_cell; ++i)
-                        on_cell[i] +=
-                          traction[fe.system_to_component_index(i).first] *
-                          faces.shape_value(i, q) * faces.JxW(q);
-                    }
-                }
-          cell->get_dof_indices(dofs);
-          none.distribute_local_to_global(on_cell, dofs, forces);
-        }
+    if (body_force)
+      for (const auto &cell : dof_handler.active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            on_cell = 0;
+            values.reinit(cell);
+            const auto u = values_of(cell, displacement);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                dealii::Point<dim> place = values.quadrature_point(q);
+                for (unsigned int i = 0; i < u.size(); ++i)
+                  place[fe.system_to_component_index(i).first] +=
+                    u[i] * values.shape_value(i, q);
+                const auto force = element->density * values.JxW(q) *
+                                   body_force->vector(place, time);
+                for (unsigned int i = 0; i < u.size(); ++i)
+                  on_cell[i] += force[fe.system_to_component_index(i).first] *
+                                values.shape_value(i, q);
+              }
+            give(cell);
+          }
+
+    std::unique_ptr<dealii::FEFaceValues<dim>> face;
+    for (const LoadedFace &loaded : loaded_faces)
+      {
+        const FaceLoad<dim> &load = problem.loads.faces[loaded.load];
+        if (face == nullptr || !(face->get_quadrature() == loaded.places))
+          face = std::make_unique<dealii::FEFaceValues<dim>>(
+            fe, loaded.places, update_flags | dealii::update_normal_vectors);
+        face->reinit(loaded.cell, loaded.face);
+        const auto u = values_of(loaded.cell, displacement);
+        on_cell      = 0;
+        for (const unsigned int q : face->quadrature_point_indices())
+          {
+            const auto traction = face_traction(load, *face, q, u, time);
+            for (unsigned int i = 0; i < fe.dofs_per_cell; ++i)
+              on_cell[i] += traction[fe.system_to_component_index(i).first] *
+                            face->shape_value(i, q) * face->JxW(q);
+          }
+        give(loaded.cell);
+      }
     forces.compress(dealii::VectorOperation::add);
   }
 

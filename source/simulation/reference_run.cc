@@ -37,13 +37,24 @@ namespace limber
 
 
     /** The entries on which the result of a reference depends: all but those of
-     * output and messages. */
+     * output and messages, and of the method, whose integration 'auto' of the
+     * reference follows if it is quasi-static. */
     std::vector<std::pair<std::string, std::string>>
     deciding_entries(const SceneFile &scene)
     {
       auto       entries = scene.parameters().entries();
-      const auto is_idle = [](const auto &entry) {
+      const bool is_quasi_static =
+        std::find(entries.begin(),
+                  entries.end(),
+                  std::pair<std::string, std::string>("Method/Time integration",
+                                                      "quasi-static")) !=
+        entries.end();
+      const auto is_idle = [&](const auto &entry) {
         const std::string &name = entry.first;
+        if (name == "Method/Damping rate")
+          return false;
+        if (name == "Method/Time integration" || name == "Method/Time step")
+          return !is_quasi_static;
         return name == "Output/Directory" || name == "Output/Replace" ||
                name == "Output/Progress interval" || name == "Memory limit" ||
                name.rfind("Checkpoint/", 0) == 0 ||
@@ -142,6 +153,11 @@ namespace limber
              << model.smallest_edge << " m; step " << solver.longest_step()
              << " s, to end time " << problem.end_time << " s";
         console.say(text.str());
+        const std::vector<double> areas = model.loaded_areas();
+        for (std::size_t l = 0; l < areas.size(); ++l)
+          console.say("Face load " + in_quotes(problem.loads.faces[l].name) +
+                      " acts on " + brief(areas[l]) +
+                      (dim == 2 ? " m." : " m^2."));
       }
 
       int

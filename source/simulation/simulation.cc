@@ -261,12 +261,15 @@ namespace limber
         problem.method.time_step == 0)
       longest = step_that_obstacles_allow(problem, state.time, longest);
     double target = problem.end_time;
-    if (problem.method.time_step == 0)
+    // Explicit steps of a given length end near enough to any time.
+    if (problem.method.time_step == 0 ||
+        problem.method.integration != TimeIntegration::explicit_steps)
       {
+        const double now = state.time + same_time * longest;
         for (const double time : targets)
-          if (time > state.time)
+          if (time > now)
             target = std::min(target, time);
-        if (problem.output.time_interval > 0 && next_pictures > state.time)
+        if (problem.output.time_interval > 0 && next_pictures > now)
           target = std::min(target, next_pictures);
       }
     const double remaining = target - state.time;

@@ -385,6 +385,14 @@ Exit codes: 0 done, 1 wrong input, 3 file error.
                        "parameters.prm in it. Usually the path is misspelt. "
                        "Name the 'Output/Directory' of a run.");
     const SceneFile scene(words[0] + "/parameters.prm");
+    if (const std::string other = words[1] + "/parameters.prm";
+        std::filesystem::exists(other) &&
+        SceneFile(other).dimension() != scene.dimension())
+      throw InputError("One of the folders " + in_quotes(words[0]) + " and " +
+                       in_quotes(words[1]) +
+                       " on the command line is of a scene in the plane, the "
+                       "other of one in space. Usually one is of another "
+                       "scene. Name two of the same.");
     return scene.dimension() == 2 ?
              compare<2>(scene, words[0], words[1], console) :
              compare<3>(scene, words[0], words[1], console);

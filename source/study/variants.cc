@@ -159,6 +159,16 @@ namespace limber
   {
     if (!is_compared(study) || study.comparison.with == Standard::exact)
       return std::nullopt;
+    for (const Variation &variation : study.variations)
+      if (variation.is_problem)
+        throw InputError(
+          "In the study " + in_quotes(study.path) + " the variation " +
+          in_quotes(variation.name) +
+          " makes other problems ('Another problem = true'), but errors are "
+          "measured against the one solution of 'Comparison'. Usually an "
+          "exact solution is known for one of the values only. Set "
+          "'Comparison/With = exact', measure by a 'check', or write a study "
+          "for each value.");
     Variant variant{
       0, {}, "comparison", study.directory + "/comparison", study.settings, ""};
     append(variant.settings, study.comparison.settings);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/base/exceptions.h>
+#include <limber/base/text.h>
 #include <limber/time/newton_integrator.h>
 
+#include <cmath>
 #include <numeric>
 
 namespace limber
@@ -10,9 +13,18 @@ namespace limber
   NewtonIntegrator<dim>::load_factor(const double time) const
   {
     const Problem<dim> &problem = parts.problem;
-    return in_motion                    ? 1 :
-           problem.loads.factor.empty() ? time / problem.end_time :
-                                          problem.loads.factor.value({}, time);
+    if (in_motion)
+      return 1;
+    if (problem.loads.factor.empty())
+      return time / problem.end_time;
+    const double factor = problem.loads.factor.value({}, time);
+    if (!std::isfinite(factor))
+      throw ComputationError("'Loads/Load factor' is " +
+                             std::to_string(factor) + " at time " +
+                             brief(time) +
+                             " s. Usually a formula is undefined there. Set "
+                             "one that is finite at all times.");
+    return factor;
   }
 
 

@@ -334,6 +334,9 @@ class Scripts(unittest.TestCase):
     def test_flat_bodies_stand_in_rows(self):
         self.run_python(ROWS)
 
+    def test_pictures_in_space_are_no_mirror_images(self):
+        self.run_python(HANDED)
+
     def test_a_shadow_lies_beside_what_throws_it(self):
         self.run_python(SHADOW)
 
@@ -430,6 +433,19 @@ dark = spheres.shadow(camera, place, 0.5, 0., 1)
 row, column = np.unravel_index(dark.argmax(), dark.shape)
 assert abs(row - 200) < 3 and abs(column - 228) < 3, (row, column)
 assert dark.max() <= 1 and dark[:79].max() < 1e-9  # six radii off
+"""
+
+# Right, up and towards the eye are right-handed, whatever points upwards.
+HANDED = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from charts import np
+import spheres
+for up in range(3):
+    for view in (0, 0), (30, 20), (200, 50):
+        camera = spheres.Camera(np.zeros(3), np.ones(3), *view, up, 100)
+        assert abs(np.linalg.det(camera.turn) - 1) < 1e-12, (up, view)
+        assert camera.turn[1] @ np.eye(3)[up] > 0, (up, view)
 """
 
 # Two panels, the same colour for a kernel in both, finite elements in both; a chart

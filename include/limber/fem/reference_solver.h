@@ -79,6 +79,8 @@ namespace limber
   private:
     void
     start();
+    void
+    check_free_motion() const;
     double
     explicit_step_limit(const unsigned int n_iterations);
     void

@@ -75,6 +75,11 @@ namespace limber
           const double       time,
           NodalVector       &forces) const;
 
+    /** Where each load on faces acts: areas in the order of the scene,
+     * m^(dim-1). Collective. */
+    std::vector<double>
+    loaded_areas() const;
+
     /** Whether there are any but gravity. */
     bool
     has_loads() const
@@ -164,6 +169,14 @@ namespace limber
     double                                         smallest_edge = 0; // m
 
   private:
+    /** A face on which a load acts, and where on it. */
+    struct LoadedFace
+    {
+      typename dealii::DoFHandler<dim>::active_cell_iterator cell;
+      unsigned int                                           face, load;
+      dealii::Quadrature<dim - 1>                            places;
+    };
+
     void
     check_scene() const;
     void
@@ -175,6 +188,8 @@ namespace limber
     std::size_t
     memory_of(
       const typename dealii::DoFHandler<dim>::active_cell_iterator &cell) const;
+    void
+    find_loaded_faces();
     dealii::Tensor<1, dim>
     face_traction(const FaceLoad<dim>             &load,
                   const dealii::FEFaceValues<dim> &faces,
@@ -186,6 +201,7 @@ namespace limber
     dealii::AffineConstraints<double>                    none;
     std::unique_ptr<const HeldNodes<dim>>                held_nodes;
     std::vector<std::pair<dealii::Point<dim>, NodeDofs>> nodes; // owned
+    std::vector<LoadedFace>                              loaded_faces;
     std::unique_ptr<Matrix>                              masses;
     NodalVector                                          lumped, weight;
     // of the quadrature points, cell by cell

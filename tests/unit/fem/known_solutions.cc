@@ -459,3 +459,99 @@ TEST(ReferenceInEquilibrium, FollowsTheLoadsOfTheScene)
               .reference.method,
             ReferenceMethod::implicit_steps);
 }
+
+
+
+// A load acts on the part of a face that 'Where' names, wherever this ends in
+// the elements: its resultant is that of the exact area.
+TEST(FaceLoads, ActOnPartsOfElements)
+{
+  const auto resultant_over_area = [](auto of_dim, const std::string &where) {
+    constexpr int     dim  = decltype(of_dim)::value;
+    const std::string ones = dim == 2 ? "1, 1" : "1, 1, 1";
+    const auto        scene =
+      problem_from<dim>("set Dimension = " + std::to_string(dim) +
+                          R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Upper corner = )" +
+                          ones + R"(
+      end
+      set Material = linear elastic
+      subsection Linear elastic
+        set Density = 1
+        set Young's modulus = 100
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Grid
+      set Upper corner = )" +
+                          (dim == 2 ? "2, 2" : "2, 2, 2") + R"(
+    end
+    subsection Loads
+      set Face loads = push
+      subsection Face load push
+        set Body = block
+        set Face = right
+        set Pressure = 3
+      end
+    end)",
+                        {"Loads/Face load push/Where=" + where});
+    SolidModel<dim> model(scene, MPI_COMM_WORLD);
+    NodalVector     forces = model.make_vector();
+    model.loads(model.make_vector(), 0, forces);
+    double along_x = 0;
+    model.for_each_owned_node(
+      [&](const auto &, const auto &dofs) { along_x += forces[dofs[0]]; });
+    EXPECT_NEAR(along_x, -3 * model.loaded_areas()[0], 1e-12);
+    return -along_x / 3;
+  };
+  const std::integral_constant<int, 2> plane;
+  const std::integral_constant<int, 3> space;
+  EXPECT_NEAR(resultant_over_area(plane, "1"), 1, 1e-12);
+  for (const double end : {0.25, 0.31, 0.6, 0.99})
+    EXPECT_NEAR(resultant_over_area(plane, digits(end) + " - y"), end, 5e-4);
+  EXPECT_NEAR(resultant_over_area(space, "0.7^2 - y^2 - z^2"),
+              pi / 4 * 0.49,
+              1e-3);
+}
+
+
+
+TEST(ReferenceInEquilibrium, ABodyThatNothingHoldsIsRefused)
+{
+  const auto    problem = problem_from<2>(R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 0, 0.5
+        set Upper corner = 1, 1
+      end
+      set Material = linear elastic
+      subsection Linear elastic
+        set Density = 1
+        set Young's modulus = 100
+        set Poisson's ratio = 0
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 2
+    end
+    subsection Boundaries
+      set left = slip
+    end)",
+                                       {"Reference/Method=quasi-static"});
+  SolidModel<2> model(problem, MPI_COMM_WORLD);
+  try
+    {
+      ReferenceSolver<2> solver(model);
+      FAIL() << "not refused";
+    }
+  catch (const ComputationError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("the translation along y"),
+                std::string::npos)
+        << error.what();
+    }
+}

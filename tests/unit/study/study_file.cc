@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/study/study_file.h>
+#include <limber/study/variants.h>
 
 #include <gtest/gtest.h>
 
@@ -133,6 +134,32 @@ TEST(StudyFile, Comparison)
   EXPECT_EQ(study.comparison.settings.size(), 1u);
   EXPECT_EQ(read(text, {}, true).comparison.settings.back(),
             "Grid/Cells=36, 20");
+}
+
+
+
+// One reference cannot be that of several problems.
+TEST(StudyFile, AComparisonIsOfOneProblem)
+{
+  std::string text =
+    replaced("set Source = column\n      set Name = kinetic energy, strain "
+             "energy\n      set Reduction = last over first\n      set "
+             "Reference = 1",
+             "set Source = comparison\n set Name = velocity");
+  const std::string entry = "set Entry = Body beam/Constants";
+  text.replace(text.find(entry),
+               entry.size(),
+               entry + "\n set Another problem = true");
+  const std::string with_reference = R"(
+    subsection Comparison
+      set With = reference
+    end)",
+                    with_exact     = R"(
+    subsection Comparison
+      set With = exact
+    end)";
+  EXPECT_THROW(standard_of(read(text + with_reference)), InputError);
+  EXPECT_FALSE(standard_of(read(text + with_exact)));
 }
 
 
