@@ -181,6 +181,22 @@ def style_of(method):
             "linestyle": line or "None", "fillstyle": filling}
 
 
+def styles_of(methods):
+    """style_of() each of the methods in one chart; where two would look alike,
+    the later one gets another marker and dashes."""
+    styles, seen = {}, set()
+    for method in methods:
+        style = style_of(method)
+        for marker in MARKERS:
+            look = tuple(map(str, style.values()))
+            if look not in seen:
+                break
+            style.update(marker=marker, linestyle=(0, (2, 1)))
+        seen.add(look)
+        styles[method] = style
+    return styles
+
+
 def line_of(method):
     """As style_of(), for dense curves: without markers."""
     return {**style_of(method), "marker": "None"}

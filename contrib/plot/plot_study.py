@@ -184,7 +184,7 @@ def draw_closed_forms(axis, methods, meta):
         if line:
             y = [math.nan if v is None else v for v in line["y"]]
             axis.plot(line["x"], y, "--", linewidth=1, zorder=1,
-                      color=charts.style_of(method)["color"],
+                      color=charts.styles_of(methods)[method]["color"],
                       label=f"{method}: {label}", scalex=False, scaley=False)
 
 
@@ -296,9 +296,10 @@ def draw_panel(axis, rows, measure, meta):
         y == round(y) and y < 100 for _, y, _ in points_of(rows, measure, meta))
     if counts:  # zeros among them
         floor = None
+    styles = charts.styles_of(methods)
     for index, method in enumerate(methods):
         own = [row for row in rows if row["method"] == method]
-        style = charts.style_of(method)
+        style = styles[method]
         # where formulas are drawn, measured values stand alone, and can be
         # told apart where they coincide
         if meta["closed forms"]:
@@ -319,7 +320,8 @@ def draw_panel(axis, rows, measure, meta):
                           for other in methods[index + 1:])))
         draw_line(axis, own, measure, meta, style, floor, marks, grown)
         draw_failed(axis, own, meta, style["color"], taken)
-    if is_logarithmic(meta, "horizontal"):
+    if is_logarithmic(meta, "horizontal") and all(
+            number(row[meta["horizontal"]]) > 0 for row in rows):
         axis.set_xscale("log")
     if is_logarithmic(meta, "vertical") and not counts:
         axis.set_yscale("log")

@@ -309,12 +309,14 @@ namespace limber
     {
       const std::string frame =
         body.is_plastic ? "" :
-                          "; 'Frame = initial' does not, for a body that is "
-                          "alone";
+                          "; in 'Frame = initial', for a body that is alone, "
+                          "nothing creeps";
       if (body.kernel == KernelKind::linear && !figures.against_splines.empty())
         return {of_body(body, "Points per cell edge"),
-                "More points per cell edge creep somewhat less, 'Kernel = "
-                "cpdi' by far less; 'quadratic' does not go, as " +
+                std::string("More points per cell edge creep somewhat less") +
+                  (figures.knows_domains ? ", 'Kernel = cpdi' by far less" :
+                                           "") +
+                  "; 'quadratic' is not possible, as " +
                   figures.against_splines + frame};
       if (body.kernel == KernelKind::linear)
         return {body.is_plastic ? "Method/Kernel" : of_body(body, "Frame"),

@@ -284,6 +284,8 @@ namespace limber
     figures.put_back        = totals.put_back;
     figures.put_back_way    = totals.put_back_way;
     figures.against_splines = state.problem.grid.against_splines;
+    figures.knows_domains =
+      state.problem.method.integration == TimeIntegration::explicit_steps;
     if (state.problem.method.time_step > 0 ||
         is_solved_by_newton(state.problem.method.integration))
       figures.step_entry = "Method/Time step";

@@ -38,6 +38,7 @@ namespace limber
     {
       std::string cause;
       std::string remedy; // what to set, besides leaving the choice
+      bool        goes_in_current = true; // the current frame takes it
     };
 
     bool
@@ -102,8 +103,9 @@ namespace limber
                          "'auto'"};
       if (is_spline(kernel) && treatment == Treatment::assumed_strain)
         return Hindrance{"has an assumed strain with linear functions only",
-                         ", or 'Method/Kernel = linear', or 'Locking treatment "
-                         "= cell' or 'none'"};
+                         "'Method/Kernel = linear', or 'Locking treatment "
+                         "= cell' or 'none'",
+                         false};
       return {};
     }
 
@@ -418,9 +420,11 @@ namespace limber
         obstacle = Hindrance{"does not go with cells of several sizes yet",
                              ", or 'Grid/Levels = 0'"};
       if (body.frame == Frame::initial && obstacle)
-        throw InputError("The frame 'initial' in " + section.where("Frame") +
-                         " " + obstacle->cause + ". Set 'Frame = current'" +
-                         obstacle->remedy + ".");
+        throw InputError(
+          "The frame 'initial' in " + section.where("Frame") + " " +
+          obstacle->cause + ". Set " +
+          (obstacle->goes_in_current ? "'Frame = current'" : "") +
+          obstacle->remedy + ".");
       if (body.frame != Frame::automatic)
         return;
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/grid/grid_tools.h>
+
 #include <limber/base/records_of_ranks.h>
 #include <limber/base/run_info.h>
 #include <limber/base/text.h>
@@ -9,6 +11,7 @@
 #include <limber/output/files.h>
 #include <limber/output/run_folder.h>
 #include <limber/output/summary.h>
+#include <limber/points/shape_volume.h>
 #include <limber/problem/read_problem.h>
 #include <limber/problem/size_estimate.h>
 #include <limber/simulation/reference_fields.h>
@@ -153,11 +156,61 @@ namespace limber
              << model.smallest_edge << " m; step " << solver.longest_step()
              << " s, to end time " << problem.end_time << " s";
         console.say(text.str());
+        compare_mesh_with_body();
         const std::vector<double> areas = model.loaded_areas();
         for (std::size_t l = 0; l < areas.size(); ++l)
           console.say("Face load " + in_quotes(problem.loads.faces[l].name) +
                       " acts on " + brief(areas[l]) +
                       (dim == 2 ? " m." : " m^2."));
+      }
+
+      // A mesh of a formula, or from a file, may be that of another body.
+      void
+      compare_mesh_with_body() const
+      {
+        constexpr double   differs = 0.05;
+        const Body<dim>   &body    = problem.bodies.front();
+        const double       size    = shape_volume(*body.shape);
+        const double       of_mesh = dealii::GridTools::volume(*model.mesh);
+        const Corners<dim> box     = body.shape->bounding_box();
+        for (int d = 0; d < dim; ++d)
+          {
+            const double gap = 1e-6 * problem.grid.edge(d);
+            if (box.first[d] < problem.grid.lower[d] - gap ||
+                box.second[d] > problem.grid.upper[d] + gap)
+              return; // the body is a half or a quarter of the shape
+          }
+        dealii::Point<dim> lower = box.second, upper = box.first;
+        model.for_each_owned_node([&](const auto &place, const auto &) {
+          for (int d = 0; d < dim; ++d)
+            {
+              lower[d] = std::min(lower[d], place[d]);
+              upper[d] = std::max(upper[d], place[d]);
+            }
+        });
+        bool lies_elsewhere = false;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double low    = dealii::Utilities::MPI::min(lower[d],
+                                                           model.communicator),
+                         high   = dealii::Utilities::MPI::max(upper[d],
+                                                            model.communicator),
+                         extent = box.second[d] - box.first[d];
+            lies_elsewhere |= std::abs(low - box.first[d]) > differs * extent ||
+                              std::abs(high - box.second[d]) > differs * extent;
+          }
+        const std::string unit = dim == 2 ? " m^2" : " m^3";
+        if (std::abs(of_mesh - size) > differs * size)
+          console.warn("The mesh has " + brief(of_mesh) + unit + ", body " +
+                       in_quotes(body.name) + " " + brief(size) + unit +
+                       ": what is computed is the mesh. Usually 'Reference/"
+                       "Mesh file' is of another body, or too coarse for it.");
+        else if (lies_elsewhere && body.shape->exact_volume())
+          console.warn("The mesh does not lie where body " +
+                       in_quotes(body.name) +
+                       " does: what is computed is the mesh. Usually "
+                       "'Reference/Mesh file' is in other units or has another "
+                       "origin.");
       }
 
       int

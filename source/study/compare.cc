@@ -247,9 +247,12 @@ namespace limber
                          "Usually they were not asked for. Run it anew with "
                          "'Output/Point arrays = true' and an 'Output/Time "
                          "interval'.");
-      const auto   source    = make_source(other, problem);
-      const auto   times     = source->times();
-      const double tolerance = same_times * files.back().first;
+      const auto   own_source = series == "nodes" ?
+                                  make_reference_source<dim>(run) :
+                                  make_run_source<dim>(run);
+      const auto   source     = make_source(other, problem);
+      const auto   times      = source->times();
+      const double tolerance  = same_times * files.back().first;
 
       std::vector<Column> columns = {{"time", "s"}};
       for (const std::string &quantity : quantities)
@@ -263,19 +266,20 @@ namespace limber
       Differences  all;
       std::size_t  n_missed = 0;
       unsigned int n_times  = 0;
-      for (const auto &[time, path] : files)
+      for (const auto &file : files)
         {
-          double other_time = time;
+          const double time       = file.first;
+          double       other_time = time;
           if (!times.empty())
-            other_time =
-              *std::min_element(times.begin(),
-                                times.end(),
-                                [t = time](const double a, const double b) {
-                                  return std::abs(a - t) < std::abs(b - t);
-                                });
+            other_time = *std::min_element(times.begin(),
+                                           times.end(),
+                                           [&](const double a, const double b) {
+                                             return std::abs(a - time) <
+                                                    std::abs(b - time);
+                                           });
           if (std::abs(other_time - time) > tolerance)
             continue;
-          const auto        own = read_point_arrays<dim>(path);
+          const auto        own = own_source->at_own_places(time);
           const Differences found =
             differences<dim>(own,
                              source->evaluate(other_time, own.place),

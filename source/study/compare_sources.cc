@@ -143,6 +143,27 @@ namespace limber
         return result;
       }
 
+      // At the nodes alone errors may be far smaller than between them.
+      PointArrays<dim>
+      at_own_places(const double time) override
+      {
+        std::vector<dealii::Point<dim>> places;
+        std::vector<double>             masses;
+        auto values = model.shape_values(model.quadrature);
+        for (const auto &cell : model.dof_handler.active_cell_iterators())
+          {
+            values.reinit(cell);
+            for (const unsigned int q : values.quadrature_point_indices())
+              {
+                places.push_back(values.quadrature_point(q));
+                masses.push_back(model.element->density * values.JxW(q));
+              }
+          }
+        auto result = evaluate(time, places);
+        result.mass = std::move(masses);
+        return result;
+      }
+
     private:
       const Problem<dim>    problem;
       const SolidModel<dim> model;
@@ -196,6 +217,12 @@ namespace limber
             result.stress[p]       = stress;
           }
         return result;
+      }
+
+      PointArrays<dim>
+      at_own_places(const double time) override
+      {
+        return read_point_arrays<dim>(file_at(this->files, time));
       }
 
     private:
@@ -287,6 +314,12 @@ namespace limber
               result.pressure[p] = exact.pressure.value(places[p], time);
           }
         return result;
+      }
+
+      PointArrays<dim>
+      at_own_places(const double time) override
+      {
+        return unknown_fields<dim>(time, {});
       }
 
     private:

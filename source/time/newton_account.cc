@@ -19,10 +19,9 @@ namespace limber
       return time / problem.end_time;
     const double factor = problem.loads.factor.value({}, time);
     if (!std::isfinite(factor))
-      throw ComputationError("'Loads/Load factor' is " +
-                             std::to_string(factor) + " at time " +
+      throw ComputationError("'Loads/Load factor' is not finite at time " +
                              brief(time) +
-                             " s. Usually a formula is undefined there. Set "
+                             " s. Usually the formula is undefined there. Set "
                              "one that is finite at all times.");
     return factor;
   }

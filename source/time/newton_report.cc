@@ -39,8 +39,9 @@ namespace limber
         return "the equilibrium is not stable: the stiffness is negative along "
                "one motion. Usually a slender body is compressed by more than "
                "its buckling load, and stays straight as all is symmetric. "
-               "Give it an imperfection, as a side load of a thousandth, to "
-               "follow the shape that it really takes.";
+               "Give it an imperfection, as a side load of a thousandth, and "
+               "set a shorter 'Method/Time step', to follow the shape that it "
+               "really takes.";
       }
     if (warned || equations.failure_of_iterations().empty())
       return "";

@@ -334,6 +334,9 @@ class Scripts(unittest.TestCase):
     def test_flat_bodies_stand_in_rows(self):
         self.run_python(ROWS)
 
+    def test_lines_of_a_chart_differ(self):
+        self.run_python(STYLES)
+
     def test_pictures_in_space_are_no_mirror_images(self):
         self.run_python(HANDED)
 
@@ -433,6 +436,19 @@ dark = spheres.shadow(camera, place, 0.5, 0., 1)
 row, column = np.unravel_index(dark.argmax(), dark.shape)
 assert abs(row - 200) < 3 and abs(column - 228) < 3, (row, column)
 assert dark.max() <= 1 and dark[:79].max() < 1e-9  # six radii off
+"""
+
+# What is named alike but differs is told apart; others look as in any chart.
+STYLES = """
+import sys
+sys.path.insert(0, sys.argv[1])
+import charts
+names = ["lin none", "cell", "quad none", "new none"]
+styles = charts.styles_of(names)
+assert styles["cell"] == charts.style_of("cell")
+assert styles["lin none"] == charts.style_of("lin none")
+looks = {tuple(map(str, style.values())) for style in styles.values()}
+assert len(looks) == 4, styles
 """
 
 # Right, up and towards the eye are right-handed, whatever points upwards.

@@ -104,6 +104,7 @@ namespace limber
     double                       kinetic      = 0; // energy of all points
     double                       drift        = 0; // over the scale
     std::string                  against_splines;  // GridDescription
+    bool          knows_domains = true; // the steps: cpdi and the like
     bool          may_hit = false; // obstacles, each other or sides that let go
     unsigned long points  = 0;
     double        put_back     = 0; // points, each time; see Ledger

@@ -32,6 +32,12 @@ namespace limber
     virtual PointArrays<dim>
     evaluate(const double                           time,
              const std::vector<dealii::Point<dim>> &places) = 0;
+
+    /** The fields at places of the source with the masses that they stand for:
+     * its material points, or the quadrature points of its elements. Of
+     * formulas there are none. */
+    virtual PointArrays<dim>
+    at_own_places(const double time) = 0;
   };
 
 
