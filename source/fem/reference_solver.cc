@@ -4,9 +4,9 @@
 
 #include <limber/base/exceptions.h>
 #include <limber/base/records_of_ranks.h>
+#include <limber/fem/free_motions.h>
 #include <limber/fem/reference_solver.h>
 #include <limber/fem/solid_totals.h>
-#include <limber/time/free_motions.h>
 
 #include <cmath>
 #include <string>

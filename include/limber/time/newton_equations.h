@@ -2,11 +2,11 @@
 #ifndef limber_time_newton_equations_h
 #define limber_time_newton_equations_h
 
+#include <limber/fem/free_motions.h>
 #include <limber/fem/linear_solver.h>
 #include <limber/grid/side_constraints.h>
 #include <limber/stress/trial_stress.h>
 #include <limber/time/follower_loads.h>
-#include <limber/time/free_motions.h>
 #include <limber/time/ghost_penalty.h>
 
 #include <memory>

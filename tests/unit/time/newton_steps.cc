@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
-#include <limber/time/free_motions.h>
+#include <limber/fem/free_motions.h>
 
 #include <gtest/gtest.h>
 #include <support/held_strip.h>

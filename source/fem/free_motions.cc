@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <deal.II/lac/full_matrix.h>
 
-#include <limber/time/free_motions.h>
+#include <limber/fem/free_motions.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_time_free_motions_h
-#define limber_time_free_motions_h
+#ifndef limber_fem_free_motions_h
+#define limber_fem_free_motions_h
 
 #include <deal.II/base/point.h>
 
