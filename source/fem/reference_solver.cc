@@ -65,8 +65,9 @@ namespace limber
     {
       if (!is_small(model))
         return SolutionMethod::conjugate_gradients;
-      return model.element->has_symmetric_tangent() ? SolutionMethod::cholesky :
-                                                      SolutionMethod::lu;
+      // as in implicit steps, see NewtonEquations::solution_method()
+      return model.element->n_memory() == 0 ? SolutionMethod::cholesky :
+                                              SolutionMethod::lu;
     }
   } // namespace
 

@@ -47,7 +47,7 @@ namespace limber
                                                    body->description.hourglass,
                                                    body->description.frame,
                                                    parts.problem.grid.kernel));
-        has_symmetric_laws &= responses.back()->has_symmetric_tangent();
+        factorises_all |= !responses.back()->has_symmetric_tangent();
         // the preconditioner of the pressures is for linear functions
         mixed |= parts.problem.grid.kernel == KernelKind::linear &&
                  responses.back()->bulk_over_shear() > mixed_beyond;
@@ -538,8 +538,16 @@ namespace limber
   {
     if (is_iterated())
       return SolutionMethod::conjugate_gradients;
+    // At large plastic flow entries differ across the diagonal by 2e-3 of the
+    // largest one with J2 as well (block_collapse): with one triangle of them
+    // Newton's method fails there.
+    const bool flows = std::any_of(parts.bodies.begin(),
+                                   parts.bodies.end(),
+                                   [](const auto &body) {
+                                     return body->description.is_plastic;
+                                   });
     const bool is_symmetric =
-      has_symmetric_laws && (followers == nullptr || !followers->any());
+      !flows && (followers == nullptr || !followers->any());
     return is_symmetric ? SolutionMethod::cholesky : SolutionMethod::lu;
   }
 

@@ -296,7 +296,7 @@ namespace limber
 
     const RunParts<dim> parts;
     const std::size_t   largest_direct, most_factorised;
-    bool                mixed = false, has_symmetric_laws = true;
+    bool                mixed = false;
     std::vector<std::unique_ptr<const TrialStress<dim>>> responses; // by body
     SideConstraints<dim>                                 constraints;
     NumberedNodes<dim>                                   nodes;

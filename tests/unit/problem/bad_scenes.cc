@@ -469,7 +469,7 @@ namespace
      {"Method/Kernel=quadratic",
       "Body beam/Frame=initial",
       "Body beam/Locking treatment=assumed strain"},
-     {"'initial'", "linear functions only", "Frame = current"}},
+     {"'initial'", "linear functions only", "Set 'Method/Kernel = linear'"}},
     {"MeanShearOverCellsOfDomains",
      {"Method/Kernel=cpdi", "Body beam/Locking treatment=cell shear"},
      {"'cell shear'", "Kernel = cpdi", "Locking treatment = cell"}},

@@ -339,7 +339,6 @@ TEST(Obstacles, WhatDoesNotGoWithThemIsRefused)
   const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
     {{"Method/Time integration=implicit", "Method/Time step=0.1"},
      "entry 'Time integration'"},
-    {{"Method/Transfer=fmpm"}, "entry 'Transfer'"},
     {{"Observable force/Obstacle=ting"}, "'ting'"}};
   for (const auto &[overrides, words] : cases)
     {

@@ -93,7 +93,7 @@ TEST(FullMass, ImpulsesOfSidesExplainTheMomentum)
             auto set = filter(kernel, transfer, order);
             for (const string entry :
                  {"Body block/Constants=U = -0.0411, V = -0.0303",
-                  "Body block/Box/Lower corner=0.5, 0.5",
+                  "Body block/Box/Lower corner=0.1, 0.5",
                   "Body block/Box/Upper corner=8.5, 6.5",
                   "Boundaries/left=slip",
                   "Boundaries/Side bottom/Friction coefficient=0.3",
