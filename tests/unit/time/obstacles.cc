@@ -136,34 +136,42 @@ namespace
       }
     return result;
   }
+
+
+
+  // a = g (sin - mu cos), whatever the directions of the cells; while the block
+  // swings up and down, mu m g cos is mu (m g cos + dp_n / dt).
+  void
+  expect_sliding(const double friction, const std::vector<std::string> &variant)
+  {
+    SceneRun<2> run(block_on_slope, variant);
+    run.advance_to(0.1); // what follows on the sudden start
+    const auto start = run.totals();
+    run.advance_to(0.4);
+    const auto   end  = run.totals();
+    const auto   gain = (end.all.momentum - start.all.momentum) / 500;
+    const double a    = sliding_acceleration(friction);
+    EXPECT_NEAR(
+      (gain * down_the_slope() + friction * (gain * off_the_slope())) / 0.3,
+      a,
+      0.02 * a);
+    EXPECT_NEAR(end.energy_drift, 0, 0.002);
+    EXPECT_LT(end.momentum_error, 1e-12);
+  }
 } // namespace
 
 
 
-// a = g (sin - mu cos), whatever the directions of the cells; while the block
-// swings up and down, mu m g cos is mu (m g cos + dp_n / dt).
 TEST(ObstacleContact, ABlockSlidesAcrossTheGrid)
 {
   for (const std::string order : {"musl", "usavg"})
     for (const double friction : {0.1, 0.3})
       {
         SCOPED_TRACE(order + " " + digits(friction));
-        SceneRun<2> run(block_on_slope,
-                        {"Method/Stress update=" + order,
-                         "Obstacle slope/Friction coefficient=" +
-                           digits(friction)});
-        run.advance_to(0.1); // what follows on the sudden start
-        const auto start = run.totals();
-        run.advance_to(0.4);
-        const auto   end  = run.totals();
-        const auto   gain = (end.all.momentum - start.all.momentum) / 500;
-        const double a    = sliding_acceleration(friction);
-        EXPECT_NEAR(
-          (gain * down_the_slope() + friction * (gain * off_the_slope())) / 0.3,
-          a,
-          0.02 * a);
-        EXPECT_NEAR(end.energy_drift, 0, 0.002);
-        EXPECT_LT(end.momentum_error, 1e-12);
+        expect_sliding(friction,
+                       {"Method/Stress update=" + order,
+                        "Obstacle slope/Friction coefficient=" +
+                          digits(friction)});
       }
 }
 
@@ -176,20 +184,7 @@ TEST(ObstacleContact, ABlockSlidesWithAnyKernel)
        {"quadratic", "cubic", "gimp", "cpgimp", "cpdi", "cpdi2", "ddmp"})
     {
       SCOPED_TRACE(kernel);
-      const double friction = 0.3;
-      SceneRun<2>  run(block_on_slope, {"Method/Kernel=" + kernel});
-      run.advance_to(0.1);
-      const auto start = run.totals();
-      run.advance_to(0.4);
-      const auto   end  = run.totals();
-      const auto   gain = (end.all.momentum - start.all.momentum) / 500;
-      const double a    = sliding_acceleration(friction);
-      EXPECT_NEAR(
-        (gain * down_the_slope() + friction * (gain * off_the_slope())) / 0.3,
-        a,
-        0.02 * a);
-      EXPECT_NEAR(end.energy_drift, 0, 0.002);
-      EXPECT_LT(end.momentum_error, 1e-12);
+      expect_sliding(0.3, {"Method/Kernel=" + kernel});
     }
 }
 
@@ -202,24 +197,11 @@ TEST(ObstacleContact, ABlockSlidesWithAFilter)
   for (const std::string transfer : {"fmpm", "xpic"})
     {
       SCOPED_TRACE(transfer);
-      const double friction = 0.3;
-      SceneRun<2>  run(block_on_slope,
-                      {"Method/Transfer=" + transfer,
-                        "Method/Blend time=0",
-                        "Method/Courant number=0.2",
-                        "Method/Kernel=quadratic"});
-      run.advance_to(0.1);
-      const auto start = run.totals();
-      run.advance_to(0.4);
-      const auto   end  = run.totals();
-      const auto   gain = (end.all.momentum - start.all.momentum) / 500;
-      const double a    = sliding_acceleration(friction);
-      EXPECT_NEAR(
-        (gain * down_the_slope() + friction * (gain * off_the_slope())) / 0.3,
-        a,
-        0.02 * a);
-      EXPECT_NEAR(end.energy_drift, 0, 0.002);
-      EXPECT_LT(end.momentum_error, 1e-12);
+      expect_sliding(0.3,
+                     {"Method/Transfer=" + transfer,
+                      "Method/Blend time=0",
+                      "Method/Courant number=0.2",
+                      "Method/Kernel=quadratic"});
     }
 }
 
