@@ -165,8 +165,8 @@ namespace limber
           "In the study " + in_quotes(study.path) + " the variation " +
           in_quotes(variation.name) +
           " makes other problems ('Another problem = true'), but errors are "
-          "measured against the one solution of 'Comparison'. Usually an "
-          "exact solution is known for one of the values only. Set "
+          "measured against the one solution of 'Comparison'. Usually a "
+          "variation was added to a study of one problem. Set "
           "'Comparison/With = exact', measure by a 'check', or write a study "
           "for each value.");
     Variant variant{

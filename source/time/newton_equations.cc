@@ -563,7 +563,8 @@ namespace limber
   {
     constexpr double     still_serves = 1.5; // times the iterations
     const SolutionMethod method       = solution_method();
-    const bool           is_former    = is_iterated() && set_up_serves;
+    const bool           is_former =
+      is_iterated() && set_up_serves && solver->method == method;
     if (!is_factorised || solver->method != method)
       {
         // Factors keep the order of the equations, multigrid nothing.

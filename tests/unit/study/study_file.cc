@@ -158,7 +158,17 @@ TEST(StudyFile, AComparisonIsOfOneProblem)
     subsection Comparison
       set With = exact
     end)";
-  EXPECT_THROW(standard_of(read(text + with_reference)), InputError);
+  try
+    {
+      standard_of(read(text + with_reference));
+      ADD_FAILURE() << "is accepted";
+    }
+  catch (const InputError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("'Another problem = true'"),
+                std::string::npos)
+        << error.what();
+    }
   EXPECT_FALSE(standard_of(read(text + with_exact)));
 }
 
