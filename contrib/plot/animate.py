@@ -58,8 +58,18 @@ def write_mp4(frames, path, rate):
 def write_gif(frames, path, rate):
     charts.need("PIL")
     from PIL import Image
-    pictures = [Image.open(frame).convert("P", palette=Image.ADAPTIVE)
+    pictures = [Image.open(frame).convert("RGB")
                 for frame in sorted(frames.glob("frame_*.png"))]
+    # One palette for the whole film, from pictures spread over it, so that
+    # colours do not change from one picture to the next.
+    chosen = pictures[::max(1, len(pictures) // 8)]
+    width, height = chosen[0].size
+    sheet = Image.new("RGB", (width, height * len(chosen)))
+    for k, picture in enumerate(chosen):
+        sheet.paste(picture, (0, k * height))
+    palette = sheet.quantize(256)
+    pictures = [picture.quantize(palette=palette, dither=Image.FLOYDSTEINBERG)
+                for picture in pictures]
     pictures[0].save(path, save_all=True, append_images=pictures[1:],
                      duration=round(1000 / rate), loop=0)
 

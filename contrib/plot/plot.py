@@ -145,10 +145,13 @@ def snapshots(arguments, sources, labels):
 # ---- columns of the statistics over time -----------------------------------------
 
 ENERGIES = ("kinetic energy", "strain energy", "gravitational energy",
-            "dissipated energy")
+            "dissipated energy", "plastic work", "friction heat",
+            "contact loss")
 ENERGY_COLOURS = {"kinetic energy": "#0072B2", "strain energy": "#D55E00",
                   "gravitational energy": "#009E73",
-                  "dissipated energy": "#CC79A7", "total energy": "#000000"}
+                  "dissipated energy": "#CC79A7", "plastic work": "#E69F00",
+                  "friction heat": "#8C6D31", "contact loss": "#56B4E9",
+                  "total energy": "#000000"}
 LINES = ("-", "--", ":", "-.")  # one for each run
 
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/quadrature_lib.h>
+
 #include <deal.II/dofs/dof_tools.h>
 
 #include <deal.II/fe/fe_values.h>
@@ -149,17 +151,23 @@ namespace limber
                             NodalVector       &velocity,
                             NodalVector       &acceleration) const
   {
-    const double step = time - former_time;
+    // A velocity may jump at the end of a step, as in if(t < 1, v, 0), so the
+    // displacement is from points within the step.
+    static const dealii::QGauss<1> rule(3);
+    const double                   step = time - former_time;
     for (const Held &h : all)
       if (displacement.in_local_range(h.dof))
         {
+          displacement[h.dof] = former_displacement[h.dof];
+          for (unsigned int q = 0; q < rule.size(); ++q)
+            displacement[h.dof] +=
+              step * rule.weight(q) *
+              prescribed_velocity(h, former_time + step * rule.point(q)[0]);
+
+          // acceleration from the parabola through three velocities
           const double before = prescribed_velocity(h, former_time);
           const double middle = prescribed_velocity(h, former_time + step / 2);
           const double after  = prescribed_velocity(h, time);
-          // displacement by Simpson's rule, acceleration from the parabola
-          // through the three velocities
-          displacement[h.dof] = former_displacement[h.dof] +
-                                step / 6 * (before + 4 * middle + after);
           velocity[h.dof]     = after;
           acceleration[h.dof] = (before - 4 * middle + 3 * after) / step;
         }

@@ -226,8 +226,8 @@ namespace limber
     summary.cpu_seconds  = sum(cpu_time() - start_cpu, communicator);
     const double computing =
       sum(cpu_time() - start_cpu - output_cpu, communicator);
-    summary.ns_per_point_step =
-      1e9 * computing / std::max(1ul, points_and_steps);
+    if (points_and_steps > 0)
+      summary.ns_per_point_step = 1e9 * computing / points_and_steps;
 
     summary.memory_bytes = sum(largest_memory(), communicator);
     const auto share     = [&](const double bytes) {
@@ -312,10 +312,12 @@ namespace limber
     std::ostringstream text;
     text << std::setprecision(4) << summary.verdict << ": " << summary.steps
          << " steps to time " << summary.end_time << " s in "
-         << summary.wall_seconds << " s; " << summary.ns_per_point_step
-         << " ns per point and step, energy drift " << summary.energy_drift
-         << ", momentum error " << summary.momentum_error << ", "
-         << summary.lost_points << " points lost\n";
+         << summary.wall_seconds << " s; ";
+    if (points_and_steps > 0)
+      text << summary.ns_per_point_step << " ns per point and step, ";
+    text << "energy drift " << summary.energy_drift << ", momentum error "
+         << summary.momentum_error << ", " << summary.lost_points
+         << " points lost\n";
     if (!summary.adaptation.empty())
       {
         text << summary.levels << "  adaptation:";

@@ -115,7 +115,8 @@ namespace limber
   --resume                   keep the runs that are done and have not changed
   --validate                 check and list all variants, run nothing
   --print-parameters prm|json|markdown
-                             print all entries of a study
+                             print all entries, those of the study if one is
+                             given
   --set "Section/Name=value" change an entry of the study; may be repeated
   --output-directory path    folder of the results, same as Directory
 
@@ -186,7 +187,17 @@ instance, for every variant of a scene. Each run is a process of its own.
       else if (words.common.print_parameters)
         {
           std::ostringstream text;
-          print_study_parameters(text, *words.common.print_parameters);
+          const PrintStyle   style = *words.common.print_parameters;
+          if (words.common.scene.empty())
+            print_study_parameters(text, style);
+          else
+            {
+              Parameters parameters;
+              read_entries(words.common.scene,
+                           study_overrides(words.common),
+                           parameters);
+              parameters.print(text, style);
+            }
           console.show(text.str());
         }
       else if (words.common.scene.empty())

@@ -72,25 +72,6 @@ namespace limber
 
 
 
-    [[noreturn]] void
-    refuse_name(const Measure                  &measure,
-                const std::string              &name,
-                const std::string              &what,
-                const std::vector<std::string> &known)
-    {
-      const auto meant = nearest(name, known);
-      throw InputError("The run has no " + what + " " + in_quotes(name) +
-                       ", which 'Measure " + measure.name +
-                       "/Name' asks for. Usually it is misspelt or missing in "
-                       "the scene. " +
-                       (meant ? "Did you mean " + in_quotes(*meant) + "?" :
-                        known.empty() ?
-                                "It has none at all." :
-                                "Choose from: " + join(known, ", ") + "."));
-    }
-
-
-
     /** Range of rows within the times of the measure. */
     std::pair<std::size_t, std::size_t>
     rows_of(const Measure &measure, const Table &table)
@@ -204,6 +185,25 @@ namespace limber
                                       Measured{worst.error, worst.error};
     }
   } // namespace
+
+
+
+  void
+  refuse_name(const Measure                  &measure,
+              const std::string              &name,
+              const std::string              &what,
+              const std::vector<std::string> &known)
+  {
+    const auto meant = nearest(name, known);
+    throw InputError("The run has no " + what + " " + in_quotes(name) +
+                     ", which 'Measure " + measure.name +
+                     "/Name' asks for. Usually it is misspelt or missing in "
+                     "the scene. " +
+                     (meant ? "Did you mean " + in_quotes(*meant) + "?" :
+                      known.empty() ?
+                              "It has none at all." :
+                              "Choose from: " + join(known, ", ") + "."));
+  }
 
 
 

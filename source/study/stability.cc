@@ -14,6 +14,34 @@ namespace limber
   namespace
   {
     /**
+     * The one variation whose values are numbers, against which the largest
+     * stable value can be drawn. Throws InputError where there is not just one.
+     */
+    std::string
+    only_axis(const StudyFile &study)
+    {
+      std::vector<std::string> axes;
+      for (const Variation &variation : study.variations)
+        if (std::all_of(variation.choices.begin(),
+                        variation.choices.end(),
+                        [](const Choice &choice) {
+                          return to_number(choice.label).has_value();
+                        }))
+          axes.push_back(variation.name);
+      if (axes.size() != 1)
+        throw InputError(
+          "The study " + in_quotes(study.path) + " has " +
+          (axes.empty() ? "no variation over numbers" :
+                          counted(axes.size(), "variation") + " (" +
+                            join(axes, ", ") + ")") +
+          " to draw the largest stable value against. In section 'Chart', set "
+          "'Horizontal axis' to the name of one.");
+      return axes.front();
+    }
+
+
+
+    /**
      * The largest kinetic plus strain energy of a run over that of its start.
      * Throws InputError where it starts without any.
      */
@@ -200,10 +228,7 @@ namespace limber
     measure.source = MeasureSource::summary; // without error
     study.measures = {measure};
     if (study.horizontal_axis.empty())
-      throw InputError("The study " + study.path +
-                       " has no variation to draw the largest stable value "
-                       "against. In section 'Chart', set 'Horizontal axis' to "
-                       "the name of a variation.");
+      study.horizontal_axis = only_axis(study);
 
     StudyRuns runs(study, call, console);
     if (call.validate)

@@ -417,10 +417,10 @@ namespace limber
 
 
 
-  StudyFile
-  read_study(const std::string              &path,
-             const std::vector<std::string> &overrides,
-             const bool                      take_short)
+  void
+  read_entries(const std::string              &path,
+               const std::vector<std::string> &overrides,
+               Parameters                     &parameters)
   {
     const ParameterText text = read_parameter_text(path);
     const Scan scan = scan_parameters(text.text, text.format, text.origin);
@@ -431,12 +431,22 @@ namespace limber
                        text.origin +
                        "', or write a study of it like "
                        "prm/studies/cantilever.prm.");
-    Parameters parameters;
     declare_study(parameters,
                   names_in(scan, overrides, "Methods"),
                   names_in(scan, overrides, "Variations"),
                   names_in(scan, overrides, "Measures"));
     parameters.read(scan, overrides);
+  }
+
+
+
+  StudyFile
+  read_study(const std::string              &path,
+             const std::vector<std::string> &overrides,
+             const bool                      take_short)
+  {
+    Parameters parameters;
+    read_entries(path, overrides, parameters);
     const Section root = parameters.root();
 
     StudyFile study;

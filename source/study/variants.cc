@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
+#include <limber/output/statistics.h>
 #include <limber/problem/read_problem.h>
 #include <limber/problem/size_estimate.h>
+#include <limber/study/run_result.h>
 #include <limber/study/variants.h>
 
+#include <algorithm>
 #include <cctype>
 #include <limits>
 #include <set>
@@ -76,19 +79,66 @@ namespace limber
 
 
 
+    /**
+     * Refuses measures of columns and checks that runs of the scene will not
+     * have. References write columns of their own.
+     */
+    template <int dim>
+    void
+    check_measures(const std::vector<Measure> &measures,
+                   const Problem<dim>         &problem,
+                   const Runner                runner)
+    {
+      std::vector<std::string> columns, checks;
+      for (const Column &column : statistics_columns(problem))
+        columns.push_back(column.name);
+      for (const Check &check : problem.checks)
+        checks.push_back(check.name);
+      const auto require = [](const Measure                  &measure,
+                              const std::string              &what,
+                              const std::vector<std::string> &known) {
+        for (const std::string &name : measure.of)
+          if (std::find(known.begin(), known.end(), name) == known.end())
+            refuse_name(measure, name, what, known);
+      };
+      for (const Measure &measure : measures)
+        if (measure.source == MeasureSource::check)
+          require(measure, "check", checks);
+        else if (measure.source == MeasureSource::column &&
+                 runner == Runner::points)
+          require(measure, "column", columns);
+    }
+
+
+
+    template <int dim>
+    void
+    check_problem(const SceneFile            &scene,
+                  const Runner                runner,
+                  const std::vector<Measure> &measures)
+    {
+      const auto problem = read_problem<dim>(scene);
+      check_size(problem,
+                 runner == Runner::reference ? Task::reference : Task::run,
+                 this_machine());
+      check_measures(measures, problem, runner);
+    }
+
+
+
     /** Checks what the run would check first; returns the entries it uses. */
     std::string
-    check_scene(const StudyFile &study, const Variant &variant)
+    check_scene(const StudyFile            &study,
+                const Variant              &variant,
+                const std::vector<Measure> &measures)
     {
       try
         {
           const SceneFile scene(study.scene, variant.settings);
-          const Task      task =
-            variant.runner == Runner::reference ? Task::reference : Task::run;
           if (scene.dimension() == 2)
-            check_size(read_problem<2>(scene), task, this_machine());
+            check_problem<2>(scene, variant.runner, measures);
           else
-            check_size(read_problem<3>(scene), task, this_machine());
+            check_problem<3>(scene, variant.runner, measures);
           std::ostringstream text;
           print_parameters(text, PrintStyle::prm, &scene);
           return text.str();
@@ -144,7 +194,7 @@ namespace limber
             while (!folders.insert(folder).second)
               folder += "_";
             variant.folder     = study.directory + "/runs/" + folder;
-            variant.parameters = check_scene(study, variant);
+            variant.parameters = check_scene(study, variant, study.measures);
             variants.push_back(variant);
           }
         while (next(choices, study.variations));
@@ -174,7 +224,7 @@ namespace limber
     append(variant.settings, study.comparison.settings);
     if (study.comparison.with == Standard::reference)
       variant.runner = Runner::reference;
-    variant.parameters = check_scene(study, variant);
+    variant.parameters = check_scene(study, variant, {});
     return variant;
   }
 

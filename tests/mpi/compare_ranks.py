@@ -73,7 +73,7 @@ def main():
                         help="4 where the checks are of a longer run")
     parser.add_argument("--word", action="append", default=[],
                         help="stands before the scene, as 'reference'")
-    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 2, 3, 4])
+    parser.add_argument("--ranks", type=int, nargs="+", default=[1, 3])
     parser.add_argument("--tolerance", type=float, default=TOLERANCE,
                         help="instead of 1e-10, where a solver iterates")
     parser.add_argument("--set", action="append", default=[])

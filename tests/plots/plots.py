@@ -6,8 +6,12 @@ drawn, what is refused, and that a refused picture leaves the old one alone.
 """
 
 import argparse
+import contextlib
+import importlib
+import io
 import json
 import os
+import shutil
 import struct
 import subprocess
 import sys
@@ -36,6 +40,25 @@ def limber(*words, expected=0, environment=None):
         raise AssertionError(f"{words}: exit code {done.returncode}\n"
                              + done.stdout + done.stderr)
     return done.stdout + done.stderr
+
+
+def draw(word, *words, expected=0):
+    """As `limber plot` or `limber animate`, by their scripts but within this
+    process: matplotlib takes longer to start than most pictures."""
+    script = importlib.import_module(word)
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        try:
+            code = script.main([str(one) for one in words])
+        except SystemExit as end:
+            code = end.code
+    importlib.import_module("charts").plt.close("all")
+    if isinstance(code, str):
+        said.write(code)
+        code = 1
+    if (code or 0) != expected:
+        raise AssertionError(f"{word} {words}: {code}\n" + said.getvalue())
+    return said.getvalue()
 
 
 def png_size(path):
@@ -75,10 +98,10 @@ class Plots(unittest.TestCase):
         for ending, begin in ((".png", b"\x89PNG"), (".pdf", b"%PDF"),
                               (".svg", b"<?xml")):
             path = self.home / f"picture{ending}"
-            limber("plot", self.home / "flat", "--field", "velocity x",
+            draw("plot", self.home / "flat", "--field", "velocity x",
                    "--time", 0, "--output", path)
             self.assertEqual(path.read_bytes()[:len(begin)], begin)
-        said = limber("plot", self.home / "flat", "--field", "pressure",
+        said = draw("plot", self.home / "flat", "--field", "pressure",
                       "--output", self.home / "a.jpg", expected=1)
         self.assertIn(".png", said)
         self.assertFalse((self.home / "a.jpg").exists())
@@ -86,21 +109,21 @@ class Plots(unittest.TestCase):
     def test_three_dimensions_and_components(self):
         path = self.home / "solid.png"
         for field in ("speed", "equivalent stress"):
-            limber("plot", self.home / "solid", "--field", field, "--snapshots",
+            draw("plot", self.home / "solid", "--field", field, "--snapshots",
                    2, "--output", path)
             self.assertEqual(png_size(path)[0], 1600)
 
     def test_fields_of_point_arrays(self):
-        limber("plot", self.home / "arrays", "--field", "displacement y",
+        draw("plot", self.home / "arrays", "--field", "displacement y",
                "--enlarge", 3, "--output", self.home / "arrays.png")
 
     def test_runs_side_by_side(self):
         path = self.home / "both.png"
-        limber("plot", self.home / "flat", self.home / "arrays", "--field",
+        draw("plot", self.home / "flat", self.home / "arrays", "--field",
                "pressure", "--time", 0.004, "--labels", "one", "another",
                "--output", path)
         wide, high = png_size(path)
-        limber("plot", self.home / "flat", "--field", "pressure", "--time",
+        draw("plot", self.home / "flat", "--field", "pressure", "--time",
                0.004, "--output", path)
         self.assertGreater(high / wide, 1.5 * png_size(path)[1] / 1600)
         self.refused("Runs in two and in three dimensions",
@@ -111,15 +134,15 @@ class Plots(unittest.TestCase):
         runs = self.home / "flat", self.home / "arrays"
         words = ["plot", *runs, "--field", "pressure", "--time", 0.004, "--output",
                  path]
-        limber(*words)
+        draw(*words)
         wide, high = png_size(path)
-        limber(*words, "--side-by-side")
+        draw(*words, "--side-by-side")
         self.assertLess(png_size(path)[1], 0.7 * high)
         self.refused("is for several runs", "plot", runs[0], "--side-by-side")
 
     def test_ends_of_the_colours_may_be_negative(self):
         path = self.home / "range.svg"
-        limber("plot", self.home / "flat", "--field", "pressure", "--time", 0.004,
+        draw("plot", self.home / "flat", "--field", "pressure", "--time", 0.004,
                "--range", "-5e7", "5E+7", "--output", path)
         self.assertIn("pressure [MPa]", path.read_text())
         self.refused("a higher one", "plot", self.home / "flat", "--range", "5e7",
@@ -129,9 +152,9 @@ class Plots(unittest.TestCase):
         path = self.home / "others.svg"
         words = ["plot", self.home / "two", "--body", "jelly", "--field",
                  "pressure", "--time", 0, "--output", path]
-        limber(*words)
+        draw(*words)
         alone = path.read_text()
-        limber(*words, "--others")
+        draw(*words, "--others")
         self.assertNotEqual(path.read_text(), alone)
         self.refused("'--others' are those beside", "plot", self.home / "two",
                      "--others")
@@ -147,7 +170,7 @@ class Plots(unittest.TestCase):
         path = self.home / "levels.svg"
         sizes = {}
         for words in ((), ("--grid",)):
-            limber("plot", folder, "--field", "pressure", "--time", 0, *words,
+            draw("plot", folder, "--field", "pressure", "--time", 0, *words,
                    "--output", path)
             sizes[words] = path.read_text().count("<path")
         said = subprocess.run([SYSTEM, "-B", "-c", LEVELS, str(SCRIPTS), str(
@@ -161,22 +184,22 @@ class Plots(unittest.TestCase):
     def test_pictures_of_several_runs_leave_those_of_the_first_alone(self):
         kept = self.home / "arrays/snapshots.png"
         kept.write_bytes(b"as it was")
-        limber("plot", self.home / "arrays", self.home / "flat", "--field",
+        draw("plot", self.home / "arrays", self.home / "flat", "--field",
                "pressure")
         self.assertEqual(kept.read_bytes(), b"as it was")
         self.assertTrue((kept.parent / "comparison_snapshots.png").is_file())
 
     def test_what_the_titles_say(self):
         path = self.home / "titles.svg"
-        limber("plot", self.home / "arrays", "--field", "pressure", "--time", 0,
+        draw("plot", self.home / "arrays", "--field", "pressure", "--time", 0,
                0.004, "--enlarge", 3, "--output", path)
         text = path.read_text()
         self.assertIn("t = 4 ms, displacements × 3</text>", text)
 
     def test_bodies(self):
         path = self.home / "two.png"
-        limber("plot", self.home / "two", "--field", "body", "--output", path)
-        limber("plot", self.home / "two", "--body", "jelly", "--field",
+        draw("plot", self.home / "two", "--field", "body", "--output", path)
+        draw("plot", self.home / "two", "--body", "jelly", "--field",
                "pressure", "--output", path)
         self.refused("There is no body 'jello'", "plot", self.home / "two",
                      "--body", "jello")
@@ -194,8 +217,8 @@ class Plots(unittest.TestCase):
                 text=True, capture_output=True, check=True).stdout
             self.assertAlmostEqual(float(said), 1.24 / 16 / number)
 
-    def refused(self, expected, *words, **options):
-        said = limber(*words, expected=1, **options)
+    def refused(self, expected, *words, call=draw):
+        said = call(*words, expected=1)
         self.assertIn(expected, said)
         self.assertNotIn("Traceback", said)
 
@@ -211,7 +234,8 @@ class Plots(unittest.TestCase):
         self.refused("there is no folder", "plot", run, "--output",
                      self.home / "none/picture.png")
         self.refused("is not that of a run", "plot", self.home)
-        self.refused("Did you mean '--field'?", "plot", run, "--filed", "mass")
+        self.refused("Did you mean '--field'?", "plot", run, "--filed", "mass",
+                     call=limber)
         self.refused("there is no picture of 1 s", "plot", run, "--time", 0, 1,
                      "--output", path)
         scene = TOP / "prm/dam_break.prm"
@@ -222,7 +246,7 @@ class Plots(unittest.TestCase):
 
     def test_columns(self):
         path = self.home / "columns.svg"
-        limber("plot", self.home / "flat", self.home / "arrays", "--columns",
+        draw("plot", self.home / "flat", self.home / "arrays", "--columns",
                "kinetic energy", "mass", "--output", path)
         text = path.read_text()
         self.assertIn("mass [kg]", text)
@@ -230,7 +254,7 @@ class Plots(unittest.TestCase):
 
     def test_film(self):
         path = self.home / "film.gif"
-        limber("animate", self.home / "flat", "--field", "pressure", "--output",
+        draw("animate", self.home / "flat", "--field", "pressure", "--output",
                path)
         self.assertEqual(path.read_bytes()[:4], b"GIF8")
         done = subprocess.run(
@@ -270,7 +294,7 @@ class Plots(unittest.TestCase):
             "horizontal label": "CPU seconds", "vertical label": "",
             "against cost": True, "logarithmic": "both",
             "error levels": [0.1], "closed forms": {}}))
-        limber("plot", folder)
+        draw("plot", folder)
         self.assertEqual(png_size(folder / "study.png")[0], 1600)
         text = (folder / "study.svg").read_text()
         for words in ("error of the tip", "4: lost points", "1e-14", "none"):
@@ -307,17 +331,18 @@ class Scripts(unittest.TestCase):
     def test_palette(self):
         """In every study that comes along methods can be told apart, and look
         the same wherever they occur."""
-        done = subprocess.run(
-            [SYSTEM, "-B", "-c", PALETTE, str(SCRIPTS),
-             *map(str, sorted((TOP / "prm/studies").glob("*.prm")))],
-            text=True, capture_output=True)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.run_python(PALETTE, *sorted((TOP / "prm/studies").glob("*.prm")))
 
-
-    def run_python(self, program):
-        done = subprocess.run([SYSTEM, "-B", "-c", program, str(SCRIPTS)],
-                              text=True, capture_output=True)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+    def run_python(self, program, *words):
+        """A program that asserts; its words begin with the scripts' folder."""
+        kept = sys.argv
+        sys.argv = ["-c", *map(str, (SCRIPTS, *words))]
+        try:
+            exec(program, {"__name__": "__main__"})
+        except SystemExit as end:
+            self.fail(end.code)
+        finally:
+            sys.argv = kept
 
     def test_gaps_between_points_that_were_pulled_apart(self):
         self.run_python(GAPS)
@@ -747,7 +772,8 @@ sys.path.insert(0, sys.argv[1])
 import charts
 count = 0
 for path in sys.argv[2:]:
-    found = re.search(r"^set Methods *= *(.*)$", open(path).read(), re.M)
+    with open(path) as study:
+        found = re.search(r"^set Methods *= *(.*)$", study.read(), re.M)
     methods = [m.strip() for m in found[1].split(",")]
     looks = {}
     for method in methods:
@@ -765,7 +791,11 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--limber", required=True)
     arguments, rest = parser.parse_known_args()
+    if not os.path.samefile(sys.executable, shutil.which(SYSTEM)):
+        os.execv(shutil.which(SYSTEM), [SYSTEM, "-B", *sys.argv])
     LIMBER = arguments.limber
+    sys.dont_write_bytecode = True
+    sys.path.insert(0, str(SCRIPTS))
     unittest.main(argv=[sys.argv[0], *rest])
 
 

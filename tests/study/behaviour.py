@@ -9,6 +9,7 @@ SCENE is prm/verification/manufactured_solution.prm, which takes milliseconds.
 
 import argparse
 import csv
+import json
 import os
 import signal
 import subprocess
@@ -250,15 +251,57 @@ end
         text = STUDY.format(title="A test", scene=ARGUMENTS.scene, extra="",
                             cells="4, 4").replace("set Name = u",
                                                   "set Name = uu")
-        code, said = self.run_study(self.write(text=text))
-        self.assertEqual(code, 1, said)
-        self.assertIn("no check 'uu'", said)
+        self.refused("no check 'uu'", text=text)
+        self.refused("no column 'kinetic'", text=text.replace(
+            "set Name = uu", "set Source = column\nset Name = kinetic"))
+
+    def limber(self, *words):
+        done = subprocess.run([ARGUMENTS.limber, *map(str, words)], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        return done.returncode, done.stdout
+
+    def test_stability_is_drawn_against_the_only_numbers(self):
+        study = f"""
+set Scene      = {ARGUMENTS.scene}
+set Methods    = good
+set Variations = cells, density
+subsection Variation cells
+  set Entry  = Grid/Cells
+  set Values = 8, 8 | 16, 16
+  {{labels}}
+end
+subsection Variation density
+  set Entry  = Body square/Neo hookean/Density
+  set Values = {{densities}}
+end
+subsection Bisection
+  set Entry = Method/Courant number
+  set Lower = 0.1
+  set Upper = 2
+end
+"""
+        def validated(labels="", densities="1 | 2"):
+            return self.limber("stability", "--validate", self.write(
+                text=study.format(labels=labels, densities=densities)))
+
+        self.assertEqual(validated()[0], 0)
+        code, said = validated(labels="set Labels = 8 | 16")
+        self.assertEqual(code, 1)
+        self.assertIn("has 2 variations (cells, density)", said)
+
+    def test_entries_of_a_study_are_printed_with_its_values(self):
+        code, said = self.limber("study", "--print-parameters", "json",
+                                 self.write(), "--set", "Time limit=17")
+        self.assertEqual(code, 0, said)
+        entries = json.loads(said)
+        self.assertEqual(entries["Title"], "A test")
+        self.assertEqual(entries["Time limit"], "17")
+        self.assertIn("Method unstable", entries)
 
     def test_usage(self):
-        done = subprocess.run([ARGUMENTS.limber, "study"],
-                              stdout=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn("limber study [options] study.prm", done.stdout)
+        code, said = self.limber("study")
+        self.assertEqual(code, 1)
+        self.assertIn("limber study [options] study.prm", said)
 
 
 if __name__ == "__main__":

@@ -45,6 +45,16 @@ namespace limber
   };
 
   /**
+   * Throws InputError: the run has no column, check, ... (@p what) of that
+   * name, only @p known.
+   */
+  [[noreturn]] void
+  refuse_name(const Measure                  &measure,
+              const std::string              &name,
+              const std::string              &what,
+              const std::vector<std::string> &known);
+
+  /**
    * Take a measure from a run folder. Throws InputError for a name that the
    * run does not have.
    */

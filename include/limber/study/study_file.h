@@ -164,6 +164,15 @@ namespace limber
   name_of(const Cost cost);
 
   /**
+   * Declare the entries of a study in @p parameters and give them the values
+   * of file and command line. Throws InputError.
+   */
+  void
+  read_entries(const std::string              &path,
+               const std::vector<std::string> &overrides,
+               Parameters                     &parameters);
+
+  /**
    * Read a study. @p overrides are "Section/Name=value" from the command
    * line; @p take_short: the short lists, where the study has them. Paths in
    * the file are relative to its folder. Throws InputError.

@@ -462,6 +462,53 @@ TEST(ReferenceInEquilibrium, FollowsTheLoadsOfTheScene)
 
 
 
+// A side that stops where a step ends has moved until then.
+TEST(ReferenceInEquilibrium, SidesMayStopAtTheEndOfAStep)
+{
+  const auto         problem = problem_from<2>(R"(
+    set End time = 2
+    set Bodies = bar
+    subsection Body bar
+      subsection Box
+        set Upper corner = 2, 1
+      end
+      set Material = linear elastic
+      subsection Linear elastic
+        set Density = 1
+        set Young's modulus = 100
+      end
+    end
+    subsection Grid
+      set Upper corner = 2, 1
+    end
+    subsection Boundaries
+      set left   = slip
+      set bottom = slip
+      set right  = velocity
+      subsection Side right
+        set Velocity = if(t < 1, -0.01, 0); 0
+      end
+    end
+    subsection Method
+      set Time integration = quasi-static
+      set Time step        = 0.5
+    end)");
+  SolidModel<2>      model(problem, MPI_COMM_WORLD);
+  ReferenceSolver<2> solver(model);
+  const double       places[] = {-0.005, -0.01, -0.01, -0.01};
+  for (const double place : places)
+    {
+      solver.advance(0.5);
+      const auto &u = solver.motion().displacement;
+      EXPECT_NEAR(
+        sample_at(model, dealii::Point<2>(2, 0.5), u, u).displacement[0],
+        place,
+        1e-12);
+    }
+}
+
+
+
 // A load acts on the part of a face that 'Where' names, wherever this ends in
 // the elements: its resultant is that of the exact area.
 TEST(FaceLoads, ActOnPartsOfElements)
