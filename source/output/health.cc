@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
+
 #include <limber/base/text.h>
 #include <limber/output/health.h>
 
@@ -599,6 +601,34 @@ namespace limber
 
 
 
+    // In a vibration whose phase advances by a in a step, the change of
+    // velocity is 2 sin(a/2) times its amplitude. The trapezoidal rule has
+    // tan(a/2) where half the exact phase should be.
+    HealthLine
+    judge_steps(const HealthFigures &figures, const HealthCheck &check)
+    {
+      HealthLine   line;
+      const double ratio =
+        figures.kinetic_action > 0 ?
+          std::sqrt(figures.action_of_changes / figures.kinetic_action) :
+          0;
+      const double half = std::asin(std::min(1., ratio / 2)); // of the phase
+      line.value        = half > 0 ? 1 - half / std::tan(half) : 0;
+      line.verdict      = check.verdict(line.value);
+      line.entry        = figures.step_entry;
+      line.text         = half > 0 ? "a period of the motion has " +
+                               brief(dealii::numbers::PI / half) +
+                               " steps (mean, weighted by kinetic energy)" :
+                                     "the motion is steady";
+      if (line.verdict != Verdict::good)
+        line.text += ", so frequencies are about " + percent(line.value) +
+                     " too low and shorter waves are damped. Twenty keep them "
+                     "to 1 %";
+      return line;
+    }
+
+
+
     HealthLine
     judge_rotation(const HealthFigures &figures, const HealthCheck &check)
     {
@@ -636,6 +666,7 @@ namespace limber
     // clumping   Error of the level of a liquid; scenes with a reference have
     //            up to 2 %.
     // dissipation Dam breaks lose 1 to 4 %, a drop that falls flat 14 %.
+    // steps      Error of a frequency, as for the other errors.
     // rotation   Small-strain laws take its square for twice a strain.
     // obstacles  Flow past a convex surface cuts its corners by less; points
     //            half a cell inside have gone through the surface.
@@ -652,6 +683,7 @@ namespace limber
       {"volume", 1.1, 2.3, judge_volume},
       {"clumping", 0.03, 0.1, judge_clumping},
       {"dissipation", 0.1, 0.5, judge_dissipation},
+      {"steps", 0.02, 0.1, judge_steps},
       {"rotation", 0.1, 0.3, judge_rotation},
       {"obstacles", 0.1, 0.5, judge_obstacles},
     };
@@ -724,6 +756,8 @@ namespace limber
                          [](const auto &body) { return body.stays_upright; }))
           continue;
         if (check.judge == judge_dissipation && !figures.is_semi_implicit)
+          continue;
+        if (check.judge == judge_steps && !figures.is_implicit)
           continue;
         if (check.judge == judge_clumping &&
             std::none_of(figures.bodies.begin(),

@@ -263,13 +263,19 @@ namespace limber
     figures.is_semi_implicit =
       state.problem.method.integration == TimeIntegration::semi_implicit;
     figures.lost_by_steps = totals.lost_by_steps;
-    figures.history       = totals.removed_with_history;
-    figures.plastic       = totals.plastic_work;
-    figures.friction      = totals.friction_heat;
-    figures.contact       = totals.contact_loss;
-    figures.adaptation    = totals.removed_by_adaptation;
-    figures.sides         = totals.boundary_work;
-    figures.loads         = totals.load_work;
+    // the first steps of a body that starts from rest all turn its velocity
+    figures.is_implicit =
+      state.problem.method.integration == TimeIntegration::implicit_steps &&
+      state.step > 3;
+    figures.kinetic_action    = totals.kinetic_action;
+    figures.action_of_changes = totals.action_of_changes;
+    figures.history           = totals.removed_with_history;
+    figures.plastic           = totals.plastic_work;
+    figures.friction          = totals.friction_heat;
+    figures.contact           = totals.contact_loss;
+    figures.adaptation        = totals.removed_by_adaptation;
+    figures.sides             = totals.boundary_work;
+    figures.loads             = totals.load_work;
     figures.may_hit =
       !state.problem.obstacles.empty() ||
       std::any_of(state.problem.sides.begin(),

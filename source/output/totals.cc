@@ -224,6 +224,8 @@ namespace limber
     totals.put_out               = ledger.put_out;
     totals.dissipated            = ledger.viscous;
     totals.lost_by_steps         = ledger.by_steps;
+    totals.kinetic_action        = ledger.kinetic_action;
+    totals.action_of_changes     = ledger.action_of_changes;
     totals.removed_with_history  = ledger.history;
     totals.plastic_work          = ledger.plastic;
     totals.friction_heat         = ledger.friction;

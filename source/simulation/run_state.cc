@@ -104,7 +104,8 @@ namespace limber
   {
     archive &ledger.transfer &ledger.boundary_work &ledger.load_work &ledger
       .viscous &ledger.by_steps &ledger.history &ledger.plastic &ledger
-      .friction &ledger.contact &ledger.adaptation &ledger.load_impulse &ledger
+      .friction &ledger.contact &ledger.adaptation &ledger
+      .kinetic_action &ledger.action_of_changes &ledger.load_impulse &ledger
       .gravity_impulse &ledger.side_impulse &ledger.put_back &ledger
       .put_back_way &ledger.put_out &ledger.lost_mass &ledger
       .lost_energy &ledger.lost_momentum &ledger.lost_points &ledger.obstacles;

@@ -82,6 +82,7 @@ namespace limber
     if (renumbered)
       tangent->reinit(ghost);
     displacement_of_tangent.clear();
+    known_at.clear();
     total_forces.assign(size(), 0.);
     forces_of_followers.assign(size(), 0.);
     if (followers != nullptr)
@@ -249,12 +250,30 @@ namespace limber
 
 
 
+  // Follower loads depend on the time as well.
+  template <int dim>
+  bool
+  NewtonEquations<dim>::knows_forces_at(
+    const std::vector<double> &displacement) const
+  {
+    int known =
+      (followers == nullptr || !followers->any()) && displacement == known_at;
+    if (nodes.is_parallel())
+      known = dealii::Utilities::MPI::min(known, parts.grid.communicator);
+    return known;
+  }
+
+
+
   template <int dim>
   bool
   NewtonEquations<dim>::evaluate(const std::vector<double>       &displacement,
                                  const Inertia<dim> *const        inertia,
                                  const std::vector<double> *const former)
   {
+    if (inertia == nullptr && knows_forces_at(displacement))
+      return true;
+    known_at.clear();
     spread(displacement, by_node);
     if (former != nullptr)
       spread(*former, former_by_node);
@@ -334,6 +353,7 @@ namespace limber
         work_on_jumps        = work_of_forces() - without;
       }
     total_energy += energy_of_jumps;
+    known_at = displacement;
     if (inertia == nullptr)
       return true;
 

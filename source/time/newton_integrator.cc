@@ -504,8 +504,15 @@ namespace limber
                      new_momentum = mass.times(new_velocity);
         for (std::size_t k = 0; k < equations.size(); ++k)
           if (nodes.owns(k / dim))
-            expected += 0.5 * (new_momentum[k] * new_velocity[k] -
-                               momentum[k] * velocities[k]);
+            {
+              const double before = 0.5 * momentum[k] * velocities[k],
+                           after  = 0.5 * new_momentum[k] * new_velocity[k];
+              expected += after - before;
+              parts.ledger.kinetic_action += last_step * 0.5 * (before + after);
+              parts.ledger.action_of_changes +=
+                last_step * 0.5 * (new_momentum[k] - momentum[k]) *
+                (new_velocity[k] - velocities[k]);
+            }
         for (const auto &body : parts.bodies)
           extremes.speed_squared =
             std::max(extremes.speed_squared,

@@ -85,9 +85,11 @@ namespace limber
     for (std::size_t k = 0; k < equations.size(); ++k)
       if (equations.is_held(k))
         ahead[k] = question.held[k];
-    Values residual;
-    if (evaluate_residual(question, ahead, residual) <
-        evaluate_residual(question, displacement, residual))
+    // At rest first: its forces are known from the start of the step, and those
+    // of what is usually nearer will be asked for again.
+    Values       residual;
+    const double at_rest = evaluate_residual(question, displacement, residual);
+    if (evaluate_residual(question, ahead, residual) < at_rest)
       displacement = ahead;
   }
 

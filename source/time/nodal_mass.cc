@@ -4,6 +4,7 @@
 #include <limber/time/nodal_mass.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -97,13 +98,17 @@ namespace limber
       {
         const auto numbers = nodes.of_cell(c);
         for (const std::uint32_t i : numbers)
-          for (const std::uint32_t j : numbers)
-            {
-              const double mass = *entry++;
-              for (int d = 0; d < dim; ++d)
-                result[std::size_t(i) * dim + d] +=
-                  mass * vector[std::size_t(j) * dim + d];
-            }
+          {
+            std::array<double, dim> sum{};
+            for (const std::uint32_t j : numbers)
+              {
+                const double mass = *entry++;
+                for (int d = 0; d < dim; ++d)
+                  sum[d] += mass * vector[std::size_t(j) * dim + d];
+              }
+            for (int d = 0; d < dim; ++d)
+              result[std::size_t(i) * dim + d] += sum[d];
+          }
       }
     return result;
   }

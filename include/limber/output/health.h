@@ -117,6 +117,9 @@ namespace limber
     // Part of 'viscous' that is lost by semi-implicit steps
     bool   is_semi_implicit = false;
     double lost_by_steps    = 0;
+    // Of implicit steps, J s, see Ledger
+    bool   is_implicit    = false; // and has made enough steps to tell
+    double kinetic_action = 0, action_of_changes = 0;
     // The entry that determines the time step
     std::string step_entry = "Method/Courant number";
   };

@@ -48,6 +48,8 @@ namespace limber
 
     double dissipated            = 0; // by viscosity, J
     double lost_by_steps         = 0; // of these, by semi-implicit steps, J
+    double kinetic_action        = 0; // J s, and the next: see Ledger
+    double action_of_changes     = 0;
     double removed_with_history  = 0; // with volumetric history or tension, J
     double plastic_work          = 0; // on plastic strain, J
     double friction_heat         = 0; // J

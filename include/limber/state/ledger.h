@@ -53,6 +53,10 @@ namespace limber
     double contact       = 0; // lost in contact, also in impact on a side
     double adaptation    = 0; // removed by joining and splitting points
 
+    // Of implicit steps, J s: integrals over time of the kinetic energy of the
+    // nodes, and of that of the change of their velocities within a step
+    double kinetic_action = 0, action_of_changes = 0;
+
     // Body force formulas, face loads and damping
     dealii::Tensor<1, dim> load_impulse;
     dealii::Tensor<1, dim> gravity_impulse;

@@ -82,13 +82,29 @@ namespace limber
     add_force(const std::vector<Matrix> &stress, double *const force)
     {
       meet(stress);
+      Gradients mean_gradient{};
       for (std::size_t p = 0; p < points.size(); ++p)
-        for (int k = 0; k < n_dofs; ++k)
-          force[k] += points[p].volume * contract(back[p], turned_back(p, k));
+        {
+          const Matrix Q = operation->turned(back[p]);
+          for (int i = 0; i < n_nodes; ++i)
+            for (int d = 0; d < dim; ++d)
+              {
+                const auto &gradient = points[p].gradient[i];
+                double      sum      = 0;
+                for (int e = 0; e < dim; ++e)
+                  sum += Q[d][e] * gradient[e];
+                force[i * dim + d] += points[p].volume * sum;
+                mean_gradient[i][d] += points[p].volume / volume * gradient[d];
+              }
+        }
       if constexpr (finite_strain)
-        for (int k = 0; k < n_dofs; ++k)
-          for (int a = 0; a < n_spins; ++a)
-            force[k] -= pull[a] * contract(spin(a), mean_of_dof(k));
+        {
+          const Matrix puller = operation->turned(pull_of_spins());
+          for (int i = 0; i < n_nodes; ++i)
+            for (int d = 0; d < dim; ++d)
+              for (int e = 0; e < dim; ++e)
+                force[i * dim + d] -= puller[d][e] * mean_gradient[i][e];
+        }
     }
 
     /**
@@ -150,15 +166,18 @@ namespace limber
       Matrix result;
       for (int c = 0; c < dim; ++c)
         for (int e = 0; e < dim; ++e)
-          {
-            double component;
-            if constexpr (finite_strain)
-              component = operation->rotation[k % dim][c];
-            else
-              component = c == k % dim;
-            result[c][e] = component * points[p].gradient[k / dim][e];
-          }
+          result[c][e] = component_of(k, c) * points[p].gradient[k / dim][e];
       return result;
+    }
+
+    /** Component c of R^T times the direction of degree of freedom k. */
+    double
+    component_of(const int k, const int c) const
+    {
+      if constexpr (finite_strain)
+        return operation->rotation[k % dim][c];
+      else
+        return c == k % dim;
     }
 
     /** Means of a field over the points, field(p). */
@@ -195,11 +214,19 @@ namespace limber
       return operation->assume(X, means.first, means.second, points[p].xi);
     }
 
+    /** The spins about all axes, each times its pull. */
     Matrix
-    mean_of_dof(const int k) const
+    pull_of_spins() const
     {
-      return means_of([&](const std::size_t p) { return turned_back(p, k); })
-        .first;
+      Matrix result{};
+      for (int a = 0; a < n_spins; ++a)
+        {
+          const Matrix S = spin(a);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              result[d][e] += pull[a] * S[d][e];
+        }
+      return result;
     }
 
     /** Rotated stress P^, Q = A P^, and H^-1 times the torque. */
@@ -274,13 +301,33 @@ namespace limber
           for (std::size_t p = 0; p < points.size(); ++p)
             turning[a * points.size() + p] = assume(spun(p), means, p);
         }
+      changes.clear();
+      for (int a = 0; a < n_spins; ++a)
+        for (std::size_t p = 0; p < points.size(); ++p)
+          changes.push_back(change_by_spin(a, p));
 
       varied.resize(n_dofs * points.size());
       own.resize(n_dofs * points.size());
+      // unit displacements along each direction: R^T dF is a product of this
+      // row of R and the gradient of the node, and so are its means
+      std::array<Means, n_nodes> of_nodes{};
+      for (int i = 0; i < n_nodes; ++i)
+        of_nodes[i] = means_of([&](const std::size_t p) {
+          Matrix rows;
+          for (int d = 0; d < dim; ++d)
+            rows[d] = points[p].gradient[i];
+          return rows;
+        });
       for (int k = 0; k < n_dofs; ++k)
         {
-          const Means means =
-            means_of([&](const std::size_t p) { return turned_back(p, k); });
+          Means means;
+          for (int c = 0; c < dim; ++c)
+            for (int e = 0; e < dim; ++e)
+              {
+                const double component = component_of(k, c);
+                means.first[c][e]  = component * of_nodes[k / dim].first[c][e];
+                means.second[c][e] = component * of_nodes[k / dim].second[c][e];
+              }
           mean[k] = means.first;
           if constexpr (finite_strain)
             {
@@ -296,7 +343,7 @@ namespace limber
               own[k * points.size() + p] = total;
               for (int a = 0; a < n_spins; ++a)
                 {
-                  const Matrix change = change_by_spin(a, p);
+                  const Matrix &change = changes[a * points.size() + p];
                   for (int d = 0; d < dim; ++d)
                     for (int e = 0; e < dim; ++e)
                       total[d][e] += axes[k][a] * change[d][e];
@@ -364,13 +411,18 @@ namespace limber
             const Matrix stress = transpose_times<dim>(spin(b), turned[p]),
                          given  = transpose_times<dim>(spin(b), back[p]);
             const double V      = points[p].volume;
+            const Matrix force  = operation->turned(given);
             for (int k = 0; k < n_dofs; ++k)
-              by_spin[k][b] +=
-                V * (contract(stress, own[k * points.size() + p]) -
-                     contract(given, turned_back(p, k)));
+              {
+                double sum = contract(stress, own[k * points.size() + p]);
+                for (int e = 0; e < dim; ++e)
+                  sum -= force[k % dim][e] * points[p].gradient[k / dim][e];
+                by_spin[k][b] += V * sum;
+              }
             for (int a = 0; a < n_spins; ++a)
               {
-                by_spins[a][b] += V * contract(stress, change_by_spin(a, p));
+                by_spins[a][b] +=
+                  V * contract(stress, changes[a * points.size() + p]);
                 by_spins[b][a] +=
                   V *
                   (contract(given,
@@ -380,14 +432,7 @@ namespace limber
               }
           }
 
-      Matrix puller{};
-      for (int a = 0; a < n_spins; ++a)
-        {
-          const Matrix S = spin(a);
-          for (int d = 0; d < dim; ++d)
-            for (int e = 0; e < dim; ++e)
-              puller[d][e] += pull[a] * S[d][e];
-        }
+      const Matrix             puller = pull_of_spins();
       std::array<Axis, n_dofs> by_axis{};
       for (int k = 0; k < n_dofs; ++k)
         for (int b = 0; b < n_spins; ++b)
@@ -448,6 +493,7 @@ namespace limber
     std::array<Axis, n_dofs>   axes{};
     std::vector<Matrix>        own, varied;
     std::vector<Matrix>        turning; // A(S_a G)
+    std::vector<Matrix>        changes; // S_a A(G) - A(S_a G)
   };
 } // namespace limber
 

@@ -3,6 +3,7 @@
 #define limber_stress_cell_trial_h
 
 #include <limber/interpolation/basis.h>
+#include <limber/interpolation/basis_functions.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/further_deformation.h>
 #include <limber/stress/assumed_trial.h>
@@ -85,7 +86,8 @@ namespace limber
     static constexpr int dim = Basis::dim;
 
     std::array<std::array<double, dim>, Basis::n_nodes> u; // of nodes, m
-    std::vector<TrialMotion<Basis, Law>>                motions;
+    std::vector<BasisFunctions<Basis>>   functions;        // at the points
+    std::vector<TrialMotion<Basis, Law>> motions;
     using Assumed = std::conditional_t<has_bending_modes<Basis>,
                                        AssumedTrial<dim, Law::finite_strain>,
                                        NoAssumedTrial>;

@@ -54,13 +54,18 @@ namespace limber
                     dim,
                     trial.u[i].begin());
 
+      trial.functions.clear();
+      for (std::size_t p = batch.begin; p < batch.end; ++p)
+        trial.functions.push_back(functions_at(points, grid, batch.cell, p));
+
       trial.motions.resize(batch.end - batch.begin);
       trial.volume       = 0;
       double mean_growth = 0, volume_before = 0;
       for (std::size_t p = batch.begin; p < batch.end; ++p)
         {
           Motion &motion = trial.motions[p - batch.begin];
-          if (!deform(points, grid, batch.cell, p, trial.u, motion))
+          if (!deform(
+                points, p, trial.functions[p - batch.begin], trial.u, motion))
             return false;
           trial.volume += motion.volume;
           volume_before += motion.share;
@@ -71,7 +76,7 @@ namespace limber
           mean_growth += motion.share * motion.growth;
         }
       if constexpr (has_bending_modes<Basis>)
-        if (assumes && !assume(points, grid, batch, trial))
+        if (assumes && !assume(points, batch, trial))
           return false;
 
       trial.slope = trial.curvature = 0;
@@ -137,7 +142,6 @@ namespace limber
     // Apply the assumed strain; false as above.
     bool
     assume(const PointView<dim> &points,
-           const GridView<dim>  &grid,
            const CellBatch      &batch,
            Trial                &trial) const
     {
@@ -145,12 +149,11 @@ namespace limber
       assumed.points.resize(trial.motions.size());
       for (std::size_t k = 0; k < trial.motions.size(); ++k)
         {
-          const BasisFunctions<Basis> functions =
-            functions_at(points, grid, batch.cell, batch.begin + k);
-          assumed.points[k] = {trial.motions[k].F,
-                               functions.xi,
-                               trial.motions[k].volume,
-                               functions.gradient};
+          const BasisFunctions<Basis> &functions = trial.functions[k];
+          assumed.points[k]                      = {trial.motions[k].F,
+                                                    functions.xi,
+                                                    trial.motions[k].volume,
+                                                    functions.gradient};
         }
       if (!assumed.finish(treatment))
         return false;
@@ -223,14 +226,11 @@ namespace limber
 
     bool
     deform(const PointView<dim>                               &points,
-           const GridView<dim>                                &grid,
-           const std::uint32_t                                 cell,
            const std::size_t                                   p,
+           const BasisFunctions<Basis>                        &functions,
            const std::array<std::array<double, dim>, n_nodes> &u,
            Motion                                             &motion) const
     {
-      const BasisFunctions<Basis> functions =
-        functions_at(points, grid, cell, p);
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           {

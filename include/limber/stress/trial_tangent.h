@@ -52,6 +52,7 @@ namespace limber
     add_assumed(Trial &trial, CellResponse &response) const
     {
       std::vector<Moduli> moduli;
+      moduli.reserve(trial.motions.size());
       for (const Motion &motion : trial.motions)
         moduli.push_back(moduli_of(motion, rates_of(motion)));
       trial.assumed.add_tangent(

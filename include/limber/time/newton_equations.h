@@ -166,6 +166,8 @@ namespace limber
     void
     count_jumps_from(const std::vector<double> &displacement)
     {
+      if (begin_of_jumps != displacement)
+        known_at.clear();
       begin_of_jumps = displacement;
     }
 
@@ -288,6 +290,8 @@ namespace limber
     rigid_motions() const;
     SolutionMethod
     solution_method() const;
+    bool
+    knows_forces_at(const std::vector<double> &displacement) const;
     unsigned int
     solve_condensed(NodalVector &solution, const NodalVector &right_side);
     void
@@ -308,7 +312,8 @@ namespace limber
     std::vector<double>             displacement_of_tangent; // m
     std::vector<double>             by_node, former_by_node; // displacements, m
     std::vector<double>             total_forces, forces_of_followers;
-    FollowerLoads<dim>             *followers = nullptr; // or none
+    std::vector<double> known_at; // displacement of the forces; empty: none
+    FollowerLoads<dim> *followers = nullptr; // or none
     double total_energy = 0, energy_of_jumps = 0, work_on_jumps = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <deal.II/base/numbers.h>
+
 #include <limber/output/health.h>
 #include <limber/output/health_figures.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "sample_run.h"
@@ -638,6 +641,44 @@ namespace limber::test
     EXPECT_EQ(line("dissipation", figures).verdict, Verdict::look);
     EXPECT_NE(line("dissipation", figures).text.find("created"),
               std::string::npos);
+  }
+
+
+
+  // An undamped vibration in steps of a twelfth and of a fifth of its period,
+  // by the trapezoidal rule.
+  TEST(Health, TellsWhenImplicitStepsAreLong)
+  {
+    HealthFigures figures = sound();
+    for (const HealthLine &other : judge(figures))
+      EXPECT_NE(other.name, "steps"); // of other steps
+    figures.is_implicit = true;
+    EXPECT_EQ(line("steps", figures).verdict, Verdict::good); // at rest
+    figures.step_entry = "Method/Time step";
+    for (const int n : {5, 12, 40})
+      {
+        figures.kinetic_action = figures.action_of_changes = 0;
+        const auto velocity                                = [n](const int k) {
+          return std::sin(2 * dealii::numbers::PI * k / n);
+        };
+        for (int k = 0; k < 10 * n; ++k)
+          {
+            const double v = velocity(k), w = velocity(k + 1);
+            figures.kinetic_action += (v * v + w * w) / 2;
+            figures.action_of_changes += (w - v) * (w - v);
+          }
+        const HealthLine found = line("steps", figures);
+        const double     half  = dealii::numbers::PI / n;
+        EXPECT_NEAR(found.value, 1 - half / std::tan(half), 1e-12) << n;
+        EXPECT_NE(found.text.find("has " + std::to_string(n) + " steps"),
+                  std::string::npos)
+          << found.text;
+        EXPECT_EQ(found.verdict,
+                  n == 5  ? Verdict::bad :
+                  n == 12 ? Verdict::look :
+                            Verdict::good);
+        EXPECT_EQ(found.entry, "Method/Time step");
+      }
   }
 
 
