@@ -6,6 +6,7 @@
 #include <limber/base/run_info.h>
 #include <limber/base/text.h>
 #include <limber/base/unforeseen.h>
+#include <limber/output/own_folder.h>
 #include <limber/output/run_folder.h>
 #include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_problem.h>
@@ -46,7 +47,17 @@ namespace
     simulation.describe();
     if (command.validate)
       {
-        console.say("The scene is valid.");
+        const std::string objection =
+          objection_to(problem.output.directory,
+                       run_folder_kind(),
+                       command.resume         ? FolderUse::resume :
+                       problem.output.replace ? FolderUse::replace :
+                                                FolderUse::fresh);
+        if (!objection.empty())
+          console.warn("The scene is valid, but a run would be refused now. " +
+                       objection);
+        else
+          console.say("The scene is valid.");
         return int(ExitCode::success);
       }
 

@@ -246,6 +246,26 @@ namespace limber
 
 
 
+  std::string
+  objection_to(const std::string &folder,
+               const FolderKind  &kind,
+               const FolderUse    use)
+  {
+    try
+      {
+        examine(folder, kind, use);
+      }
+    catch (const InputError &refusal)
+      {
+        return refusal.what();
+      }
+    catch (const fs::filesystem_error &)
+      {}
+    return "";
+  }
+
+
+
   void
   remove_own(const std::string &folder, const FolderKind &kind)
   {

@@ -181,6 +181,17 @@ class Folders(unittest.TestCase):
         self.put("nodes/nodes_00000.h5")
         self.refused("which no run wrote", "reference", BEAM)
 
+    def test_validation_warns_of_a_folder_that_is_taken(self):
+        self.put("statistics")
+        before = files_below(self.top)
+        said = self.limber(0, SCENE, "--validate")
+        self.assertIn("a run would be refused now", said)
+        self.assertIn("holds 'statistics'", said)
+        self.assertEqual(files_below(self.top), before)
+        shutil.rmtree(self.folder)
+        self.assertIn("The scene is valid.",
+                      self.limber(0, SCENE, "--validate"))
+
     def test_a_run_or_study_of_before_is_refused(self):
         self.limber(0)
         self.refused("holds a run already")

@@ -75,6 +75,15 @@ namespace limber
                const FolderUse    use);
 
   /**
+   * Why claim_folder() would refuse the folder as it is now, but for other
+   * processes and what the system does not permit; empty if it would not.
+   */
+  std::string
+  objection_to(const std::string &folder,
+               const FolderKind  &kind,
+               const FolderUse    use);
+
+  /**
    * Remove what one of this kind wrote there, its mark, and the folder if
    * nothing else is in it. Nothing happens to a folder that it did not make.
    * Throws InputError if a process is at work there, FileError.
