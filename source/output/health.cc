@@ -589,12 +589,18 @@ namespace limber
       line.text    = percent(line.value) + " of the largest energy was " +
                   (lost < 0 ? "created" : "lost") +
                   " by semi-implicit steps, not by viscosity";
+      const bool has_liquids =
+        std::any_of(figures.bodies.begin(),
+                    figures.bodies.end(),
+                    [](const auto &body) { return body.is_liquid; });
       if (line.verdict != Verdict::good)
         line.text += lost < 0 ?
                        ", as points spread anew again and again. More points "
                        "per cell edge or smaller cells create less" :
-                       ": where liquids hit something, or in short waves. "
-                       "Smaller cells lose less";
+                       std::string(": where ") +
+                         (has_liquids ? "liquids" : "bodies") +
+                         " hit something, or in short waves. Smaller cells "
+                         "lose less";
       line.entry = "Grid/Cells";
       return line;
     }

@@ -141,6 +141,16 @@ namespace limber
       const double limit = own ? problem.memory_limit : machine.bytes;
       if (size.bytes() <= limit)
         return;
+      if (limit <= size.bytes_of_programs)
+        throw InputError(
+          "The program alone needs some " + gigabytes(size.bytes_of_programs) +
+          " of memory; " + (own ? "'Memory limit' is " : "there are ") +
+          gigabytes(limit) + ". Usually " +
+          (own ? "it was meant in GB. Set 'Memory limit = " +
+                   brief(std::ceil(size.bytes() / 1e8) / 10) + "', GB." :
+                 "a limit of the shell or of a queue is too "
+                 "low. Ask for " +
+                   gigabytes(size.bytes()) + ", or use fewer ranks."));
       throw InputError(
         "The scene needs some " + gigabytes(size.bytes()) + " of memory for " +
         brief(size.cells) +
