@@ -6,6 +6,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/base/timing.h>
+#include <limber/problem/side_contact.h>
 
 #include <algorithm>
 #include <sstream>
@@ -184,19 +185,27 @@ namespace limber
 
 
 
-  // Outward normals at surface points towards obstacles; zero if no obstacle is
-  // within the distance of the surface plus one cell.
+  // Outward normals at surface points of a body towards obstacles and the sides
+  // that meet surfaces; zero if none is within the distance of the surface plus
+  // one cell.
   template <int dim>
   std::vector<dealii::Tensor<1, dim>>
-  Adaptation<dim>::normals_to_obstacles(const MaterialPoints<dim>      &points,
+  Adaptation<dim>::normals_to_obstacles(const MaterialBody<dim>        &body,
                                         const std::vector<std::size_t> &which,
                                         const double time) const
   {
-    const PointView<dim> view = points.view();
-    if (view.reach == nullptr || problem.obstacles.empty())
+    const PointView<dim> view = body.points.view();
+    if (view.reach == nullptr)
+      return {};
+    std::vector<Obstacle<dim>> rigid = problem.obstacles;
+    if (body.description.meets_sides)
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        if (problem.sides[side].meets_surfaces)
+          rigid.push_back(half_space_beyond(side, problem));
+    if (rigid.empty())
       return {};
     std::vector<ObstaclePlace<dim>> obstacles;
-    for (const Obstacle<dim> &obstacle : problem.obstacles)
+    for (const Obstacle<dim> &obstacle : rigid)
       obstacles.emplace_back(obstacle, time);
     std::vector<dealii::Tensor<1, dim>> normals(which.size());
     for (std::size_t k = 0; k < which.size(); ++k)
@@ -308,7 +317,7 @@ namespace limber
                              parts,
                              spacing,
                              first,
-                             normals_to_obstacles(points, large[k], time));
+                             normals_to_obstacles(*bodies[b], large[k], time));
                 memory.points_split += all / n_new;
                 any_here = any = true;
               }

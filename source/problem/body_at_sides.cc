@@ -287,11 +287,13 @@ namespace limber
           throw InputError(
             moves + ": after half a cell it lets go of body " +
             in_quotes(body->name) +
-            (problem.method.integration == TimeIntegration::explicit_steps ?
-               ". Use an obstacle 'half-space' that moves ('Displacement') "
-               "with 'Law = stick', or " :
-               ". Set ") +
-            "'Body " + body->name + "/Frame = initial'.");
+            (body->is_liquid ?
+               ". Use an obstacle 'half-space' that moves ('Displacement')." :
+               (problem.method.integration == TimeIntegration::explicit_steps ?
+                  ". Use an obstacle 'half-space' that moves ('Displacement') "
+                  "with 'Law = stick', or set 'Body " :
+                  ". Set 'Body ") +
+                 body->name + "/Frame = initial'."));
         if (liquid != bodies.end() && way > noticed_by_liquid * edge)
           warnings.push_back(moves + ", which displaces nothing of liquid " +
                              in_quotes(liquid->name) +

@@ -339,6 +339,22 @@ namespace limber
 
 
 
+    /** Whether a body has faces in all sides of the box, all of which hold it:
+     * it cannot go anywhere. */
+    template <int dim>
+    bool
+    fills_the_box(const Body<dim> &body, const Problem<dim> &problem)
+    {
+      for (unsigned int side = 0; side < 2 * dim; ++side)
+        if (problem.sides[side].held == HeldComponents::none ||
+            problem.sides[side].one_sided ||
+            !has_face_in(side, body, problem.grid))
+          return false;
+      return true;
+    }
+
+
+
     /**
      * Which contact may occur that the initial frame would not detect; empty if
      * the body is held or if there is nothing to meet. A side along which it
@@ -361,10 +377,12 @@ namespace limber
             return "it may slide and lift from the side " +
                    in_quotes(side_names(dim)[side]);
         }
-      const bool held =
-        std::any_of(problem.bodies.begin(),
-                    problem.bodies.end(),
-                    [&](const auto &any) { return is_held(any, problem); });
+      const bool held = std::any_of(problem.bodies.begin(),
+                                    problem.bodies.end(),
+                                    [&](const auto &any) {
+                                      return is_held(any, problem) ||
+                                             fills_the_box(any, problem);
+                                    });
       return held || !walls ||
                  stays_clear(
                    !root.subsection("Loads").list("Face loads").empty(),

@@ -178,11 +178,13 @@ namespace limber
 
 
 
-    /** Whether a place is in a side of the box that holds material, behind
-     * which it as good as continues. */
+    /** Whether a place is in a side of the box that holds the material of a
+     * body, behind which it as good as continues. One that meets its surface
+     * (side_contact.h) is none. */
     template <int dim>
     bool
     is_in_held_side(const Problem<dim>       &problem,
+                    const Body<dim>          &body,
                     const dealii::Point<dim> &place)
     {
       for (unsigned int side = 0; side < 2 * dim; ++side)
@@ -191,6 +193,7 @@ namespace limber
           const double       plane =
             side % 2 == 0 ? problem.grid.lower[d] : problem.grid.upper[d];
           if (problem.sides[side].held != HeldComponents::none &&
+              !(problem.sides[side].meets_surfaces && body.meets_sides) &&
               std::abs(place[d] - plane) < 1e-6 * problem.grid.edge(d))
             return true;
         }
@@ -217,7 +220,7 @@ namespace limber
     template <int dim>
     Depth
     depth_beside_sides(const Problem<dim>       &problem,
-                       const Shape<dim>         &shape,
+                       const Body<dim>          &body,
                        const dealii::Point<dim> &place,
                        const double              stride)
     {
@@ -228,8 +231,8 @@ namespace limber
           {
             dealii::Tensor<1, dim> along;
             along[d]            = sign;
-            const double length = way_out(shape, place, along, stride);
-            if (is_in_held_side<dim>(problem, place + length * along))
+            const double length = way_out(*body.shape, place, along, stride);
+            if (is_in_held_side<dim>(problem, body, place + length * along))
               continue;
             result.value = std::min(result.value, length);
             if (1 > std::abs(normal[d]) * length)
@@ -238,7 +241,7 @@ namespace limber
       if (!(normal.norm() > 0))
         return result;
       normal /= normal.norm();
-      const double length = way_out(shape, place, normal, stride);
+      const double length = way_out(*body.shape, place, normal, stride);
       if (length < result.value)
         {
           result = {length, 0};
@@ -255,7 +258,7 @@ namespace limber
     template <int dim>
     void
     set_reach(const Problem<dim>                                      &problem,
-              const Shape<dim>                                        &shape,
+              const Body<dim>                                         &body,
               const std::function<double(const dealii::Point<dim> &)> &density,
               MaterialPoints<dim>                                     &points)
     {
@@ -273,15 +276,16 @@ namespace limber
           for (unsigned int k = 0; k < view.stretch.size(); ++k)
             if (view.keeps_stretch())
               view.stretch[k][p] = k < dim ? 1 : 0;
-          if (const auto surface = shape.signed_distance(place))
+          if (const auto surface = body.shape->signed_distance(place))
             {
               Depth depth{-surface->value, 0};
               for (int d = 0; d < dim; ++d)
                 depth.normal =
                   std::max(depth.normal, std::abs(surface->normal[d]));
               if (is_in_held_side<dim>(problem,
+                                       body,
                                        place + depth.value * surface->normal))
-                depth = depth_beside_sides(problem, shape, place, half_edge);
+                depth = depth_beside_sides(problem, body, place, half_edge);
               if (depth.value > 0 && depth.value < 2 * half_edge * depth.normal)
                 view.reach[p] = depth.value;
             }
@@ -336,7 +340,7 @@ namespace limber
       };
       seed<dim>(body.description, grid, density, body.points);
       set_initial_state(initial, body);
-      set_reach<dim>(problem, *body.description.shape, density, body.points);
+      set_reach<dim>(problem, body.description, density, body.points);
       set_edges<dim>(problem.grid, body.description, density, body.points);
 
       if (body.points.n_global() == 0)

@@ -114,7 +114,7 @@ namespace limber
                   const std::unordered_set<std::uint64_t> &kept);
 
     std::vector<dealii::Tensor<1, dim>>
-    normals_to_obstacles(const MaterialPoints<dim>      &points,
+    normals_to_obstacles(const MaterialBody<dim>        &body,
                          const std::vector<std::size_t> &which,
                          double                          time) const;
 

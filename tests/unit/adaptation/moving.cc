@@ -642,6 +642,53 @@ TEST(Adapting, FollowsABodyAndItsSurface)
 
 
 
+// What lies on a side that it meets with its surface still does so when its
+// points are split, wherever these are in their cells.
+TEST(Adapting, LeavesABlockOnASideAtRest)
+{
+  const std::string scene = R"(
+    set Bodies = block
+    subsection Body block
+      subsection Box
+        set Lower corner = 0.25, 0
+        set Upper corner = 0.75, 0.5
+      end
+      set Material = neo hookean
+      set Frame = current
+    end
+    subsection Grid
+      set Cells  = 8, 8
+      set Levels = 1
+      set Refine = later
+      subsection Refine later
+        set Where = t - 0.005
+      end
+    end
+    subsection Boundaries
+      set bottom = separating
+    end)";
+  for (const std::string placement : {"regular", "gauss", "jittered"})
+    {
+      SCOPED_TRACE(placement);
+      SceneRun<2>   run(scene,
+                      {"Method/Kernel=cpgimp",
+                         "Body block/Placement=" + placement});
+      Adaptation<2> adaptation(run.problem, run.grid, run.bodies);
+      const Adaptation<2>::KeptPoints kept(1);
+      const unsigned int              n_points = run.points().size;
+      while (run.time < 0.03)
+        {
+          if (adaptation.adapt(run.time, kept))
+            run.integrator.reinit();
+          run.advance(run.integrator.longest_step());
+        }
+      EXPECT_EQ(run.points().size, 4 * n_points);
+      EXPECT_LT(run.totals().all.kinetic_energy, 1e-20);
+    }
+}
+
+
+
 TEST(Adapting, RefusesABodyThinnerThanItsCells)
 {
   const std::string far_away = "set Lower corner = 3, 3";

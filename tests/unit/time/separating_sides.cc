@@ -445,6 +445,31 @@ TEST(SeparatingSides, ABlockRestsWhereFrictionHoldsIt)
 // loses a little. Shared out between the directions of the surface, the losses
 // of places that stick were heat without end, .12 J here, and a contact loss
 // that fell.
+// Without any load, also where its other faces cut cells: no point at an edge
+// takes its distance from another face for that from the side.
+TEST(SeparatingSides, ABlockThatLiesThereStaysThere)
+{
+  for (const std::string side : {"separating", "friction"})
+    for (const std::string kernel : {"linear", "quadratic"})
+      for (const double left : {0.27, 0.265625, 0.25})
+        {
+          SCOPED_TRACE(side + ", " + kernel + ", " + std::to_string(left));
+          SceneRun<2> run(thrown_block,
+                          {"Boundaries/bottom=" + side,
+                           "Boundaries/Side bottom/Friction coefficient=0.3",
+                           "Method/Kernel=" + kernel,
+                           "Grid/Cells=16, 16",
+                           "Body block/Initial velocity=0; 0",
+                           "Body block/Box/Lower corner=" + digits(left) +
+                             ", 0",
+                           "Body block/Box/Upper corner=0.63, 0.375"});
+          run.advance_to(0.02);
+          EXPECT_LT(run.totals().all.kinetic_energy, 1e-20);
+        }
+}
+
+
+
 TEST(SeparatingSides, ABlockSticksInACorner)
 {
   SceneRun<2> run(R"(
