@@ -25,6 +25,13 @@ namespace limber
 
 
 
+    // Of semi-implicit steps, whose Courant number is that of shear waves,
+    // times the order: blocks in free flight through small cuts are stable up
+    // to 1 with order 4, .9 with 6 and 1.2 with 8.
+    constexpr double of_semi_implicit = 0.8;
+
+
+
     Bound
     bound_of(const KernelKind kernel)
     {
@@ -58,6 +65,13 @@ namespace limber
     const Method &method = problem.method;
     if (!filters_velocity(method.transfer))
       return std::numeric_limits<double>::infinity();
+    if (method.integration == TimeIntegration::semi_implicit)
+      return method.transfer == Transfer::fmpm &&
+                 std::any_of(problem.bodies.begin(),
+                             problem.bodies.end(),
+                             [](const auto &body) { return !body.is_liquid; }) ?
+               of_semi_implicit / method.transfer_order :
+               std::numeric_limits<double>::infinity();
     const auto [a, b, shrinks] = bound_of(problem.grid.kernel);
     double       result        = method.transfer == Transfer::fmpm ?
                                    a * std::pow(double(method.transfer_order), -b) :
@@ -82,8 +96,8 @@ namespace limber
   {
     Method      &method = problem.method;
     const double bound  = courant_number_of_filter(problem);
-    if (method.integration != TimeIntegration::explicit_steps ||
-        method.time_step > 0 || method.courant_number <= bound)
+    if (is_solved_by_newton(method.integration) || method.time_step > 0 ||
+        method.courant_number <= bound)
       return;
     problem.notes.push_back(
       "Courant number " + brief(method.courant_number) + " is lowered to " +

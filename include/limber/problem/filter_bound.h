@@ -7,8 +7,9 @@
 namespace limber
 {
   /**
-   * Stability limit of the Courant number C of explicit steps with a transfer
-   * that filters the velocity, less a tenth; infinite with any other transfer.
+   * Stability limit of the Courant number C with a transfer that filters the
+   * velocity, less a tenth; infinite with any other transfer. Semi-implicit
+   * steps have that of shear waves, as measured; explicit ones the following.
    *
    * With the lumped mass M, the consistent mass M_full and the stiffness K, a
    * step of FMPM(k) updates the velocity w that strains and the displacement u
