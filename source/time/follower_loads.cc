@@ -87,9 +87,13 @@ namespace limber
             piece.edges           = former->edges;
             const Numbers numbers = numbers_of(at, points.cell[p]);
             piece.numbers.assign(numbers.begin(), numbers.begin() + at.n);
-            piece.weights = slopes(former->arm);
+            piece.moving = slopes(former->arm);
             for (int i = 0; i < at.n; ++i)
-              piece.weights[i] += at.value[i];
+              piece.moving[i] += at.value[i];
+            const Support<dim> of_force =
+              support_of_piece(parts.grid.view(), points, p, *former);
+            piece.weights.assign(of_force.value.begin(),
+                                 of_force.value.begin() + at.n);
             for (unsigned int e = 0; e < dim - 1; ++e)
               piece.slopes[e] = slopes(former->edges[e]);
             for (int d = 0; d < dim; ++d)
@@ -115,7 +119,7 @@ namespace limber
         {
           const double u =
             displacement[std::size_t(piece.numbers[i]) * dim + d];
-          result.arm[d] += piece.weights[i] * u;
+          result.arm[d] += piece.moving[i] * u;
           for (unsigned int e = 0; e < dim - 1; ++e)
             result.edges[e][d] += piece.slopes[e][i] * u;
         }

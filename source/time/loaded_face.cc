@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <limber/base/exceptions.h>
 #include <limber/base/records_of_ranks.h>
+#include <limber/interpolation/point_support.h>
 #include <limber/time/loaded_face.h>
+#include <limber/time/point_deformation.h>
 #include <limber/time/surface_closure.h>
 
 #include <algorithm>
@@ -215,16 +217,20 @@ namespace limber
     dealii::Utilities::MPI::max(heaviest, grid.communicator, heaviest);
 
     std::vector<Candidate<dim>> best(all.size(), nobody);
+    const bool initial = body.description.frame == Frame::initial;
     for_each_neighbour([&](const std::size_t p, const unsigned int i) {
-      if (in_large_cell(p) < least_share_of_piece * heaviest[i])
-        return;
       Candidate<dim>     candidate{};
       dealii::Point<dim> place;
       for (unsigned int d = 0; d < dim; ++d)
         place[d] = points.position[d][p];
-      candidate[0] =
-        grid.has_levels() &&
+      const bool is_beside =
+        (grid.has_levels() || initial) &&
         !is_in_cell_of(place, grid.level_of(points.cell[p]), all[i], grid);
+      const bool is_light =
+        in_large_cell(p) < least_share_of_piece * heaviest[i];
+      if (is_light && (is_beside || !initial))
+        return;
+      candidate[0] = 2 * is_beside + is_light;
       candidate[1] = std::round(place.distance(dealii::Point<dim>(all[i].arm)) /
                                 (1e-9 * grid.smallest_edge));
       for (unsigned int d = 0; d < dim; ++d)
@@ -403,6 +409,52 @@ namespace limber
 
 
 
+  template <int dim>
+  Support<dim>
+  support_of_piece(const GridView<dim>  &grid,
+                   const PointView<dim> &points,
+                   const std::size_t     p,
+                   const FacePiece<dim> &piece)
+  {
+    Support<dim> result = support_of_point<dim>(grid, points, p);
+    if (points.in_initial_frame() && !points.has_domains())
+      {
+        const CellGeometry<dim> &cell      = grid.cells[points.cell[p]];
+        bool                     is_inside = true;
+        std::array<double, dim>  place;
+        for (int d = 0; d < dim; ++d)
+          {
+            place[d] = piece.reference[d];
+            const double xi =
+              (place[d] - cell.origin[d]) * cell.inverse_edge[d];
+            is_inside = is_inside && std::abs(xi - 0.5) <= 0.5 + 1e-6;
+          }
+        if (is_inside)
+          {
+            result.value =
+              support_at<dim, false>(grid, points.cell[p], place).value;
+            return result;
+          }
+      }
+    const dealii::Tensor<1, dim> arm = pull_back(points, p) * piece.arm;
+    for (int i = 0; i < result.n; ++i)
+      for (int d = 0; d < dim; ++d)
+        result.value[i] += result.gradient[i][d] * arm[d];
+    return result;
+  }
+
+
+
   template class LoadedFace<2>;
   template class LoadedFace<3>;
+  template Support<2>
+  support_of_piece(const GridView<2> &,
+                   const PointView<2> &,
+                   std::size_t,
+                   const FacePiece<2> &);
+  template Support<3>
+  support_of_piece(const GridView<3> &,
+                   const PointView<3> &,
+                   std::size_t,
+                   const FacePiece<3> &);
 } // namespace limber

@@ -190,16 +190,11 @@ namespace limber
           load.is_pressure ?
             -load.formula.value(place, time) * area :
             piece->area * load.formula.vector(piece->reference, time);
-        const Support<dim> at = support_of_point<dim>(grid.view(), points, p);
-        const dealii::Tensor<1, dim> arm = pull_back(points, p) * piece->arm;
+        const Support<dim> at =
+          support_of_piece(grid.view(), points, p, *piece);
         for (int i = 0; i < at.n; ++i)
-          {
-            double weight = at.value[i];
-            for (int d = 0; d < dim; ++d)
-              weight += at.gradient[i][d] * arm[d];
-            for (int d = 0; d < dim; ++d)
-              of_nodes[at.node[i] * dim + d] += weight * force[d];
-          }
+          for (int d = 0; d < dim; ++d)
+            of_nodes[at.node[i] * dim + d] += at.value[i] * force[d];
       }
   }
 

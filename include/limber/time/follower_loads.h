@@ -25,7 +25,8 @@ namespace limber
    * and adds - p(x, t) w_i n da to the nodal forces, where n da is the cross
    * product of the edges (ExternalLoads, which has these pieces). r and a of
    * the start of the step are pulled back if gradients are those at initial
-   * positions (total Lagrangian).
+   * positions (total Lagrangian); forces then have the shares of
+   * support_of_piece() for w_i.
    *
    * Body force that varies in space: a point adds m_p N_i b(x_p + sum_j N_j
    * u_j, t).
@@ -85,7 +86,8 @@ namespace limber
     {
       const LoadedFace<dim>     *face;
       std::vector<std::uint32_t> numbers; // of nodes
-      std::vector<double>        weights; // w_i
+      std::vector<double>        weights; // w_i, of forces
+      std::vector<double>        moving;  // of displacements, as in deform()
       // a . grad N_i by edge
       std::array<std::vector<double>, dim - 1>    slopes;
       dealii::Point<dim>                          place; // m

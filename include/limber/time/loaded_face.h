@@ -2,6 +2,7 @@
 #ifndef limber_time_loaded_face_h
 #define limber_time_loaded_face_h
 
+#include <limber/interpolation/support.h>
 #include <limber/state/material_body.h>
 #include <limber/time/face_pieces.h>
 
@@ -89,6 +90,22 @@ namespace limber
     std::size_t   n_of_closed = 0;
     unsigned long order       = 0; // of points, when `present` was made
   };
+
+
+
+  /**
+   * The functions of the nodes around the carrier @p p of a piece, with the
+   * shares of a force on the piece as values. In the initial frame these are
+   * the functions at the place where the piece was at the start, if that is in
+   * the cell of its carrier; else the functions at the carrier and their
+   * gradients times the arm.
+   */
+  template <int dim>
+  Support<dim>
+  support_of_piece(const GridView<dim>  &grid,
+                   const PointView<dim> &points,
+                   const std::size_t     p,
+                   const FacePiece<dim> &piece);
 } // namespace limber
 
 #endif

@@ -19,7 +19,10 @@ namespace limber
    * with the velocity sum_i (N_i + r . grad N_i) v_i, with the functions at
    * x_p; a force t on it adds (N_i + r . grad N_i) t to the nodes. So the nodal
    * forces have the sum and the moment of those on the pieces, do the same
-   * work, and act only on nodes that have mass.
+   * work, and act only on nodes that have mass. In the initial frame a force
+   * adds the functions at the place of the piece itself where its carrier is in
+   * the same cell (support_of_piece()): forces then balance those of a constant
+   * stress, also on curved surfaces, to the error of the pieces.
    */
   template <int dim>
   class ExternalLoads

@@ -316,6 +316,45 @@ TEST(SurfaceLoads, PressedRingIsThatOfLame)
 
 // An eighth of a ball under pressure all around shrinks evenly:
 // u = -(1 - 2 nu)/E p x.
+// Pressed all around, also where the surface cuts cells: a constant stress, with
+// which the functions at the pieces are in balance.
+TEST(SurfaceLoads, PressedAllAroundAConstantStressIsConstant)
+{
+  for (const std::string kernel : {"linear", "quadratic"})
+    for (const std::string placement : {"cut", "gauss"})
+      {
+        SCOPED_TRACE(kernel + ", " + placement);
+        SceneRun<2> run(scene<2>(ring, 36) + "set Pressure = 1" + end,
+                        {"Boundaries/right=free",
+                         "Boundaries/top=free",
+                         "Method/Kernel=" + kernel,
+                         "Method/Time integration=quasi-static",
+                         "Method/Time step=1",
+                         "End time=1",
+                         "Body body/Frame=initial",
+                         "Body body/Placement=" + placement});
+        run.advance(1);
+        const PointView<2> points  = run.points();
+        double             squares = 0, mass = 0, worst = 0;
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const double xx = points.deviator[0][p], yy = points.deviator[1][p],
+                         xy      = points.deviator[2][p];
+            const double mean    = points.pressure[p];
+            const double error   = std::sqrt(std::pow(xx - mean + 1, 2) +
+                                           std::pow(yy - mean + 1, 2) +
+                                           2 * xy * xy);
+            squares += points.mass[p] * error * error;
+            mass += points.mass[p];
+            worst = std::max(worst, error);
+          }
+        EXPECT_LT(std::sqrt(squares / mass), 0.015);
+        EXPECT_LT(worst, 0.3);
+      }
+}
+
+
+
 TEST(SurfaceLoads, PressedBallShrinksEvenly)
 {
   const std::string eighth = "set Shape = formula\nset Placement = cut\n"
