@@ -263,6 +263,8 @@ namespace limber
     figures.is_semi_implicit =
       state.problem.method.integration == TimeIntegration::semi_implicit;
     figures.lost_by_steps = totals.lost_by_steps;
+    figures.is_smoothed   = filters_velocity(state.problem.method.transfer) ||
+                          state.problem.method.transfer == Transfer::pic;
     // the first steps of a body that starts from rest all turn its velocity
     figures.is_implicit =
       state.problem.method.integration == TimeIntegration::implicit_steps &&

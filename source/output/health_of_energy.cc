@@ -203,4 +203,27 @@ namespace limber
                    "to 1 %";
     return line;
   }
+
+
+
+  // What turns loses some of its angular momentum in each filtered step, and
+  // the more in a time the shorter steps are.
+  HealthLine
+  judge_transfer(const HealthFigures &figures, const HealthCheck &check)
+  {
+    HealthLine line;
+    line.value   = figures.energy_scale > 0 ?
+                     std::max(0., figures.transfer) / figures.energy_scale :
+                     0;
+    line.verdict = check.verdict(line.value);
+    line.text    = percent(line.value) +
+                " of the largest energy was removed by the transfer between "
+                "points and grid";
+    if (line.verdict != Verdict::good)
+      line.text += ", from what turns and from short waves. 'Transfer = apic' "
+                   "or 'Frame = initial' keep rotation, a longer 'Transfer "
+                   "period' loses less, shorter steps lose more";
+    line.entry = "Method/Transfer";
+    return line;
+  }
 } // namespace limber

@@ -117,6 +117,7 @@ namespace limber
     // Part of 'viscous' that is lost by semi-implicit steps
     bool   is_semi_implicit = false;
     double lost_by_steps    = 0;
+    bool   is_smoothed      = false; // by the transfer: pic, xpic, fmpm
     // Of implicit steps, J s, see Ledger
     bool   is_implicit    = false; // and has made enough steps to tell
     double kinetic_action = 0, action_of_changes = 0;

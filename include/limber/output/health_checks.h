@@ -96,6 +96,8 @@ namespace limber
   HealthLine
   judge_steps(const HealthFigures &figures, const HealthCheck &check);
   HealthLine
+  judge_transfer(const HealthFigures &figures, const HealthCheck &check);
+  HealthLine
   judge_rotation(const HealthFigures &figures, const HealthCheck &check);
 } // namespace limber
 

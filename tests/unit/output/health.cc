@@ -645,6 +645,25 @@ namespace limber::test
 
 
 
+  TEST(Health, TellsWhatATransferThatSmoothsTakes)
+  {
+    HealthFigures figures = sound();
+    figures.energy_scale  = 100;
+    figures.transfer      = 60;
+    for (const HealthLine &other : judge(figures))
+      EXPECT_NE(other.name, "transfer"); // of FLIP with blending
+    figures.is_smoothed = true;
+    EXPECT_EQ(line("transfer", figures).verdict, Verdict::bad);
+    EXPECT_DOUBLE_EQ(line("transfer", figures).value, 0.6);
+    figures.transfer = 20;
+    EXPECT_EQ(line("transfer", figures).verdict, Verdict::look);
+    EXPECT_EQ(line("transfer", figures).entry, "Method/Transfer");
+    figures.transfer = -5; // none
+    EXPECT_EQ(line("transfer", figures).verdict, Verdict::good);
+  }
+
+
+
   // An undamped vibration in steps of a twelfth and of a fifth of its period,
   // by the trapezoidal rule.
   TEST(Health, TellsWhenImplicitStepsAreLong)

@@ -316,8 +316,8 @@ TEST(SurfaceLoads, PressedRingIsThatOfLame)
 
 // An eighth of a ball under pressure all around shrinks evenly:
 // u = -(1 - 2 nu)/E p x.
-// Pressed all around, also where the surface cuts cells: a constant stress, with
-// which the functions at the pieces are in balance.
+// Pressed all around, also where the surface cuts cells: a constant stress,
+// with which the functions at the pieces are in balance.
 TEST(SurfaceLoads, PressedAllAroundAConstantStressIsConstant)
 {
   for (const std::string kernel : {"linear", "quadratic"})
@@ -339,11 +339,11 @@ TEST(SurfaceLoads, PressedAllAroundAConstantStressIsConstant)
         for (std::size_t p = 0; p < points.size; ++p)
           {
             const double xx = points.deviator[0][p], yy = points.deviator[1][p],
-                         xy      = points.deviator[2][p];
-            const double mean    = points.pressure[p];
-            const double error   = std::sqrt(std::pow(xx - mean + 1, 2) +
-                                           std::pow(yy - mean + 1, 2) +
-                                           2 * xy * xy);
+                         xy   = points.deviator[2][p];
+            const double mean = points.pressure[p];
+            const double error =
+              std::sqrt(std::pow(xx - mean + 1, 2) +
+                        std::pow(yy - mean + 1, 2) + 2 * xy * xy);
             squares += points.mass[p] * error * error;
             mass += points.mass[p];
             worst = std::max(worst, error);
