@@ -77,8 +77,11 @@ namespace limber
         return {};
       return {"affine velocity",
               "with linear functions the transfer 'aflip' is unstable where "
-              "points come near the edges of cells. Set 'Method/Kernel = "
-              "quadratic', or 'Method/Transfer = flip'."};
+              "points come near the edges of cells. Set " +
+                std::string(problem.grid.against_splines.empty() ?
+                              "'Method/Kernel = quadratic', or " :
+                              "") +
+                "'Method/Transfer = flip'."};
     }
 
 

@@ -476,8 +476,11 @@ namespace limber
           problem.notes.push_back(
             "Warning: 'Transfer = aflip' with linear functions is unstable "
             "where points come near the edges of cells, as those of body " +
-            in_quotes(body.name) +
-            " may. Set 'Method/Kernel = quadratic' or 'Transfer = flip'.");
+            in_quotes(body.name) + " may. Set " +
+            (problem.grid.against_splines.empty() ?
+               "'Method/Kernel = quadratic' or " :
+               "") +
+            "'Transfer = flip'.");
     }
   } // namespace
 
