@@ -73,6 +73,31 @@ namespace limber
             in_quotes(solid->name) + "; 'musl' takes two thirds of the time.");
         }
     }
+
+
+
+    /**
+     * Half of the force of 'usavg' acts with the gradients at the former
+     * places, so that what turns in the current frame gains angular momentum at
+     * first order in the step.
+     */
+    template <int dim>
+    void
+    warn_of_spin_from_usavg(Problem<dim> &problem)
+    {
+      constexpr double a_tenth_of_a_turn = 0.6; // rad
+      if (problem.method.order != StressUpdateOrder::usavg ||
+          problem.method.integration != TimeIntegration::explicit_steps)
+        return;
+      for (const Body<dim> &body : problem.bodies)
+        if (!body.is_liquid && body.frame == Frame::current &&
+            initial_rotation(body, problem.end_time) > a_tenth_of_a_turn)
+          problem.notes.push_back(
+            "Body " + in_quotes(body.name) +
+            " turns in the current frame: with 'usavg' it gains pi w dt of its "
+            "spin in each turn, with the angular velocity w and the time step "
+            "dt. 'Method/Stress update = musl' does not.");
+    }
   } // namespace
 
 
@@ -179,6 +204,7 @@ namespace limber
     choose_time_integration(root, problem);
     choose_histories(root, problem);
     choose_stress_update(problem);
+    warn_of_spin_from_usavg(problem);
     obey_filter(problem);
     read_contact(root, problem);
     check_obstacles(root, problem);
