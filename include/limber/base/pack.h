@@ -73,6 +73,18 @@ namespace limber
       std::memcpy(&to, &from, sizeof(to));
       return to;
     }
+
+    /** Integers as the exponents of doubles, biased; of numbers that are none
+     * any bits, so scalars are shifted without a sign. */
+    template <class Bits>
+    inline Bits
+    as_exponent(const Bits &n)
+    {
+      if constexpr (std::is_integral_v<Bits>)
+        return static_cast<Bits>(static_cast<std::uint64_t>(n) << 52);
+      else
+        return n << 52;
+    }
   } // namespace internal
 
 
@@ -552,8 +564,8 @@ namespace limber
     for (int k = 13; k >= 1; --k)
       series = 1. + series * r * (1. / k);
     const Bits bits = internal::same_bits<Bits>(shifted);
-    return series * internal::same_bits<Number>(
-                      (bits - 0x4338000000000000LL + 1023) << 52);
+    return series * internal::same_bits<Number>(internal::as_exponent<Bits>(
+                      bits - 0x4338000000000000LL + 1023));
   }
 
 

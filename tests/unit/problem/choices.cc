@@ -718,6 +718,55 @@ TEST(Choices, RotationInTheCurrentFrameIsTold)
 
 
 
+// At first order in the step 'usavg' spins it up.
+TEST(Choices, SpinFromTheStressUpdateIsTold)
+{
+  const auto told = [](std::vector<std::string> changes) {
+    changes.emplace_back("End time=1");
+    changes.emplace_back("Body block/Initial velocity=7 - pi*y; pi*x");
+    const auto notes = read(changes).notes;
+    return std::any_of(notes.begin(), notes.end(), [](const auto &note) {
+      return note.find("pi w dt of its spin") != std::string::npos;
+    });
+  };
+  const std::string usavg   = "Method/Stress update=usavg",
+                    current = "Body block/Frame=current";
+  EXPECT_TRUE(told({usavg, current}));
+  EXPECT_FALSE(told({usavg, "Body block/Frame=initial"}));
+  EXPECT_FALSE(told({"Method/Stress update=musl", current}));
+}
+
+
+
+// What fills its box between slip sides can go nowhere.
+TEST(Choices, ABodyThatFillsItsBoxKeepsItsFrame)
+{
+  const auto frame = [](const std::vector<std::string> &changes) {
+    return read_problem<2>(scene_with(R"(
+      set Bodies = block
+      subsection Body block
+        set Initial velocity = 0.1*sin(pi*x); 0
+        subsection Box
+          set Upper corner = 1, 1
+        end
+      end
+      subsection Boundaries
+        set left   = slip
+        set right  = slip
+        set top    = slip
+        set bottom = slip
+      end)",
+                                      changes))
+      .bodies[0]
+      .frame;
+  };
+  EXPECT_EQ(frame({}), Frame::initial);
+  EXPECT_EQ(frame({"Body block/Box/Upper corner=1, 0.9"}), Frame::current);
+  EXPECT_EQ(frame({"Boundaries/top=separating"}), Frame::current);
+}
+
+
+
 // Two solids that are apart and in no pair would stick together.
 TEST(Choices, SolidsApartInNoPairAreTold)
 {
@@ -799,6 +848,11 @@ TEST(Choices, CourantNumberIsOneThatTheFilterHolds)
                            "fmpm"),
             0.4);
   EXPECT_NEAR(courant_number({"Method/Kernel=quadratic"}, "fmpm"), 0.33, 0.01);
+  EXPECT_NEAR(courant_number({"Method/Time integration=semi-implicit",
+                              "Body block/Locking treatment=cell"},
+                             "fmpm"),
+              0.2,
+              1e-12);
   const std::string two = "Body block/Points per cell edge=2";
   EXPECT_NEAR(courant_number({"Method/Kernel=gimp", two}, "fmpm"), 0.25, 0.01);
   EXPECT_NEAR(courant_number(
