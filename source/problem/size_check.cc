@@ -143,8 +143,9 @@ namespace limber
         return;
       if (limit <= size.bytes_of_programs)
         throw InputError(
-          "The program alone needs some " + gigabytes(size.bytes_of_programs) +
-          " of memory; " + (own ? "'Memory limit' is " : "there are ") +
+          "The scene needs some " + gigabytes(size.bytes()) +
+          " of memory, the program alone " + gigabytes(size.bytes_of_programs) +
+          "; " + (own ? "'Memory limit' is " : "there are ") +
           gigabytes(limit) + ". Usually " +
           (own ? "it was meant in GB. Set 'Memory limit = " +
                    brief(std::ceil(size.bytes() / 1e8) / 10) + "', GB." :

@@ -260,7 +260,7 @@ TEST(GuardedDoor, WhatDoesNotFitIsRefused)
                           "Body soil & rock/Points along edges=1e5, 1e5"}),
                        {"1e+10 points", "Points along edges"});
   expect_short_message(said_of_size({"Memory limit=0.1"}),
-                       {"The program alone", "'Memory limit' is 0.1 GB"});
+                       {"the program alone", "'Memory limit' is 0.1 GB"});
   EXPECT_EQ(said_of_size({"Memory limit=100", "Grid/Cells=8192, 8192"}), "");
 }
 
