@@ -166,9 +166,10 @@ namespace limber
             for (const unsigned int q : values.quadrature_point_indices())
               {
                 dealii::Point<dim> place = values.quadrature_point(q);
-                for (unsigned int i = 0; i < u.size(); ++i)
-                  place[fe.system_to_component_index(i).first] +=
-                    u[i] * values.shape_value(i, q);
+                if (!problem.loads.body_force_at_start)
+                  for (unsigned int i = 0; i < u.size(); ++i)
+                    place[fe.system_to_component_index(i).first] +=
+                      u[i] * values.shape_value(i, q);
                 const auto force = element->density * values.JxW(q) *
                                    body_force->vector(place, time);
                 for (unsigned int i = 0; i < u.size(); ++i)

@@ -13,6 +13,10 @@ namespace limber
     /** The word of the entry 'Face' that stands for the whole surface. */
     const std::string whole_surface = "surface";
 
+    /** The words of the entry 'Body force at'. */
+    const std::vector<std::string> body_force_places = {"present place",
+                                                        "initial place"};
+
 
 
     void
@@ -87,6 +91,12 @@ namespace limber
                                         for_each_direction(dim, "0", "; ")),
                        "Force per mass b beside gravity, m/s^2; a constant one "
                        "counts as part of gravity.");
+    parameters.declare("Body force at",
+                       "present place",
+                       admissible::one_of(body_force_places),
+                       "Place of a point, x of the formula, that 'Body force' "
+                       "refers to. initial place: a field of the material, as "
+                       "manufactured solutions in Lagrangian form need it.");
     parameters.declare("Load factor",
                        "auto",
                        admissible::text("formula of t, or auto", "t / 2"),
@@ -117,6 +127,8 @@ namespace limber
                                                    dim,
                                                    read_constants(section),
                                                    corners(problem.grid));
+    problem.loads.body_force_at_start =
+      section.text("Body force at") == body_force_places[1];
     // A constant force is gravity: liquids at rest under it need the same
     // corrections (HydrostaticLoad).
     if (formula.is_uniform() && !asks_for_time(section.text("Body force")))

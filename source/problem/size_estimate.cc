@@ -149,18 +149,6 @@ namespace limber
 
 
     template <int dim>
-    bool
-    writes_displacements(const Problem<dim> &problem)
-    {
-      const auto &fields = problem.output.fields;
-      return problem.output.time_interval > 0 &&
-             std::find(fields.begin(), fields.end(), "displacement") !=
-               fields.end();
-    }
-
-
-
-    template <int dim>
     SizeEstimate
     estimate_run(const Problem<dim> &problem, const unsigned int ranks)
     {
@@ -192,7 +180,7 @@ namespace limber
         per_point += of_point_cubic[k];
       if (filters_velocity(problem.method.transfer))
         per_point += of_point_filtered[k];
-      if (writes_displacements(problem))
+      if (problem.keeps_initial_places())
         per_point += of_point_reference[k];
       if (in_parallel)
         per_point += of_point_on_its_way[k];

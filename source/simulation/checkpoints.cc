@@ -293,12 +293,12 @@ namespace limber
         if (bodies[b]->points.has_reference() &&
             !file.has("body " + std::to_string(b) + "/reference position x"))
           throw InputError(
-            "The pictures are to show the displacement ('Output/Fields'), but "
-            "the checkpoint " +
+            "Pictures of the displacement ('Output/Fields') and a body force "
+            "with 'Loads/Body force at = initial place' need to know where "
+            "the points were at the start, and the checkpoint " +
             in_quotes(path) +
-            " does not know where the points were at the start. Usually the "
-            "run was begun without pictures. Leave 'displacement' out of "
-            "'Output/Fields'.");
+            " does not. Usually the run was begun without pictures. Leave "
+            "'displacement' out of 'Output/Fields', or begin anew.");
         // as many numbers as points have had
         n += read_points(file,
                          grid,

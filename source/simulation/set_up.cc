@@ -141,7 +141,6 @@ namespace limber
         is_for_solids(problem.grid.kernel) && body.is_liquid ?
           KernelKind::linear :
           problem.grid.kernel;
-      const auto &fields = problem.output.fields;
       auto        stress = make_stress_update<dim>(body.law,
                                             body.material,
                                             body.treatment,
@@ -163,10 +162,8 @@ namespace limber
       layout.domains       = domain_form(kernel);
       layout.initial_frame = body.frame == Frame::initial;
       layout.size_class    = grid.has_levels();
-      layout.edges = body.splits_stretched_points && !has_domains(kernel);
-      layout.reference =
-        problem.output.time_interval > 0 &&
-        std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+      layout.edges     = body.splits_stretched_points && !has_domains(kernel);
+      layout.reference = problem.keeps_initial_places();
       return std::unique_ptr<MaterialBody<dim>>(
         new MaterialBody<dim>{body,
                               std::move(stress),

@@ -33,8 +33,8 @@ namespace limber
   bool
   FollowerLoads<dim>::has_body_force() const
   {
-    const auto &force = parts.problem.loads.body_force;
-    return force && !force->is_uniform();
+    const Loads<dim> &loads = parts.problem.loads;
+    return loads.body_force_varies() && !loads.body_force_at_start;
   }
 
 

@@ -134,9 +134,11 @@ namespace limber
     LazyArray<double>   &of_nodes = forces[body.description.nodal_field];
     for (std::size_t p = 0; p < points.size; ++p)
       {
+        const dealii::Point<dim>     place = problem.loads.body_force_at_start ?
+                                               body.points.reference_position(p) :
+                                               position(points, p);
         const dealii::Tensor<1, dim> force =
-          points.mass[p] *
-          problem.loads.body_force->vector(position(points, p), time);
+          points.mass[p] * problem.loads.body_force->vector(place, time);
         const Support<dim> at = support_of_point<dim>(grid.view(), points, p);
         for (int i = 0; i < at.n; ++i)
           for (int d = 0; d < dim; ++d)
@@ -248,8 +250,8 @@ namespace limber
         for (int d = 0; d < dim; ++d)
           of_nodes[node * dim + d] = 0;
     const auto &body_force = problem.loads.body_force;
-    const bool  varies     = body_force && !body_force->is_uniform();
-    if (varies && followers)
+    const bool  varies     = problem.loads.body_force_varies();
+    if (varies && (followers || problem.loads.body_force_at_start))
       for (const auto &body : bodies)
         add_body_force(*body, time);
     for (LoadedFace<dim> &face : faces)

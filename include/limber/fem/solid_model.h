@@ -69,7 +69,8 @@ namespace limber
       return weight;
     }
 
-    /** Body force formulas, at the present places, and loads on faces, N. */
+    /** Body force formulas, at present or initial places, and loads on faces,
+     * N. */
     void
     loads(const NodalVector &displacement,
           const double       time,

@@ -341,10 +341,18 @@ namespace limber
     dealii::Tensor<1, dim>      gravity;    // m/s^2
     std::optional<Formula<dim>> body_force; // dim components, per mass, m/s^2;
                                             // empty where identically zero
+    bool body_force_at_start = false;       // b of the initial place of a point
     std::vector<FaceLoad<dim>> faces;
     // Load factor of a quasi-static run, of gravity and loads: 1 component, a
     // function of time; empty: proportional to time, 1 at the end
     Formula<dim> factor;
+
+    /** Whether the body force differs from place to place. */
+    bool
+    body_force_varies() const
+    {
+      return body_force && !body_force->is_uniform();
+    }
   };
 
   /** Contact law of two bodies. */
@@ -540,6 +548,17 @@ namespace limber
     adapts() const
     {
       return grid.levels > 0 || splits_stretched_points();
+    }
+
+    /** Whether points keep their initial place beside the present one, for
+     * pictures of displacements or for a body force of the material. */
+    bool
+    keeps_initial_places() const
+    {
+      return (output.time_interval > 0 && std::count(output.fields.begin(),
+                                                     output.fields.end(),
+                                                     "displacement") > 0) ||
+             (loads.body_force_at_start && loads.body_force_varies());
     }
   };
 } // namespace limber

@@ -28,8 +28,8 @@ namespace limber
    * positions (total Lagrangian); forces then have the shares of
    * support_of_piece() for w_i.
    *
-   * Body force that varies in space: a point adds m_p N_i b(x_p + sum_j N_j
-   * u_j, t).
+   * Body force that varies in space, as a field of the present place: a point
+   * adds m_p N_i b(x_p + sum_j N_j u_j, t).
    */
   template <int dim>
   class FollowerLoads

@@ -102,6 +102,36 @@ namespace
 
 
 
+TEST(ReferenceInTime, BodyForceAtPresentAndInitialPlaces)
+{
+  for (const std::string place : {"present place", "initial place"})
+    {
+      SCOPED_TRACE(place);
+      const auto problem =
+        problem_from<2>(block,
+                        {"Loads/Face load push/Traction=0; 0",
+                         "Loads/Body force=3*x; 0",
+                         "Loads/Body force at=" + place});
+      SolidModel<2> model(problem, MPI_COMM_WORLD);
+      const auto    force_along_x = [&](const double displacement) {
+        NodalVector u(model.nodal_masses()), forces(u);
+        u = displacement;
+        model.loads(u, 0, forces);
+        double sum = 0;
+        for (const double force : forces)
+          sum += force;
+        return sum;
+      };
+      const double mass = total_mass(model);
+      EXPECT_NEAR(force_along_x(0), mass * 3 * 0.5, 1e-12);
+      EXPECT_NEAR(force_along_x(0.2),
+                  mass * 3 * (place == "present place" ? 0.7 : 0.5),
+                  1e-12);
+    }
+}
+
+
+
 TEST(ReferenceInTime, NewmarkKeepsEnergyToSecondOrder)
 {
   for (const std::string &element : reference_elements)

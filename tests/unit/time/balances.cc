@@ -315,6 +315,42 @@ TEST(Balances, ConstantBodyForceIsGravity)
 
 
 
+// A force of the material goes along with it: a body that leaves the half of
+// the box in which it was pushed at its start is pushed on.
+TEST(Balances, BodyForceAtTheInitialPlace)
+{
+  const auto gain = [](const std::string &integration,
+                       const std::string &frame,
+                       const std::string &place) {
+    SceneRun<2>  run(block_on_floor,
+                    {"Method/Time integration=" + integration,
+                      "Method/Time step=1e-3",
+                      "Body block/Frame=" + frame,
+                      "Body block/Initial velocity=10; 0",
+                      "Body block/Box/Lower corner=0.5, 1",
+                      "Body block/Box/Upper corner=1, 1.5",
+                      "Loads/Body force=if(x < 1.5, 2, -2); 0",
+                      "Loads/Body force at=" + place,
+                      "Boundaries/left=free",
+                      "Boundaries/right=free",
+                      "Boundaries/bottom=free",
+                      "Boundaries/top=free"});
+    const double before = run.totals().all.momentum[0];
+    run.advance(1e-3, 200);
+    EXPECT_LT(run.totals().momentum_error, 1e-12);
+    return (run.totals().all.momentum[0] - before) / run.totals().all.mass;
+  };
+  for (const std::string frame : {"current", "initial"})
+    {
+      SCOPED_TRACE(frame);
+      EXPECT_NEAR(gain("explicit", frame, "initial place"), 0.4, 1e-9);
+      EXPECT_NEAR(gain("implicit", frame, "initial place"), 0.4, 1e-9);
+      EXPECT_LT(gain("explicit", frame, "present place"), 0.1);
+    }
+}
+
+
+
 // A free body loses its velocity as exp(-alpha t), for any alpha dt.
 TEST(Balances, DampingIsExactInFreeFlight)
 {
