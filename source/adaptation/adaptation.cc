@@ -70,12 +70,13 @@ namespace limber
   {
     if (!problem.adapts())
       return false;
-    memory.way += displacement;
+    if (points_cross_cells())
+      memory.way += displacement;
     ++memory.steps;
     if (memory.times_asked == 0 && looks_ahead())
       return true;
     // however rarely one wants to ask: no coarse point shall enter fine cells
-    if (memory.way + displacement > longest_way)
+    if (points_cross_cells() && memory.way + displacement > longest_way)
       return true;
     if (grid.description.adapt_every > 0)
       return memory.steps >= grid.description.adapt_every;
@@ -229,13 +230,24 @@ namespace limber
 
 
 
+  template <int dim>
+  bool
+  Adaptation<dim>::points_cross_cells() const
+  {
+    return std::any_of(bodies.begin(), bodies.end(), [](const auto &body) {
+      return body->description.frame == Frame::current;
+    });
+  }
+
+
+
   // Moving refinements have a margin instead.
   template <int dim>
   bool
   Adaptation<dim>::looks_ahead() const
   {
     const auto &refinements = grid.description.refinements;
-    return grid.has_levels() &&
+    return grid.has_levels() && points_cross_cells() &&
            std::none_of(refinements.begin(),
                         refinements.end(),
                         [](const auto &one) { return one.is_moving(); });
@@ -295,7 +307,7 @@ namespace limber
                 const auto         is_to_part = [&](const double way) {
                   std::array<double, dim> x;
                   for (int d = 0; d < dim; ++d)
-                    x[d] = view.position[d][p] + way * view.velocity[d][p];
+                    x[d] = view.place[d][p] + way * view.velocity[d][p];
                   return mesh.is_divided(size, grid.place_at(x, size));
                 };
                 if (is_to_part(0) || (ahead > 0 && (is_to_part(0.5 * ahead) ||

@@ -46,7 +46,7 @@ namespace limber
   {
     constexpr double         share    = 0.9;
     const CellGeometry<dim> &geometry = grid.geometry[cell[p]];
-    const double below = points.position[axis][p] - geometry.origin[axis];
+    const double below = points.place[axis][p] - geometry.origin[axis];
     const double above = 1 / geometry.inverse_edge[axis] - below;
     return std::max(0., share * std::min(below, above));
   }
@@ -180,31 +180,36 @@ namespace limber
 
 
 
+  // Shift the place of a point (PointView::place) within its cell. The other
+  // one of its two positions, if it has two, follows by F or its inverse.
   template <int dim>
   void
-  MaterialPoints<dim>::shift_point(const std::size_t             p,
+  MaterialPoints<dim>::shift_point(const PointView<dim>         &points,
+                                   const std::size_t             p,
                                    const dealii::Tensor<1, dim> &way,
                                    const dealii::Tensor<2, dim> &initial)
   {
-    const dealii::Tensor<1, dim> initially = initial * way;
     for (int d = 0; d < dim; ++d)
-      {
-        fields[d][p] += way[d];
-        if (layout.has_reference())
-          fields[fields.size() - dim + d][p] += initially[d];
-      }
+      points.place[d][p] += way[d];
+    if (layout.initial_frame)
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          points.position[d][p] += points.deformation[d * dim + e][p] * way[e];
+    else if (layout.reference)
+      for (int d = 0; d < dim; ++d)
+        fields[fields.size() - dim + d][p] += (initial * way)[d];
   }
 
 
 
-  // For all points before any of them changes.
+  // For all points before any of them changes; empty tensors where nobody asks.
   template <int dim>
   std::vector<dealii::Tensor<2, dim>>
   MaterialPoints<dim>::initial_gradients(
     const std::vector<std::size_t> &which) const
   {
     std::vector<dealii::Tensor<2, dim>> result(which.size());
-    if (!layout.has_reference() || which.empty())
+    if (!layout.reference || layout.initial_frame || which.empty())
       return result;
     InitialPlaces<dim> places(grid, *this);
     for (std::size_t i = 0; i < which.size(); ++i)
@@ -236,6 +241,25 @@ namespace limber
       if (farthest > share * reach)
         steps -= (1 - share * reach / farthest) *
                  dealii::outer_product(normal, across);
+    }
+
+
+
+    /** The normal of a surface at the place of a point: in the initial frame
+     * it is that before the deformation, along F^T n. */
+    template <int dim>
+    dealii::Tensor<1, dim>
+    normal_at_place(const PointView<dim>         &points,
+                    const std::size_t             p,
+                    const dealii::Tensor<1, dim> &normal)
+    {
+      if (!points.in_initial_frame() || normal.norm() == 0)
+        return normal;
+      dealii::Tensor<1, dim> result;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          result[e] += points.deformation[d * dim + e][p] * normal[d];
+      return result / result.norm();
     }
   } // namespace
 
@@ -274,7 +298,9 @@ namespace limber
           }
         const double reach = points.reach != nullptr ? points.reach[p] : 0;
         const dealii::Tensor<1, dim> normal =
-          reach > 0 && !normals.empty() ? normals[i] : dealii::Tensor<1, dim>();
+          reach > 0 && !normals.empty() ?
+            normal_at_place(points, p, normals[i]) :
+            dealii::Tensor<1, dim>();
         keep_inside(reach, normal, end, steps);
         points.mass[p] /= n_children;
         for (double *const component : points.domain)
@@ -293,7 +319,7 @@ namespace limber
         };
         const auto place = [&](const std::size_t q, const unsigned int child) {
           const dealii::Tensor<1, dim> way = way_to(child);
-          shift_point(q, way, initial[i]);
+          shift_point(points, q, way, initial[i]);
           if (reach > 0)
             points.reach[q] =
               normal.norm() > 0 ? reach - normal * way : reach / parts;
@@ -364,7 +390,7 @@ namespace limber
         const auto place = [&](const std::size_t q, const unsigned int part) {
           const dealii::Tensor<1, dim> way = (part - end) * step;
           cell[q]                          = cell_at(q, way);
-          shift_point(q, way, initial[i]);
+          shift_point(points, q, way, initial[i]);
           for (int d = 0; d < dim; ++d)
             points.velocity[d][q] += division.rate * way[d];
           energy += 0.5 * points.mass[q] * division.rate * division.rate *

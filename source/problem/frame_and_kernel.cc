@@ -423,6 +423,51 @@ namespace limber
 
 
 
+    /**
+     * Why the initial frame does not go with the cells of several sizes that a
+     * scene asks for; empty if it does. Treatments average over cells there,
+     * not in time, so that another mesh would mean another energy.
+     */
+    template <int dim>
+    std::optional<Hindrance>
+    misfit_of_levels(const GridDescription<dim> &grid)
+    {
+      for (const Refinement<dim> &refinement : grid.refinements)
+        {
+          const bool meets =
+            refinement.criterion == RefinementCriterion::obstacle ||
+            refinement.criterion == RefinementCriterion::contact;
+          if (meets || refinement.changes_mesh_at_rest())
+            return Hindrance{"needs cells that stay as they are, and "
+                             "'Grid/Refine " +
+                               refinement.name + "' " +
+                               (meets ? "follows what the body meets" :
+                                        "changes them during the run"),
+                             ", or 'Criterion = region' without t there"};
+        }
+      return std::nullopt;
+    }
+
+
+
+    /** A refinement at certain places, which move with the material in the
+     * initial frame, while no side holds a body; empty if there is none. */
+    template <int dim>
+    std::string
+    region_to_pass(const Problem<dim> &problem)
+    {
+      if (std::any_of(problem.bodies.begin(),
+                      problem.bodies.end(),
+                      [&](const auto &any) { return is_held(any, problem); }))
+        return "";
+      for (const Refinement<dim> &refinement : problem.grid.refinements)
+        if (refinement.criterion == RefinementCriterion::region)
+          return refinement.name;
+      return "";
+    }
+
+
+
     template <int dim>
     void
     choose_frame(const Section                  &root,
@@ -434,9 +479,8 @@ namespace limber
       auto          obstacle = obstacle_to_initial_frame(section, root);
       if (!obstacle)
         obstacle = obstacle_of_all;
-      if (!obstacle && problem.grid.levels > 0)
-        obstacle = Hindrance{"does not go with cells of several sizes yet",
-                             ", or 'Grid/Levels = 0'"};
+      if (!obstacle)
+        obstacle = misfit_of_levels(problem.grid);
       if (body.frame == Frame::initial && obstacle)
         throw InputError(
           "The frame 'initial' in " + section.where("Frame") + " " +
@@ -454,7 +498,12 @@ namespace limber
                     turns_too_far(part, problem.end_time) ?
                       "its law is for small rotations, and it turns" :
                       what_it_may_meet(root, part, problem);
-      const bool bounces = !meeting.empty() && may_bounce(root, body, problem);
+      bool bounces = !meeting.empty() && may_bounce(root, body, problem);
+      if (const auto region = region_to_pass(problem); !region.empty())
+        {
+          meeting = "it may pass the cells of 'Grid/Refine " + region + "'";
+          bounces = false;
+        }
       body.frame = !obstacle && (meeting.empty() || bounces) ? Frame::initial :
                                                                Frame::current;
       if (!body.is_liquid)
@@ -575,7 +624,8 @@ namespace limber
         problem.notes.push_back("Kernel 'auto' is " + choice + ".");
       };
       problem.grid.kernel = KernelKind::linear;
-      if (problem.grid.levels > 0 && takes_domains(root, problem))
+      if (problem.grid.levels > 0 && any_in_current_frame(problem) &&
+          takes_domains(root, problem))
         {
           problem.grid.kernel = KernelKind::cpdi;
           return say("'cpdi', as solids creep with linear functions when their "

@@ -3,6 +3,7 @@
 #include <limber/base/text.h>
 #include <limber/problem/read_parts.h>
 #include <limber/simulation/passed_sides.h>
+#include <limber/transfer/point_sums.h>
 
 #include <algorithm>
 #include <limits>
@@ -31,6 +32,29 @@ namespace limber
       double neighbours = -std::numeric_limits<double>::max();
       double others     = -std::numeric_limits<double>::max();
     };
+
+    /** Whether any point is beyond a side that holds something, by more than
+     * chance: as good as never. Collective. */
+    template <int dim>
+    bool
+    any_beyond_held_side(const State<dim> &state, const PointView<dim> &points)
+    {
+      const GridDescription<dim> &box    = state.problem.grid;
+      const PositionBounds<dim>   bounds = bounds_of_positions(points);
+      bool                        found  = false;
+      for (int side = 0; side < 2 * dim; ++side)
+        {
+          const int    d      = side / 2;
+          const double beyond = side % 2 != 0 ? bounds.upper[d] - box.upper[d] :
+                                                box.lower[d] - bounds.lower[d];
+          found |= state.problem.sides[side].held != HeldComponents::none &&
+                   beyond > chance_overstep * box.edge(d);
+        }
+      return dealii::Utilities::MPI::max<unsigned int>(
+               found, state.grid.communicator) > 0;
+    }
+
+
 
     /** Largest over all points on all ranks, by sides; neighbours are those
      * that were next to the side at the start. */
@@ -74,7 +98,8 @@ namespace limber
   {
     for (const auto &body : state.bodies)
       {
-        if (body->description.frame != Frame::initial)
+        if (body->description.frame != Frame::initial ||
+            !any_beyond_held_side(state, body->points.view()))
           continue;
         const auto beyond = farthest(state, body->points.view());
         for (unsigned int side = 0; side < 2 * dim; ++side)

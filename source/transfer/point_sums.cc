@@ -2,6 +2,8 @@
 #include <limber/interpolation/batch_lanes.h>
 #include <limber/transfer/point_sums.h>
 
+#include <limits>
+
 namespace limber
 {
   template <int dim>
@@ -44,8 +46,42 @@ namespace limber
 
 
 
+  template <int dim>
+  PositionBounds<dim>
+  bounds_of_positions(const PointView<dim> &points)
+  {
+    using Number                   = PointPack<dim>;
+    constexpr double        beyond = std::numeric_limits<double>::max();
+    std::array<Number, dim> lower, upper;
+    lower.fill(broadcast<Number>(beyond));
+    upper.fill(broadcast<Number>(-beyond));
+    for_each_block(points.size, [&](const CellBatch &block) {
+      for_each_pack<dim>(block, [&](const auto &lanes) {
+        for (int d = 0; d < dim; ++d)
+          {
+            const Number x = lanes.load(points.position[d]);
+            lower[d]       = smaller(x, lower[d]);
+            upper[d]       = larger(x, upper[d]);
+          }
+      });
+    });
+    PositionBounds<dim> result;
+    for (int d = 0; d < dim; ++d)
+      {
+        result.lower[d] = minimum(lower[d]);
+        result.upper[d] = maximum(upper[d]);
+      }
+    return result;
+  }
+
+
+
   template MotionSums<2>
   sum_motion(const PointView<2> &);
   template MotionSums<3>
   sum_motion(const PointView<3> &);
+  template PositionBounds<2>
+  bounds_of_positions(const PointView<2> &);
+  template PositionBounds<3>
+  bounds_of_positions(const PointView<3> &);
 } // namespace limber

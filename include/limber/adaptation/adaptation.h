@@ -118,6 +118,11 @@ namespace limber
                          const std::vector<std::size_t> &which,
                          double                          time) const;
 
+    /** Whether any body is in the current frame, where its points move through
+     * cells. */
+    bool
+    points_cross_cells() const;
+
     /**
      * Whether points are split before they enter fine cells: if no refinement
      * moves, as moving ones have a margin instead.

@@ -291,7 +291,8 @@ namespace limber
                std::size_t                    p,
                const std::array<double, dim> &spacing) const;
     void
-    shift_point(std::size_t                   p,
+    shift_point(const PointView<dim>         &points,
+                std::size_t                   p,
                 const dealii::Tensor<1, dim> &way,
                 const dealii::Tensor<2, dim> &initial);
     std::vector<dealii::Tensor<2, dim>>

@@ -271,6 +271,13 @@ namespace limber
              depends_on_time;
     }
 
+    /** Whether it may ask for another mesh though no point has moved. */
+    bool
+    changes_mesh_at_rest() const
+    {
+      return depends_on_time || has_scale(criterion);
+    }
+
     /** Whether the criterion 'obstacle' looks at one of this name. */
     bool
     looks_at(const std::string &obstacle) const
@@ -303,7 +310,7 @@ namespace limber
     may_change_at_rest() const
     {
       for (const Refinement<dim> &refinement : refinements)
-        if (refinement.depends_on_time || has_scale(refinement.criterion))
+        if (refinement.changes_mesh_at_rest())
           return true;
       return false;
     }

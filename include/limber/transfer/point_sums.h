@@ -24,6 +24,17 @@ namespace limber
   template <int dim>
   MotionSums<dim>
   sum_motion(const PointView<dim> &points);
+
+  /** The box of all positions, m; without points from large to small. */
+  template <int dim>
+  struct PositionBounds
+  {
+    std::array<double, dim> lower, upper;
+  };
+
+  template <int dim>
+  PositionBounds<dim>
+  bounds_of_positions(const PointView<dim> &points);
 } // namespace limber
 
 #endif

@@ -963,6 +963,52 @@ TEST(Scenes, ABodyThatTurnsClearOfTheSidesTakesTheInitialFrame)
 
 
 
+// On cells of several sizes that stay as they are the initial frame is taken,
+// unless a free body would pass them.
+TEST(Scenes, TheInitialFrameOnCellsOfSeveralSizes)
+{
+  const auto read = [](const std::string       &name,
+                       std::vector<std::string> overrides) {
+    for (const std::string level :
+         {"Grid/Levels=1", "Grid/Refine=part", "Method/Kernel=auto"})
+      overrides.push_back(level);
+    return read_problem<2>(
+      SceneFile(prm_folder() + "verification/" + name, overrides));
+  };
+  const std::string held = "slow_cantilever.prm", disc = "spinning_disc.prm";
+  const std::string region = "Grid/Refine part/Where=0.2 - x";
+  const Problem<2>  beam   = read(held, {region});
+  EXPECT_EQ(beam.bodies[0].frame, Frame::initial);
+  EXPECT_EQ(beam.grid.kernel, KernelKind::linear);
+  for (const std::string changing : {"Grid/Refine part/Where=0.2 - x + t",
+                                     "Grid/Refine part/Criterion=stress"})
+    {
+      const std::string scale = changing.find("stress") == std::string::npos ?
+                                  region :
+                                  "Grid/Refine part/Scale=9";
+      const Problem<2>  other = read(held, {scale, changing});
+      EXPECT_EQ(other.bodies[0].frame, Frame::current) << changing;
+      EXPECT_EQ(other.grid.kernel, KernelKind::cpdi) << changing;
+      try
+        {
+          read(held, {scale, changing, "Body beam/Frame=initial"});
+          ADD_FAILURE() << changing;
+        }
+      catch (const InputError &error)
+        {
+          EXPECT_NE(
+            std::string(error.what()).find("'Grid/Refine part' changes"),
+            std::string::npos)
+            << error.what();
+        }
+    }
+  EXPECT_EQ(read(disc, {region}).bodies[0].frame, Frame::current);
+  EXPECT_EQ(read(disc, {"Grid/Refine part/Criterion=surface"}).bodies[0].frame,
+            Frame::initial);
+}
+
+
+
 TEST(Scenes, MetalsHaveSplinesAndWhatFlowsOnHasNot)
 {
   const auto read = [](const std::string              &name,

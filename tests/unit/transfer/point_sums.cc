@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace limber;
 using namespace limber::testing_support;
@@ -22,8 +23,11 @@ namespace
     for (auto &field : own.fields)
       for (double &value : field)
         value = random();
-    PointView<dim>  points = own.view();
-    MotionSums<dim> exact;
+    PointView<dim>      points = own.view();
+    MotionSums<dim>     exact;
+    PositionBounds<dim> box;
+    box.lower.fill(std::numeric_limits<double>::max());
+    box.upper.fill(-std::numeric_limits<double>::max());
     for (std::size_t p = 0; p < n; ++p)
       {
         double square = 0;
@@ -33,6 +37,8 @@ namespace
             square += v * v;
             exact.momentum[d] += points.mass[p] * v;
             exact.mass_moment[d] += points.mass[p] * points.position[d][p];
+            box.lower[d] = std::min(box.lower[d], points.position[d][p]);
+            box.upper[d] = std::max(box.upper[d], points.position[d][p]);
           }
         exact.mass += points.mass[p];
         exact.kinetic_energy += 0.5 * points.mass[p] * square;
@@ -50,6 +56,9 @@ namespace
         EXPECT_NEAR(found.momentum[d], exact.momentum[d], tolerance);
         EXPECT_NEAR(found.mass_moment[d], exact.mass_moment[d], tolerance);
       }
+    const PositionBounds<dim> bounds = bounds_of_positions(points);
+    EXPECT_EQ(bounds.lower, box.lower);
+    EXPECT_EQ(bounds.upper, box.upper);
   }
 } // namespace
 
