@@ -78,8 +78,8 @@ namespace limber
             return;
           }
         double number;
-        if (first && !has_header && !is_number(words[0], number) &&
-            words.size() == 2)
+        if (first && !has_header && words.size() == 2 &&
+            !is_number(words[0], number) && !is_number(words[1], number))
           {
             has_header = true;
             return;

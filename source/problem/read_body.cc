@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limber
 {
@@ -232,6 +233,37 @@ namespace limber
 
 
 
+    /** Cells across the box around a body, where it is thinnest. */
+    template <int dim>
+    double
+    cells_across(const Body<dim> &body, const GridDescription<dim> &grid)
+    {
+      const Corners<dim> box    = body.shape->bounding_box();
+      double             result = std::numeric_limits<double>::max();
+      for (unsigned int d = 0; d < dim; ++d)
+        result =
+          std::min(result, (box.second[d] - box.first[d]) / grid.edge(d));
+      return result;
+    }
+
+
+
+    /** The longest edge of a cell over the shortest. */
+    template <int dim>
+    double
+    aspect_ratio(const GridDescription<dim> &grid)
+    {
+      double shortest = grid.edge(0), longest = grid.edge(0);
+      for (unsigned int d = 1; d < dim; ++d)
+        {
+          shortest = std::min(shortest, grid.edge(d));
+          longest  = std::max(longest, grid.edge(d));
+        }
+      return longest / shortest;
+    }
+
+
+
     /** Locking treatment of the word 'auto'; says in the log what and why. */
     template <int dim>
     Treatment
@@ -242,6 +274,13 @@ namespace limber
       const bool   linear = problem.grid.kernel == KernelKind::linear;
       const Moduli moduli = moduli_of(body.law, body.material);
       const bool   soft   = moduli.bulk <= large_moduli_ratio * moduli.shear;
+      const bool   newton = is_solved_by_newton(problem.method.integration);
+      // The mean volume of a cell says nothing of the pressure of a bent one:
+      // bodies one square cell thick bend by two thirds too much, on cells four
+      // times as long by a fifth too little (doc/theory/initial_frame.md).
+      constexpr double fewest_cells = 2.9, largest_aspect_ratio = 1.25;
+      const bool bends = cells_across(body, problem.grid) < fewest_cells ||
+                         aspect_ratio(problem.grid) > largest_aspect_ratio;
       struct Choice
       {
         Treatment   kind;
@@ -251,7 +290,11 @@ namespace limber
         fluid ?
           Choice{Treatment::cell,
                  "'cell', as a liquid resists volume changes only."} :
-        !soft && linear && is_solved_by_newton(problem.method.integration) ?
+        !soft && linear && bends && !(newton && dim == 3) ?
+          Choice{Treatment::assumed_strain,
+                 "'assumed strain', as bodies of few or flat cells bend far "
+                 "too easily, or not enough, with 'cell'."} :
+        !soft && linear && newton ?
           Choice{Treatment::cell,
                  "'cell', which does not lock in volume, and whose pressures "
                  "are solved for as well where the system is large."} :
@@ -259,6 +302,11 @@ namespace limber
           Choice{Treatment::none,
                  "'none', as smooth functions do not lock at this "
                  "Poisson's ratio."} :
+        !soft && !linear && body.frame == Frame::initial &&
+            cells_across(body, problem.grid) < 1.5 ?
+          Choice{Treatment::none,
+                 "'none', as a body one cell thick bends far too easily with "
+                 "'cell'."} :
         !soft && body.frame == Frame::initial ?
           Choice{Treatment::cell,
                  "'cell', which does not lock in volume, and nothing "

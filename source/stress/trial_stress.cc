@@ -183,7 +183,8 @@ namespace limber
         if constexpr (has_bending_modes<Basis>)
           if (strain.assumes)
             {
-              trial.assumed.add_force(trial.piola(), response.force.data());
+              trial.assumed.add_force(trial.assumed_stress(),
+                                      response.force.data());
               return;
             }
         for (const Motion &motion : trial.motions)

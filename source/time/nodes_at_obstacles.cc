@@ -113,8 +113,7 @@ namespace limber
   // where it fills the nodal volume, as points inside a liquid are anywhere.
   template <int dim>
   void
-  ObstacleContact<dim>::add_nodes(const std::vector<Way> &ways,
-                                  const double            step)
+  ObstacleContact<dim>::add_nodes(const std::vector<Way> &ways)
   {
     for (unsigned int s = 0; s < sums.size(); ++s)
       {
@@ -134,8 +133,7 @@ namespace limber
                      field,
                      node,
                      records + std::size_t(node) * Sums::stride,
-                     ways[obstacle],
-                     step);
+                     ways[obstacle]);
       }
   }
 
@@ -147,8 +145,7 @@ namespace limber
                                  const unsigned int  field,
                                  const std::uint32_t node,
                                  const double *const touching,
-                                 const Way          &way,
-                                 const double        step)
+                                 const Way          &way)
   {
     const double mass    = parts.nodes.record(field, node)[Layout::mass];
     const double weight  = touching[Sums::weight];
@@ -177,7 +174,7 @@ namespace limber
                                      double(parts.nodes.owns(node));
     Vector       velocity;
     if (parts.problem.obstacles[obstacle].moves())
-      velocity = way.velocity(x, step);
+      velocity = way.velocity(x);
     const Vector beside =
       (vector_in<dim>(parts.nodes.record(field, node) + Layout::momentum) -
        vector_in<dim>(touching + Sums::momentum)) /
@@ -213,7 +210,7 @@ namespace limber
 
 
   template void
-  ObstacleContact<2>::add_nodes(const std::vector<Way> &, double);
+  ObstacleContact<2>::add_nodes(const std::vector<Way> &);
   template void
-  ObstacleContact<3>::add_nodes(const std::vector<Way> &, double);
+  ObstacleContact<3>::add_nodes(const std::vector<Way> &);
 } // namespace limber

@@ -171,8 +171,7 @@ namespace limber
     for (unsigned int o = 0; o < rigid.size(); ++o)
       {
         check_way(o, time, step);
-        ways.push_back({ObstaclePlace<dim>(rigid[o], time),
-                        ObstaclePlace<dim>(rigid[o], time + step)});
+        ways.emplace_back(rigid[o], time, step);
       }
     clear_sums();
     if (n_obstacles() == 0)
@@ -180,7 +179,7 @@ namespace limber
     else
       for (unsigned int b = 0; b < parts.bodies.size(); ++b)
         find_points(b, ways, step);
-    add_nodes(ways, step);
+    add_nodes(ways);
     if (!sides_that_meet.empty())
       for (unsigned int field = 0; field < parts.nodes.n_fields(); ++field)
         if (parts.problem.meets_sides(field))
@@ -381,7 +380,7 @@ namespace limber
     const Vector        &normal   = near.distance.normal;
     Vector               against, velocity;
     if (obstacle.moves())
-      against = way.velocity(near.x, step);
+      against = way.velocity(near.x);
     for (int d = 0; d < dim; ++d)
       velocity[d] = points.velocity[d][near.point];
     double       gap      = near.distance.value - near.reach;

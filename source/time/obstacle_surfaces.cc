@@ -57,7 +57,7 @@ namespace limber
                 place.mass = density * surface.area * parts.grid.smallest_edge;
                 if (parts.problem.obstacles[surface.obstacle].moves())
                   place.velocity =
-                    ways[surface.obstacle].velocity(surface.place, step);
+                    ways[surface.obstacle].velocity(surface.place);
                 for (unsigned int a = 0; a < 1u << dim; ++a)
                   if (surface.functions[a] > 0)
                     impulses.add_share(field,

@@ -27,8 +27,7 @@ namespace limber
   {
     std::vector<Way> ways;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
-      ways.push_back({ObstaclePlace<dim>(obstacle, time),
-                      ObstaclePlace<dim>(obstacle, time + step)});
+      ways.emplace_back(obstacle, time, step);
     unsigned long             n       = 0;
     double                    longest = 0;
     std::vector<unsigned int> near; // obstacles
@@ -47,8 +46,7 @@ namespace limber
             if (!is_beyond(2 * reach, o, ways[o].after, middle, batch.cell))
               near.push_back(o);
           for (std::size_t p = batch.begin; p < batch.end && !near.empty(); ++p)
-            if (const double way = put_out(points, p, ways, near, step);
-                way > 0)
+            if (const double way = put_out(points, p, ways, near); way > 0)
               {
                 ++n;
                 longest = std::max(longest, way);
@@ -110,8 +108,7 @@ namespace limber
   ObstacleContact<dim>::put_out(const PointView<dim>            &points,
                                 const std::size_t                p,
                                 const std::vector<Way>          &ways,
-                                const std::vector<unsigned int> &near,
-                                const double                     step)
+                                const std::vector<unsigned int> &near)
   {
     dealii::Point<dim> start;
     for (int d = 0; d < dim; ++d)
@@ -140,9 +137,7 @@ namespace limber
       {
         Vector of_wall;
         if (parts.problem.obstacles[wall.obstacle].moves())
-          of_wall = (x - ways[wall.obstacle].before.place_of(
-                           ways[wall.obstacle].after.start_of(x))) /
-                    step;
+          of_wall = ways[wall.obstacle].velocity(x);
         const double inward =
           (of_wall - velocity - change) * wall.normal; // m/s
         if (!(inward > 0))

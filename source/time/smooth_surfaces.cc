@@ -159,11 +159,10 @@ namespace limber
 
     Ways ways;
     for (const Obstacle<dim> &obstacle : parts.problem.obstacles)
-      ways.emplace_back(ObstaclePlace<dim>(obstacle, time),
-                        ObstaclePlace<dim>(obstacle, time + step));
+      ways.emplace_back(obstacle, time, step);
     for (unsigned int pass = 0; pass < n_passes; ++pass)
       {
-        damp_once(ways, step, share);
+        damp_once(ways, share);
         exchange.start(nodes.node_plan(), records.data(), of_pass, weight);
         exchange.finish(records.data());
         for (const std::uint32_t node : nodes.active_nodes())
@@ -183,15 +182,13 @@ namespace limber
   // nodes: it is linear in the place, as the shape functions are.
   template <int dim>
   void
-  SmoothSurfaces<dim>::damp_once(const Ways  &ways,
-                                 const double step,
-                                 const double share)
+  SmoothSurfaces<dim>::damp_once(const Ways &ways, const double share)
   {
     const NodalFields<dim> &nodes = parts.nodes;
     double                  given = 0; // by obstacles that move, J
     for (const Moment &moment : moments)
       {
-        const auto &[before, after]      = ways[moment.obstacle];
+        const ObstacleMotion<dim>  &way  = ways[moment.obstacle];
         const CellGeometry<dim>    &cell = parts.grid.geometry[moment.cell];
         std::array<Vector, n_nodes> of_wall, arms;
         double                      sum = 0, scale = 0;
@@ -205,9 +202,9 @@ namespace limber
             dealii::Point<dim>  x;
             for (unsigned int d = 0; d < dim; ++d)
               x[d] = cell.origin[d] + (a >> d & 1) / cell.inverse_edge[d];
-            arms[a] = x - before.centre();
+            arms[a] = x - way.before.centre();
             if (parts.problem.obstacles[moment.obstacle].moves())
-              of_wall[a] = (after.place_of(before.start_of(x)) - x) / step;
+              of_wall[a] = way.velocity(x);
             if (!(norm > 0))
               continue;
             all_have_mass = mass > 0;

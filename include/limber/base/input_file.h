@@ -37,13 +37,18 @@ namespace limber
 
 
 
-  /** Goes through a text line by line, without their ends, and counts them. */
+  /** Goes through a text line by line, without their ends, and counts them. A
+   * byte order mark of UTF-8, as spreadsheets write it, is no text. */
   class TextLines
   {
   public:
     explicit TextLines(const std::string_view text)
       : rest(text)
-    {}
+    {
+      constexpr std::string_view mark = "\xef\xbb\xbf";
+      if (rest.substr(0, mark.size()) == mark)
+        rest.remove_prefix(mark.size());
+    }
 
     /** Whether there is a next line; it is in @p line then. */
     bool

@@ -19,17 +19,27 @@
  * bending has no (parasitic) shear, and its transverse strain is given by
  * (e1, e2); the corotational frame R makes this objective for any rotation.
  *
- * A is its own transpose with masses as weights. Hence the energy sum V W(F_a)
- * has the derivative
+ * The determinant of F_a varies in a bent cell by the product of curvature and
+ * stretch, which locks if K is large. So the law gets the volume ratio
  *
- *   sum V R A(P^) : dF  -  sum V A(P^) (R^T F)^T : R^T dR,
- *   P^ = R^T P(F_a),  R^T dR = spin with axis 2 (tr(U) 1 - U)^-1 axis(R^T
- * d<F>),
+ *   J_a = det U (1 + tr X),   X = A(G) - U,
  *
- * which gives the nodal forces. Without the second term, which is quadratic in
- * the strain, a body at rest would not conserve its angular momentum. With laws
- * for small strain R = 1: it is the operator of strain_operator.h except for
- * the part of a bending cell normal to its plane in 3d.
+ * that of the mean and the trace of the bending strains, which (e1, e2) make
+ * small.
+ *
+ * A is its own transpose with masses as weights. Hence the energy sum V W(F_a,
+ * J_a) has the derivative
+ *
+ *   sum V A(P^) : (g - S G)  +  M : (<g> - S U),   g = R^T dF,
+ *   P^ = R^T dW/dF_a + dW/dJ_a det U 1,
+ *   M  = sum V dW/dJ_a ((1 + tr X) cof U - det U 1),
+ *   S  = R^T dR, the spin with axis 2 (tr(U) 1 - U)^-1 axis(<g>),
+ *
+ * which gives the nodal forces. Without the terms with S, which are quadratic
+ * in the strain, a body at rest would not conserve its angular momentum. With
+ * laws for small strain R = 1 and J_a = 1 + tr(F_a - 1): it is the operator of
+ * strain_operator.h except for the part of a bending cell normal to its plane
+ * in 3d.
  */
 namespace limber
 {
@@ -92,6 +102,13 @@ namespace limber
       if constexpr (finite_strain)
         rotation = rotation_of<dim>(mean);
       stretch = turned_back(mean);
+      if constexpr (finite_strain)
+        {
+          volume           = determinant<dim>(stretch);
+          trace_of_stretch = 0;
+          for (int d = 0; d < dim; ++d)
+            trace_of_stretch += stretch[d][d];
+        }
       if constexpr (dim == 3)
         for (int f = 0; f < dim; ++f)
           {
@@ -140,11 +157,25 @@ namespace limber
         return G;
     }
 
-    /** F_a from F, at natural coordinates xi. */
+    /** A(R^T F) from F, at natural coordinates xi; F_a is R times this. */
     __attribute__((always_inline)) Matrix
     evaluate(const Matrix &F, const std::array<Number, dim> &xi) const
     {
-      return turned(assume(turned_back(F), stretch, torsion, xi));
+      return assume(turned_back(F), stretch, torsion, xi);
+    }
+
+    /** J_a of what evaluate() returns. */
+    __attribute__((always_inline)) Number
+    volume_ratio(const Matrix &assumed) const
+    {
+      Number result = assumed[0][0];
+#pragma GCC unroll 8
+      for (int d = 1; d < dim; ++d)
+        result += assumed[d][d];
+      if constexpr (finite_strain)
+        return volume * (result + (1. - trace_of_stretch));
+      else
+        return result - (dim - 1.);
     }
 
     /** A G, with known mean and torsion of G. */
@@ -176,10 +207,12 @@ namespace limber
       return result;
     }
 
-    const double            own, mate; // e1, e2
-    std::array<double, dim> centroid;  // of the points
-    Mean                    rotation;  // R, at finite strain
-    Mean                    stretch;   // U = R^T <F>
+    const double            own, mate;        // e1, e2
+    std::array<double, dim> centroid;         // of the points
+    Mean                    rotation;         // R, at finite strain
+    Mean                    stretch;          // U = R^T <F>
+    double                  volume;           // det U, at finite strain
+    double                  trace_of_stretch; // tr U, at finite strain
     // In 3d: slope of (R^T F)_de along the third coordinate
     Mean                    torsion;
     std::array<double, dim> inverse_variance; // of the coordinates, 3d
@@ -242,6 +275,19 @@ namespace limber
     {
       set_zero(sums);
       set_zero(torque);
+      set_zero(volumetric);
+    }
+
+    /**
+     * First pass at finite strain: dW/dJ_a (Pa), J_a and volume (zero in idle
+     * lanes).
+     */
+    __attribute__((always_inline)) void
+    add_to_mean_volume(const Number &stress, const Number &J, const Number &V)
+    {
+      const Number weight = V * stress;
+      volumetric[0] += weight;
+      volumetric[1] += weight * J;
     }
 
     /** First pass over all points: P^ and volume (zero in idle lanes). */
@@ -319,23 +365,40 @@ namespace limber
     forces()
     {
       if constexpr (finite_strain)
-        return stress.forces(turn_of_frame(), monomials.total());
+        return stress.forces(stress_of_mean(), monomials.total());
       else
         return stress.forces();
     }
 
   private:
     /**
-     * Contribution of the rotation of the frame to the mean stress conjugate to
-     * d<F>, Pa: -R S / sum(V) with S the spin with axial vector H^-1 torque, H
-     * = tr(U) 1 - U (in 2d tr(U)).
+     * The part of the stress that is conjugate to d<F>, Pa: R (M - S) / sum(V),
+     * that of the mean volume and that of the rotation of the frame, with S the
+     * spin with axial vector H^-1 torque, H = tr(U) 1 - U (in 2d tr(U)).
      */
     Mean
-    turn_of_frame() const
+    stress_of_mean() const
     {
-      const Mean &U     = assumed.stretch;
-      const auto  total = all_sums(torque);
-      Mean        S;
+      const Mean &U              = assumed.stretch;
+      auto        total          = all_sums(torque);
+      const auto  sums_of_volume = all_sums(volumetric);
+      Mean        M              = cofactor<dim>(U);
+      for (int d = 0; d < dim; ++d)
+        {
+          for (int e = 0; e < dim; ++e)
+            M[d][e] *= sums_of_volume[1] / assumed.volume;
+          M[d][d] -= sums_of_volume[0] * assumed.volume;
+        }
+      for (int c = 0; c < dim; ++c)
+        if constexpr (dim == 2)
+          total[0] += M[1][c] * U[0][c] - M[0][c] * U[1][c];
+        else
+          for (int d = 0; d < dim; ++d)
+            {
+              const int e = (d + 1) % 3, f = (d + 2) % 3;
+              total[d] += M[f][c] * U[e][c] - M[e][c] * U[f][c];
+            }
+      Mean S;
       if constexpr (dim == 2)
         {
           const double w = total[0] / (U[0][0] + U[1][1]);
@@ -355,11 +418,10 @@ namespace limber
               w[d] += cof[e][d] * one * total[e];
           S = {{{{0, -w[2], w[1]}}, {{w[2], 0, -w[0]}}, {{-w[1], w[0], 0}}}};
         }
-      auto result = times<dim>(assumed.rotation, S);
-      for (auto &row : result)
-        for (double &entry : row)
-          entry *= -inverse_volume;
-      return result;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          S[d][e] = (M[d][e] - S[d][e]) * inverse_volume;
+      return times<dim>(assumed.rotation, S);
     }
 
     const Assumption &assumed;
@@ -375,8 +437,9 @@ namespace limber
     double                                inverse_volume = 0;
     Mean                                  mean, torsion;
     std::array<Number, dim == 2 ? 1 : 3>  torque;
-    StressOnNodes<dim>                    stress;
-    MonomialSums<dim>                     monomials;
+    std::array<Number, 2> volumetric; // sums of V dW/dJ_a, and times J_a
+    StressOnNodes<dim>    stress;
+    MonomialSums<dim>     monomials;
   };
 } // namespace limber
 

@@ -80,6 +80,37 @@ namespace limber
     dealii::Tensor<2, dim> rotation; // Q
     bool                   finite = true;
   };
+
+
+
+  /** The motion of an obstacle in a step. */
+  template <int dim>
+  struct ObstacleMotion
+  {
+    ObstacleMotion(const Obstacle<dim> &obstacle,
+                   const double         time,
+                   const double         step)
+      : before(obstacle, time)
+      , middle(obstacle, time + 0.5 * step)
+      , after(obstacle, time + step)
+      , step(step)
+    {}
+
+    /**
+     * Velocity at a place, m/s: the mean one over the step of what of the
+     * obstacle is there in the middle of the step. The chord from there at the
+     * beginning would point out of what turns: a smooth disc would stir water.
+     */
+    dealii::Tensor<1, dim>
+    velocity(const dealii::Point<dim> &x) const
+    {
+      const dealii::Point<dim> start = middle.start_of(x);
+      return (after.place_of(start) - before.place_of(start)) / step;
+    }
+
+    ObstaclePlace<dim> before, middle, after;
+    double             step; // s
+  };
 } // namespace limber
 
 #endif

@@ -18,11 +18,11 @@ namespace limber
    *   delta (A G) = A(g) + S A(G) - A(S G),   g = R^T delta F,
    *
    * where S = R^T delta R is the spin with the axial vector H^-1 axis(<g>),
-   * H = tr(U) 1 - U. With P^ = R^T P(F_a), Q = A P^ and the torque t_a = sum V
-   * Q : S_a G about each axis a, the force is sum V Q : g minus the axial
-   * vector of the spin times t, since P^ : S A(G) = 0 by symmetry of the
-   * stress. The second derivative of F_a, including products of spins, is in
-   * 'add_turning'.
+   * H = tr(U) 1 - U. With P^, Q = A P^, M of assumed_deformation.h and the
+   * torque t_a = sum V Q : S_a G + M : S_a U about each axis a, the force is
+   * sum V Q : g + M : <g> minus the axial vector of the spin times t, since
+   * dW/dF_a : R S A(G) = 0 by symmetry of the stress. The second derivatives
+   * of F_a and J_a are in 'add_turning' and 'add_volume'.
    *
    * Degrees of freedom node by node, as in CellResponse.
    */
@@ -50,6 +50,23 @@ namespace limber
 
     std::vector<Point> points;
 
+    /** Stress of a point: dW/dF_a with the volume ratio J_a fixed, and at
+     * finite strain dW/dJ_a, Pa; for small strain the former is all. */
+    struct Stress
+    {
+      Matrix of_deformation;
+      double of_volume = 0;
+    };
+
+    /** What it takes of the volume ratio at finite strain, Pa: derivatives of
+     * dW/dJ_a by J_a and by displacement gradients in the present configuration
+     * of the point, and of the Kirchhoff stress by J_a. */
+    struct VolumeRates
+    {
+      double curvature = 0;
+      Matrix by_strain{}, of_stress{};
+    };
+
     /**
      * After all points were set; false if the mean F of the cell is inverted.
      */
@@ -74,12 +91,20 @@ namespace limber
     Matrix
     deformation(const std::size_t p) const
     {
-      return operation->evaluate(points[p].F, points[p].xi);
+      return operation->turned(operation->evaluate(points[p].F, points[p].xi));
     }
 
-    /** Add the nodal force (N) of the stress P = dW/dF_a of the points (Pa). */
+    /** J_a */
+    double
+    volume_ratio(const std::size_t p) const
+    {
+      return operation->volume_ratio(
+        operation->evaluate(points[p].F, points[p].xi));
+    }
+
+    /** Add the nodal force (N) of the stress of the points. */
     void
-    add_force(const std::vector<Matrix> &stress, double *const force)
+    add_force(const std::vector<Stress> &stress, double *const force)
     {
       meet(stress);
       Gradients mean_gradient{};
@@ -99,11 +124,15 @@ namespace limber
         }
       if constexpr (finite_strain)
         {
-          const Matrix puller = operation->turned(pull_of_spins());
+          Matrix of_mean = pull_of_spins();
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              of_mean[d][e] = stress_of_mean[d][e] - of_mean[d][e];
+          of_mean = operation->turned(of_mean);
           for (int i = 0; i < n_nodes; ++i)
             for (int d = 0; d < dim; ++d)
               for (int e = 0; e < dim; ++e)
-                force[i * dim + d] -= puller[d][e] * mean_gradient[i][e];
+                force[i * dim + d] += of_mean[d][e] * mean_gradient[i][e];
         }
     }
 
@@ -111,20 +140,24 @@ namespace limber
      * Add the tangent with respect to nodal displacements, n_dofs rows. @p
      * moduli (p, d, e, f, g) is the derivative of the Kirchhoff stress (d, e),
      * work conjugate to gradients, by the displacement gradient (f, g) in the
-     * present configuration of the point.
+     * present configuration of the point, at finite strain with J_a fixed.
      */
     template <class Moduli>
     void
-    add_tangent(const std::vector<Matrix> &stress,
-                const Moduli              &moduli,
-                double *const              tangent)
+    add_tangent(const std::vector<Stress>      &stress,
+                const Moduli                   &moduli,
+                const std::vector<VolumeRates> &rates,
+                double *const                   tangent)
     {
       meet(stress);
       vary();
       for (std::size_t p = 0; p < points.size(); ++p)
-        add_material(p, moduli, tangent);
+        add_material(p, moduli, rates[p], tangent);
       if constexpr (finite_strain)
-        add_turning(tangent);
+        {
+          add_turning(tangent);
+          add_volume(stress, tangent);
+        }
     }
 
   private:
@@ -229,29 +262,55 @@ namespace limber
       return result;
     }
 
-    /** Rotated stress P^, Q = A P^, and H^-1 times the torque. */
+    /** Rotated stress P^, Q = A P^, M, and H^-1 times the torque. */
     void
-    meet(const std::vector<Matrix> &stress)
+    meet(const std::vector<Stress> &stress)
     {
       turned.resize(points.size());
       back.resize(points.size());
+      of_volume = {};
       for (std::size_t p = 0; p < points.size(); ++p)
-        turned[p] = operation->turned_back(stress[p]);
+        {
+          turned[p] = operation->turned_back(stress[p].of_deformation);
+          back[p]   = turned[p];
+          if constexpr (finite_strain)
+            {
+              const double share = points[p].volume * stress[p].of_volume;
+              of_volume[0] += share;
+              of_volume[1] += share * volume_ratio(p) / operation->volume;
+              for (int d = 0; d < dim; ++d)
+                back[p][d][d] += stress[p].of_volume * operation->volume;
+            }
+        }
+      if constexpr (finite_strain)
+        {
+          stress_of_mean = cofactor<dim>(operation->stretch);
+          for (int d = 0; d < dim; ++d)
+            {
+              for (int e = 0; e < dim; ++e)
+                stress_of_mean[d][e] *= of_volume[1];
+              stress_of_mean[d][d] -= of_volume[0] * operation->volume;
+            }
+        }
       const Means means =
-        means_of([&](const std::size_t p) { return turned[p]; });
+        means_of([&](const std::size_t p) { return back[p]; });
       for (std::size_t p = 0; p < points.size(); ++p)
-        back[p] = assume(turned[p], means, p);
+        back[p] = assume(back[p], means, p);
       if constexpr (finite_strain)
         {
           invert_inertia();
           Axis torque{};
-          for (std::size_t p = 0; p < points.size(); ++p)
-            for (int a = 0; a < n_spins; ++a)
-              torque[a] +=
-                points[p].volume *
-                contract(back[p],
-                         times<dim>(spin(a),
-                                    operation->turned_back(points[p].F)));
+          for (int a = 0; a < n_spins; ++a)
+            {
+              torque[a] = contract(stress_of_mean,
+                                   times<dim>(spin(a), operation->stretch));
+              for (std::size_t p = 0; p < points.size(); ++p)
+                torque[a] +=
+                  points[p].volume *
+                  contract(back[p],
+                           times<dim>(spin(a),
+                                      operation->turned_back(points[p].F)));
+            }
           pull = divided(torque);
         }
     }
@@ -308,6 +367,7 @@ namespace limber
 
       varied.resize(n_dofs * points.size());
       own.resize(n_dofs * points.size());
+      traces.resize(n_dofs * points.size());
       // unit displacements along each direction: R^T dF is a product of this
       // row of R and the gradient of the node, and so are its means
       std::array<Means, n_nodes> of_nodes{};
@@ -334,15 +394,22 @@ namespace limber
               Axis axis;
               for (int a = 0; a < n_spins; ++a)
                 axis[a] = contract(spin(a), mean[k]);
-              axes[k] = divided(axis);
+              axes[k]        = divided(axis);
+              mean_change[k] = change_of_stretch(k);
+              change_of_volume[k] =
+                contract(cofactor<dim>(operation->stretch), mean_change[k]);
             }
           for (std::size_t p = 0; p < points.size(); ++p)
             {
               Matrix &total              = varied[k * points.size() + p];
               total                      = assume(turned_back(p, k), means, p);
               own[k * points.size() + p] = total;
+              double &change_of_trace    = traces[k * points.size() + p];
+              change_of_trace            = trace(total);
               for (int a = 0; a < n_spins; ++a)
                 {
+                  change_of_trace -=
+                    axes[k][a] * trace(turning[a * points.size() + p]);
                   const Matrix &change = changes[a * points.size() + p];
                   for (int d = 0; d < dim; ++d)
                     for (int e = 0; e < dim; ++e)
@@ -364,11 +431,13 @@ namespace limber
       return result;
     }
 
+    // Second derivative of the energy by F_a and J_a
     template <class Moduli>
     void
-    add_material(const std::size_t p,
-                 const Moduli     &moduli,
-                 double *const     tangent) const
+    add_material(const std::size_t  p,
+                 const Moduli      &moduli,
+                 const VolumeRates &rates,
+                 double *const      tangent) const
     {
       // the variation of F_a as a gradient in the present configuration
       std::array<Matrix, n_dofs> gradient;
@@ -390,12 +459,83 @@ namespace limber
             tangent[k * n_dofs + l] +=
               points[p].volume * contract(row, gradient[l]);
         }
+      if constexpr (finite_strain)
+        {
+          const double ratio = volume_ratio(p) / operation->volume;
+          std::array<double, n_dofs> change, stress, slope;
+          for (int k = 0; k < n_dofs; ++k)
+            {
+              change[k] = operation->volume * (traces[k * points.size() + p] -
+                                               trace(mean_change[k])) +
+                          ratio * change_of_volume[k];
+              stress[k] = contract(rates.of_stress, gradient[k]);
+              slope[k]  = contract(rates.by_strain, gradient[k]) +
+                         rates.curvature * change[k];
+            }
+          for (int k = 0; k < n_dofs; ++k)
+            for (int l = 0; l < n_dofs; ++l)
+              tangent[k * n_dofs + l] +=
+                points[p].volume *
+                (change[k] * slope[l] + stress[k] * change[l]);
+        }
+    }
+
+    // The stress of the volume ratio times the second derivative of J_a, but
+    // for that of A G and U, which is in add_turning(). With u = delta U, c =
+    // cof U : u and b = delta(A G), by primes with l, it is
+    //   c' tr(b) + c tr(b') - c tr(u') - c' tr(u)
+    //   + (1 + tr X) (d cof U / dU : u') : u.
+    void
+    add_volume(const std::vector<Stress> &stress, double *const tangent) const
+    {
+      std::array<double, n_dofs> sums{};
+      for (int k = 0; k < n_dofs; ++k)
+        for (std::size_t p = 0; p < points.size(); ++p)
+          sums[k] += points[p].volume * stress[p].of_volume *
+                     (traces[k * points.size() + p] - trace(mean_change[k]));
+      for (int l = 0; l < n_dofs; ++l)
+        {
+          const Matrix area =
+            change_of_cofactor(operation->stretch, mean_change[l]);
+          for (int k = 0; k < n_dofs; ++k)
+            tangent[k * n_dofs + l] +=
+              change_of_volume[l] * sums[k] + change_of_volume[k] * sums[l] +
+              of_volume[1] * contract(area, mean_change[k]);
+        }
+    }
+
+    static double
+    trace(const Matrix &a)
+    {
+      double result = 0;
+      for (int d = 0; d < dim; ++d)
+        result += a[d][d];
+      return result;
+    }
+
+    /** The change of cof(a) with b, linear in b. */
+    static Matrix
+    change_of_cofactor(const Matrix &a, const Matrix &b)
+    {
+      Matrix result = cofactor<dim>(b);
+      if constexpr (dim == 3)
+        {
+          Matrix both = a;
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              both[d][e] += b[d][e];
+          const Matrix of_both = cofactor<dim>(both), of_a = cofactor<dim>(a);
+          for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e)
+              result[d][e] = of_both[d][e] - of_a[d][e] - result[d][e];
+        }
+      return result;
     }
 
     // Geometric stiffness, the stress times the second derivative of F_a: with
     // spins S and T by k and l, primes for what belongs to l,
-    //   P^ : [T delta(A G) + S (A(g') - A(T G))]
-    //   - Q : [T g + S (g' - T G)] - dS' t,
+    //   R^T dW/dF_a : [T delta(A G) + S (A(g') - A(T G))]
+    //   - Q : [T g + S (g' - T G)] - M : [T <g> + S (<g'> - T U)] - dS' t,
     // where the axial vector of the spin changes by
     //   H dw' = axis(-T <g>) - dH' w,   dH' = tr(dU') 1 - dU',
     //   dU' = <g'> - T U.
@@ -432,6 +572,16 @@ namespace limber
               }
           }
 
+      for (int b = 0; b < n_spins; ++b)
+        {
+          const Matrix given = transpose_times<dim>(spin(b), stress_of_mean);
+          for (int k = 0; k < n_dofs; ++k)
+            by_spin[k][b] -= contract(given, mean[k]);
+          for (int a = 0; a < n_spins; ++a)
+            by_spins[b][a] +=
+              contract(given, times<dim>(spin(a), operation->stretch));
+        }
+
       const Matrix             puller = pull_of_spins();
       std::array<Axis, n_dofs> by_axis{};
       for (int k = 0; k < n_dofs; ++k)
@@ -456,25 +606,31 @@ namespace limber
         }
     }
 
-    /** H^-1 t times the derivative of H by degree of freedom l. */
-    Axis
-    change_of_inertia(const int l) const
+    /** delta U = <g> - S U by degree of freedom k. */
+    Matrix
+    change_of_stretch(const int k) const
     {
-      Matrix stretch = mean[l];
+      Matrix result = mean[k];
       for (int a = 0; a < n_spins; ++a)
         {
           const Matrix turned = times<dim>(spin(a), operation->stretch);
           for (int d = 0; d < dim; ++d)
             for (int e = 0; e < dim; ++e)
-              stretch[d][e] -= axes[l][a] * turned[d][e];
+              result[d][e] -= axes[k][a] * turned[d][e];
         }
-      double trace = 0;
-      for (int d = 0; d < dim; ++d)
-        trace += stretch[d][d];
-      Axis result;
+      return result;
+    }
+
+    /** H^-1 t times the derivative of H by degree of freedom l. */
+    Axis
+    change_of_inertia(const int l) const
+    {
+      const Matrix &stretch         = mean_change[l];
+      const double  trace_of_change = trace(stretch);
+      Axis          result;
       for (int a = 0; a < n_spins; ++a)
         {
-          result[a] = trace * pull[a];
+          result[a] = trace_of_change * pull[a];
           if constexpr (dim == 3)
             for (int b = 0; b < n_spins; ++b)
               result[a] -= stretch[a][b] * pull[b];
@@ -484,14 +640,21 @@ namespace limber
 
     std::optional<AssumedDeformation<dim, finite_strain, double>> operation;
     double                                                        volume = 0;
-    std::vector<Matrix>    turned, back; // P^ and Q of the points
-    SmallMatrix<3, double> inverse{};    // of H
-    Axis                   pull{};       // H^-1 t
+    std::vector<Matrix> turned, back;     // R^T dW/dF_a and Q of the points
+    Matrix              stress_of_mean{}; // M, J
+    // Sums of V dW/dJ_a, and times 1 + tr X, J
+    std::array<double, 2>  of_volume{};
+    SmallMatrix<3, double> inverse{}; // of H
+    Axis                   pull{};    // H^-1 t
     // By degree of freedom: mean of g, axial vector of the spin; for each point
     // A(g) and the variation of A G
     std::array<Matrix, n_dofs> mean;
     std::array<Axis, n_dofs>   axes{};
     std::vector<Matrix>        own, varied;
+    std::vector<double>        traces; // of the variation of A G alone
+    // Of U, and of det U
+    std::array<Matrix, n_dofs> mean_change;
+    std::array<double, n_dofs> change_of_volume{};
     std::vector<Matrix>        turning; // A(S_a G)
     std::vector<Matrix>        changes; // S_a A(G) - A(S_a G)
   };

@@ -51,12 +51,12 @@ namespace limber
       return slope * (finite ? growth : 1.);
     }
 
-    /** First Piola-Kirchhoff stress, Pa. */
+    /** First Piola-Kirchhoff stress of the deviator and this Kirchhoff mean
+     * stress, Pa. */
     SquareMatrix<dim>
-    piola() const
+    piola(const double mean) const
     {
       SquareMatrix<dim> result = stress;
-      const double      mean   = mean_stress();
       for (int d = 0; d < dim; ++d)
         result[d][d] += mean;
       if constexpr (finite)
@@ -96,15 +96,26 @@ namespace limber
     double  volume = 0;               // of all at the start, m^dim
     double  slope = 0, curvature = 0; // derivatives of energy by mean growth, J
 
-    /** First Piola-Kirchhoff stress of all points, Pa. */
-    std::vector<SquareMatrix<dim>>
-    piola() const
+    /** Stress of all points with assumed strain. */
+    auto
+    assumed_stress() const
     {
-      std::vector<SquareMatrix<dim>> result;
+      std::vector<typename Assumed::Stress> result;
       result.reserve(motions.size());
-      for (const auto &motion : motions)
-        result.push_back(motion.piola());
+      for (std::size_t k = 0; k < motions.size(); ++k)
+        if constexpr (Law::finite_strain)
+          result.push_back(
+            {motions[k].piola(0), motions[k].slope * growth_per_volume(k)});
+        else
+          result.push_back({motions[k].piola(motions[k].mean_stress()), 0});
       return result;
+    }
+
+    /** Derivative of the growth of a point by its assumed volume ratio. */
+    double
+    growth_per_volume(const std::size_t k) const
+    {
+      return motions[k].growth / assumed.volume_ratio(k);
     }
   };
 } // namespace limber

@@ -388,14 +388,16 @@ namespace limber
       find_stress()
       {
         std::size_t n = 0;
-        points.for_each_pack([&](const auto &lanes)
-                               __attribute__((always_inline)) {
-                                 KeptPack &pack = n < n_kept ? kept[n] : other;
-                                 ++n;
-                                 stress_of(lanes, pack, false);
-                                 if constexpr (give_force)
-                                   stress.add_to_means(pack.P, pack.xi, pack.V);
-                               });
+        points.for_each_pack([&](
+          const auto &lanes) __attribute__((always_inline)) {
+          KeptPack &pack = n < n_kept ? kept[n] : other;
+          ++n;
+          stress_of(lanes, pack, false);
+          if constexpr (give_force && finite)
+            stress.add_to_mean_volume(pack.of_volume, pack.J, pack.V);
+          if constexpr (give_force)
+            stress.add_to_means(pack.P, pack.xi, pack.V);
+        });
         if constexpr (give_force)
           stress.finish_means();
       }
@@ -430,7 +432,7 @@ namespace limber
       {
         Matrix F, P;
         Places xi;
-        Number V;
+        Number V, J, of_volume; // m^dim; J_a; dW/dJ_a, Pa
       };
 
       template <class Lanes>
@@ -441,24 +443,34 @@ namespace limber
       {
         pack.xi             = lanes.natural(points.points, points.cell);
         pack.F              = deformation_gradient<dim>(points.points, lanes);
-        const Matrix F      = assumed.evaluate(pack.F, pack.xi);
-        const Number J      = volume_ratio_of(F);
+        const Matrix strain = assumed.evaluate(pack.F, pack.xi);
+        const Matrix F      = assumed.turned(strain);
+        const Number J      = assumed.volume_ratio(strain);
         Matrix       before = F;
+        Number       growth = J;
         if constexpr (flows)
-          before =
-            assumed_before.evaluate(points.deformation_before(pack.F, pack.xi),
-                                    pack.xi);
+          {
+            before = assumed_before.evaluate(points.deformation_before(pack.F,
+                                                                       pack.xi),
+                                             pack.xi);
+            growth /= assumed_before.volume_ratio(before);
+            before = assumed_before.turned(before);
+          }
         const auto state = flows && again ?
                              points.owner.stored_state(points.points, lanes) :
-                             points.stress_at({F, before},
-                                              J,
-                                              points.growth_of(J, before),
-                                              lanes);
+                             points.stress_at({F, before}, J, growth, lanes);
         if constexpr (give_force)
           {
             pack.P = assumed.turned_back(piola_kirchhoff_stress<dim, finite>(
-              state.deviator, state.pressure, F, J));
+              state.deviator, finite ? Number{} : state.pressure, F, J));
             pack.V = points.volume_of(lanes);
+            if constexpr (finite)
+              {
+                pack.J         = J;
+                pack.of_volume = -state.pressure / J;
+                for (int d = 0; d < dim; ++d)
+                  pack.P[d][d] += pack.of_volume * assumed.volume;
+              }
           }
       }
 

@@ -173,6 +173,11 @@ namespace limber
           if (!set_further(follows_steps() ? before.deformation(k) : Matrix(),
                            motion))
             return false;
+          motion.growth = assumed.volume_ratio(k);
+          if (finite && !(motion.growth > 0))
+            return false;
+          if (follows_steps())
+            motion.growth /= before.volume_ratio(k);
         }
       return true;
     }

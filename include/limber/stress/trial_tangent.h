@@ -51,15 +51,33 @@ namespace limber
     void
     add_assumed(Trial &trial, CellResponse &response) const
     {
-      std::vector<Moduli> moduli;
-      moduli.reserve(trial.motions.size());
-      for (const Motion &motion : trial.motions)
-        moduli.push_back(moduli_of(motion, rates_of(motion)));
+      std::vector<Moduli>                               moduli;
+      std::vector<typename Trial::Assumed::VolumeRates> volume_rates;
+      for (std::size_t p = 0; p < trial.motions.size(); ++p)
+        {
+          const Rates rates = rates_of(trial.motions[p]);
+          moduli.push_back(finite ? moduli_at_volume(trial.motions[p], rates) :
+                                    moduli_of(trial.motions[p], rates));
+          auto &of_volume = volume_rates.emplace_back();
+          if constexpr (finite)
+            {
+              const double c      = trial.growth_per_volume(p);
+              of_volume.curvature = c * c * rates.curvature;
+              if constexpr (flows)
+                for (int d = 0; d < dim; ++d)
+                  for (int e = 0; e < dim; ++e)
+                    {
+                      of_volume.by_strain[d][e] = c * rates.slope[d][e];
+                      of_volume.of_stress[d][e] = c * rates.by_growth[d][e];
+                    }
+            }
+        }
       trial.assumed.add_tangent(
-        trial.piola(),
+        trial.assumed_stress(),
         [&](const std::size_t p, int d, int e, int f, int g) {
           return moduli[p][d * dim + e][f * dim + g];
         },
+        volume_rates,
         response.tangent.data());
     }
 
@@ -130,11 +148,23 @@ namespace limber
         }
     }
 
+    /** The derivative of the deviator alone, with the volume ratio fixed. */
+    Moduli
+    moduli_at_volume(const Motion &motion, const Rates &rates) const
+    {
+      Moduli      a = rates.deviator;
+      const auto &s = motion.stress;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e)
+          for (int k = 0; k < dim; ++k)
+            a[k * dim + d][k * dim + e] += s[d][e];
+      return a;
+    }
+
     Moduli
     moduli_of(const Motion &motion, const Rates &rates) const
     {
-      Moduli       a      = rates.deviator;
-      const auto  &s      = motion.stress;
+      Moduli a = finite ? moduli_at_volume(motion, rates) : rates.deviator;
       const double mean   = motion.mean_stress();
       const double growth = finite ? motion.growth : 1.;
       const double volumetric =
@@ -147,8 +177,6 @@ namespace limber
               {
                 a[d * dim + d][e * dim + e] += mean;
                 a[d * dim + e][e * dim + d] -= mean;
-                for (int k = 0; k < dim; ++k)
-                  a[k * dim + d][k * dim + e] += s[d][e];
               }
             if constexpr (flows)
               if (!strain.mean_volume)

@@ -226,18 +226,7 @@ namespace limber
       std::size_t   place;
     };
 
-    /** Where obstacles are at the ends of a step. */
-    struct Way
-    {
-      ObstaclePlace<dim> before, after;
-
-      /** Velocity of an obstacle at a place, m/s. */
-      Vector
-      velocity(const dealii::Point<dim> &x, const double step) const
-      {
-        return (after.place_of(before.start_of(x)) - x) / step;
-      }
-    };
+    using Way = ObstacleMotion<dim>;
 
     /** A point that is next to an obstacle. */
     struct Near
@@ -334,14 +323,13 @@ namespace limber
     void
     clear_sums();
     void
-    add_nodes(const std::vector<Way> &ways, double step);
+    add_nodes(const std::vector<Way> &ways);
     void
     add_node(unsigned int  obstacle,
              unsigned int  field,
              std::uint32_t node,
              const double *touching,
-             const Way    &way,
-             double        step);
+             const Way    &way);
     void
     add_cut_cells(const std::vector<Way> &ways, double step);
     bool
@@ -355,8 +343,7 @@ namespace limber
     put_out(const PointView<dim>            &points,
             std::size_t                      p,
             const std::vector<Way>          &ways,
-            const std::vector<unsigned int> &near,
-            double                           step);
+            const std::vector<unsigned int> &near);
 
     const RunParts<dim>  parts;
     CutCells<dim> *const cut_cells; // or null

@@ -77,10 +77,9 @@ namespace limber
     add(const typename CutCells<dim>::Cell &cell);
     void
     damp(double time, double step, double share);
-    /** Of each obstacle, at the ends of the step. */
-    using Ways = std::vector<std::pair<ObstaclePlace<dim>, ObstaclePlace<dim>>>;
+    using Ways = std::vector<ObstacleMotion<dim>>; // of each obstacle
     void
-    damp_once(const Ways &ways, double step, double share);
+    damp_once(const Ways &ways, double share);
     void
     push_nodes();
 

@@ -583,6 +583,34 @@ TEST(BodiesFromFiles, MeshesCoverWhatTheirElementsDo)
 
 
 
+// Spreadsheets begin files with a byte order mark; and a mistyped first vertex
+// is no name of columns.
+TEST(BodiesFromFiles, NothingOfAPolygonIsLost)
+{
+  const auto area = [](const std::string &text) {
+    const FolderWithFile file(text);
+    return *read_problem<2>(file.scene("polygon", ""))
+              .bodies[0]
+              .shape->exact_volume();
+  };
+  const std::string square = "0 0\n1 0\n1 1\n0 1\n";
+  EXPECT_NEAR(area(square), 1, 1e-14);
+  EXPECT_NEAR(area("\xef\xbb\xbf" + square), 1, 1e-14);
+  EXPECT_NEAR(area("\xef\xbb\xbfx y\n" + square), 1, 1e-14);
+  try
+    {
+      area("0 O\n1 0\n1 1\n0 1\n");
+      ADD_FAILURE();
+    }
+  catch (const InputError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("'0, O'"), std::string::npos)
+        << error.what();
+    }
+}
+
+
+
 TEST(BodiesFromFiles, PathsStartFromTheFolderOfTheScene)
 {
   const FolderWithFile file("0 0\n1 0\n0 1\n");

@@ -277,6 +277,25 @@ TEST(Obstacles, MoveAsTheirFormulasSay)
 
 
 
+// A velocity is that of what is there in the middle of a step. So the surface
+// of a disc that turns about its centre moves along itself, however far in a
+// step, and what is moved alone has the mean velocity.
+TEST(Obstacles, VelocityOfAStep)
+{
+  const auto                 turning = obstacle_of<2>("set Rotation = 3*t");
+  const ObstacleMotion<2>    turn(turning, 0.2, 0.1);
+  const Point<2>             x(2.3, 1.4); // 0.5 m from the centre
+  const dealii::Tensor<1, 2> arm = x - Point<2>(2, 1);
+  EXPECT_NEAR(turn.velocity(x) * arm, 0, 1e-14);
+  EXPECT_NEAR(turn.velocity(x).norm(), 0.5 * 2 * std::sin(0.15) / 0.1, 1e-13);
+  const auto              moved = obstacle_of<2>("set Displacement = t^2; 0");
+  const ObstacleMotion<2> motion(moved, 0.2, 0.1);
+  EXPECT_NEAR(motion.velocity(x)[0], (0.09 - 0.04) / 0.1, 1e-14);
+  EXPECT_NEAR(motion.velocity(x)[1], 0, 1e-14);
+}
+
+
+
 // In space about any axis; that of a diagonal hands the axes on.
 TEST(Obstacles, TurnInSpace)
 {
