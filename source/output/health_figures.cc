@@ -265,10 +265,13 @@ namespace limber
     figures.lost_by_steps = totals.lost_by_steps;
     figures.is_smoothed   = filters_velocity(state.problem.method.transfer) ||
                           state.problem.method.transfer == Transfer::pic;
-    // the first steps of a body that starts from rest all turn its velocity
+    // The first steps of a body that starts from rest all turn its velocity;
+    // and what is at rest moves by round-off.
+    constexpr double at_rest = 1e-8;
     figures.is_implicit =
       state.problem.method.integration == TimeIntegration::implicit_steps &&
-      state.step > 3;
+      state.step > 3 &&
+      totals.kinetic_action > at_rest * energy_scale * state.time;
     figures.kinetic_action    = totals.kinetic_action;
     figures.action_of_changes = totals.action_of_changes;
     figures.history           = totals.removed_with_history;

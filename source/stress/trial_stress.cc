@@ -94,6 +94,24 @@ namespace limber
         return result;
       }
 
+      bool
+      has_finite_strain() const override
+      {
+        return finite;
+      }
+
+      const StrainTreatment &
+      treatment() const override
+      {
+        return strain.treatment;
+      }
+
+      double
+      density() const override
+      {
+        return strain.law.density;
+      }
+
       double
       young_modulus() const override
       {

@@ -97,7 +97,7 @@ namespace limber
     Ledger<dim> &ledger = parts.ledger;
     ledger.load_work +=
       std::inner_product(given.begin(), given.end(), displacement.begin(), 0.);
-    ledger.viscous += equations.ghost_work();
+    ledger.viscous += equations.ghost_work() + equations.reset_work();
     const double factor        = load_factor(time + step);
     double       between_steps = 0;
     const Values gained        = gained_momentum(new_velocity);

@@ -34,6 +34,7 @@ namespace limber
     , most_factorised(most_factorised)
     , constraints(parts.problem.sides)
     , nodes(parts)
+    , reset(nodes)
     , tangent(std::make_unique<NewtonTangent<dim>>(nodes, held))
     , volumes(std::make_unique<AveragedVolumes<dim>>(nodes, held))
     , most_iterations(most_iterations)
@@ -77,6 +78,9 @@ namespace limber
           ghost.find(nodes, now);
         moduli = std::move(now);
       }
+    // at rest the points start each step in balance with what they are
+    if (parts.problem.method.integration == TimeIntegration::implicit_steps)
+      reset.find(parts, responses);
     begin_of_jumps.assign(size(), 0.);
     is_factorised = set_up_serves = false;
     if (renumbered)
@@ -352,12 +356,18 @@ namespace limber
         energy_of_jumps      = ghost.add_forces(since_jumps, total_forces);
         work_on_jumps        = work_of_forces() - without;
       }
-    total_energy += energy_of_jumps;
+    total_energy += energy_of_jumps +
+                    reset.add_forces(displacement, total_forces, work_on_reset);
     known_at = displacement;
     if (inertia == nullptr)
       return true;
 
     ghost.add_tangent([&](const std::uint32_t *const numbers,
+                          const unsigned int         n_nodes,
+                          const double *const        block) {
+      tangent->add(numbers, n_nodes, block);
+    });
+    reset.add_tangent([&](const std::uint32_t *const numbers,
                           const unsigned int         n_nodes,
                           const double *const        block) {
       tangent->add(numbers, n_nodes, block);

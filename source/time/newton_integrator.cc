@@ -254,6 +254,7 @@ namespace limber
 
 
   // Displacement along an increase of the loads, over that: of the whole scene.
+  // Where sides move as well it is not that of the loads alone.
   // Ten times that of the first step is a failure, plastic or by buckling, also
   // if Newton's method goes on to find places of equilibrium, as surfaces that
   // sink are held up anew.
@@ -265,12 +266,15 @@ namespace limber
     const double size = size_of(increase);
     if (!(size > 1e-6 * largest_force))
       return; // constant loads: sides move
+    for (std::size_t k = 0; k < equations.size(); ++k)
+      if (equations.is_held(k) && displacement[k] != 0)
+        return;
     const double compliance = std::inner_product(increase.begin(),
                                                  increase.end(),
                                                  displacement.begin(),
                                                  0.) /
                               (size * size);
-    if (first_compliance == 0)
+    if (!(first_compliance > 0))
       first_compliance = compliance;
     collapses = collapses || compliance > collapsing * first_compliance;
   }
@@ -318,6 +322,7 @@ namespace limber
     // Forces at the start of the step, on the present nodes
     Values displacement(equations.size());
     followers.set(time, load_factor(time));
+    equations.expect(nullptr);
     equations.evaluate(displacement, nullptr);
     const Values former_followers = equations.follower_forces();
     Values       net(equations.size()); // out of balance
@@ -365,7 +370,10 @@ namespace limber
       }
     clock.lap(NewtonVerb::evaluate_forces);
     if (in_motion)
-      newton.guess(question, displacement);
+      {
+        equations.expect(&question.inertial_displacement);
+        newton.guess(question, displacement);
+      }
     if (!newton.find(question, displacement))
       {
         obstacle = newton.obstacle();

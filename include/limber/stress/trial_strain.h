@@ -137,6 +137,7 @@ namespace limber
 
     const FurtherDeformation<Law> law;
     const bool                    mean_volume, assumes, initial;
+    const StrainTreatment         treatment;
 
   private:
     // Apply the assumed strain; false as above.
@@ -299,8 +300,6 @@ namespace limber
         }
       motion.plastic_work = law.template deform<dim>(motion.f, growth, state);
     }
-
-    const StrainTreatment treatment;
   };
 } // namespace limber
 

@@ -126,6 +126,17 @@ namespace limber
            const GridView<dim>  &grid,
            const double         *displacement) const = 0;
 
+    virtual const StrainTreatment &
+    treatment() const = 0;
+
+    /** Whether strain and rotation may be large: stress is convected. */
+    virtual bool
+    has_finite_strain() const = 0;
+
+    /** At rest, kg/m^3. */
+    virtual double
+    density() const = 0;
+
     /** At rest, Pa. */
     virtual double
     young_modulus() const = 0;

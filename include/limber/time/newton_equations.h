@@ -8,6 +8,7 @@
 #include <limber/stress/trial_stress.h>
 #include <limber/time/follower_loads.h>
 #include <limber/time/ghost_penalty.h>
+#include <limber/time/grid_reset.h>
 
 #include <memory>
 #include <optional>
@@ -161,6 +162,25 @@ namespace limber
       return work_on_jumps;
     }
 
+    /** Of the GridReset; null: at rest. */
+    void
+    expect(const std::vector<double> *const displacement)
+    {
+      known_at.clear();
+      if (displacement != nullptr)
+        reset.expect(*displacement);
+      else
+        reset.expect_nothing();
+    }
+
+    /** Work on the displacement of the step of the mean of the forces of the
+     * GridReset at both ends, J. */
+    double
+    reset_work() const
+    {
+      return work_on_reset;
+    }
+
     /** The ghost penalty acts on the displacement beyond this one; at the
      * beginning of a step, beyond zero. */
     void
@@ -306,6 +326,7 @@ namespace limber
     NumberedNodes<dim>                                   nodes;
     std::vector<unsigned char>      held, side_of; // by equation
     GhostPenalty<dim>               ghost;
+    GridReset<dim>                  reset;
     std::vector<double>             moduli; // of the penalty, by cell, Pa
     std::vector<double>             begin_of_jumps, since_jumps;
     std::vector<dealii::Point<dim>> places; // of nodes, as the step begins
@@ -314,7 +335,8 @@ namespace limber
     std::vector<double>             total_forces, forces_of_followers;
     std::vector<double> known_at; // displacement of the forces; empty: none
     FollowerLoads<dim> *followers = nullptr; // or none
-    double total_energy = 0, energy_of_jumps = 0, work_on_jumps = 0, noise = 0;
+    double total_energy = 0, energy_of_jumps = 0, work_on_jumps = 0,
+           work_on_reset = 0, noise = 0;
     // what is in the matrix, and what is kept apart in mixed form
     const std::unique_ptr<NewtonTangent<dim>>   tangent;
     const std::unique_ptr<AveragedVolumes<dim>> volumes;
