@@ -112,8 +112,10 @@ namespace limber
         const auto          &own         = *start.bodies[b];
         const PointView<dim> points      = own.points.view();
         BodyFigures         &body        = bodies[b];
-        std::vector<double>  ratio(points.size);
-        own.stress->volume_ratio(points, ratio.data());
+        std::vector<double>  ratio(points.size, 1.);
+        // the density of a law for small strain is that of the start
+        if (description.law != LinearElastic::name)
+          own.stress->volume_ratio(points, ratio.data());
         double volume = 0;
         for (std::size_t p = 0; p < points.size; ++p)
           volume += points.mass[p] * ratio[p] / description.density();

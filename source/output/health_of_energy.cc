@@ -139,7 +139,11 @@ namespace limber
       line.text +=
         ": each impact loses that of a layer up to one cell thick. Take "
         "smaller cells" +
-        std::string(crosses_cells ? ", or a smaller 'Courant number'" : "");
+        std::string(crosses_cells ? ", or a smaller 'Courant number'" : "") +
+        // what chatters as it slides is no impact, and finer cells chatter more
+        (figures.friction > figures.contact ?
+           "; where bodies slide, a 'Blend time' that damps their chatter" :
+           "");
     return line;
   }
 

@@ -264,6 +264,27 @@ namespace limber
 
 
 
+    /** Notes that a slender plastic body of few cells is too stiff below its
+     * yield stress, by 0.45 over the square of the cells across. */
+    template <int dim>
+    void
+    note_stiff_bending(const Body<dim> &body, Problem<dim> &problem)
+    {
+      const double across = cells_across(body, problem.grid);
+      if (!body.is_plastic || !body.keeps_surface || across > 4 ||
+          body.treatment != Treatment::assumed_strain)
+        return;
+      problem.notes.push_back(
+        "Body " + in_quotes(body.name) + ": with " + brief(across) +
+        " cells across it bends about " +
+        brief(std::min(50., std::round(45 / (across * across)))) +
+        " % too little below its yield stress. More cells help; 'Hourglass "
+        "response = bending' bends as it should until it yields, and hardens "
+        "afterwards.");
+    }
+
+
+
     /** Locking treatment of the word 'auto'; says in the log what and why. */
     template <int dim>
     Treatment
@@ -417,8 +438,11 @@ namespace limber
       // With elastic coefficients hourglass forces would keep growing, like
       // hardening, while the material flows plastically.
       if (body.hourglass == HourglassResponse::automatic)
-        body.hourglass = body.is_plastic ? HourglassResponse::incompressible :
-                                           HourglassResponse::bending;
+        {
+          body.hourglass = body.is_plastic ? HourglassResponse::incompressible :
+                                             HourglassResponse::bending;
+          note_stiff_bending(body, problem);
+        }
       body.hourglass_control =
         section.text("Hourglass control") != "auto" ?
           section.number("Hourglass control") :

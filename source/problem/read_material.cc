@@ -167,11 +167,24 @@ namespace limber
           "instance 2e9.");
 
       const double sound   = 10 * speed;
-      const double modulus = body.density() * sound * sound;
+      const double inertia = body.density() * sound * sound;
+      // A side that drags what is viscous presses it as well, next to an edge
+      // by mu v / h. Free fall says nothing of the velocity of such a liquid.
+      double smallest_edge = problem.grid.edge(0);
+      for (unsigned int d = 1; d < dim; ++d)
+        smallest_edge = std::min(smallest_edge, problem.grid.edge(d));
+      const double viscosity =
+        section.has_entry("Viscosity") ? section.number("Viscosity") : 0;
+      const double drag =
+        100 * viscosity *
+        std::max(largest_initial_speed(body), largest_side_speed(problem)) /
+        smallest_edge;
+      const double modulus = std::max(inertia, drag);
       problem.notes.push_back(
         "Body " + in_quotes(body.name) + ": bulk modulus 'auto' is " +
-        brief(modulus) + " Pa, for velocities up to " + brief(speed) +
-        " m/s and a speed of sound of " + brief(sound) + " m/s.");
+        brief(modulus) + " Pa, for velocities up to " + brief(speed) + " m/s " +
+        (drag > inertia ? "and viscous pressures of a hundredth of that." :
+                          "and a speed of sound of " + brief(sound) + " m/s."));
       return modulus;
     }
 

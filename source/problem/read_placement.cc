@@ -212,8 +212,9 @@ namespace limber
 
     /**
      * Whether 'regular' is good enough for an upright block. Bodies side by
-     * side or in contact need their faces exactly in place, as do liquids in
-     * cells of several sizes, whose level would differ from one to the next.
+     * side or in contact need their faces exactly in place, as do bodies under
+     * stress at the start, which would not be at rest, and liquids in cells of
+     * several sizes, whose level would differ from one to the next.
      */
     template <int dim>
     bool
@@ -224,7 +225,8 @@ namespace limber
     {
       return is_in_lattice(block, body, problem.grid) ||
              (problem.bodies.size() == 1 && !meets.bodies && !meets.obstacles &&
-              !meets.sides && !(body.is_liquid && problem.grid.levels > 0) &&
+              !body.initial_stress && !meets.sides &&
+              !(body.is_liquid && problem.grid.levels > 0) &&
               std::abs(filled_by_regular(block, body, problem.grid) - 1) <=
                 least_misfill);
     }
