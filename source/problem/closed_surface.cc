@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 
@@ -108,6 +109,24 @@ namespace limber
       }
     result.corners = std::move(distinct.places);
     return result;
+  }
+
+
+
+  void
+  drop_repeated_facets(TriangleMesh &mesh)
+  {
+    std::set<std::array<unsigned int, 3>> known;
+    const auto                            is_repeated = [&](auto facet) {
+      std::rotate(facet.begin(),
+                  std::min_element(facet.begin(), facet.end()),
+                  facet.end());
+      return !known.insert(facet).second;
+    };
+    mesh.facets.erase(std::remove_if(mesh.facets.begin(),
+                                     mesh.facets.end(),
+                                     is_repeated),
+                      mesh.facets.end());
   }
 
 

@@ -306,6 +306,7 @@ namespace limber
     TriangleMesh mesh = welded(facets.corners, same_corner * size);
     refuse_flat_facets(file, facets, mesh);
     refuse_faults(file, facets, mesh);
+    drop_repeated_facets(mesh);
     for (Point<3> &corner : mesh.corners)
       corner = placement(corner);
     return mesh;

@@ -29,6 +29,11 @@ namespace limber
   welded(const std::vector<std::array<dealii::Point<3>, 3>> &facets,
          double                                              tolerance);
 
+  /** Keeps each facet once that has the same corners in the same order as
+   * another one: what was exported twice would have twice its volume. */
+  void
+  drop_repeated_facets(TriangleMesh &mesh);
+
 
 
   /** An edge at which a triangulated surface is not closed or not consistently

@@ -324,6 +324,17 @@ TEST(ClosedSurface, CavitiesAreEmptyAndOverlapsAreFilledOnce)
 
 
 
+TEST(ClosedSurface, WhatWasExportedTwiceIsThereOnce)
+{
+  const TestFacets  outer = icosphere(2, 1);
+  const StlShape<3> shape(ClosedSurface(stl(ascii_stl(joined(outer, outer)))),
+                          "");
+  ASSERT_TRUE(shape.exact_volume());
+  EXPECT_NEAR(*shape.exact_volume(), volume_within(outer), 1e-12);
+}
+
+
+
 TEST(ClosedSurface, IsScaledRotatedAndShifted)
 {
   FilePlacement<3> placement;
