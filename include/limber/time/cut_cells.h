@@ -43,7 +43,7 @@ namespace limber
     static constexpr unsigned int n_nodes = 1 << dim;
     using Vector                          = dealii::Tensor<1, dim>;
 
-    /** Nearly flat facet of the surface of one obstacle in a cell. */
+    /** Flat or nearly flat facet of the surface of one obstacle in a cell. */
     struct Surface
     {
       unsigned int                obstacle = 0;
