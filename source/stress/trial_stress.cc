@@ -136,14 +136,39 @@ namespace limber
       }
 
     private:
+      // Changes of the growths of all points from one trial to another, linear
+      // in the displacement; nothing without assumed strain.
+      std::vector<double>
+      assumed_growths(Trial &before, const Trial &trial) const
+      {
+        std::vector<double> result;
+        if constexpr (has_bending_modes<Basis>)
+          if (strain.assumes)
+            {
+              std::vector<Matrix> change;
+              for (std::size_t k = 0; k < trial.motions.size(); ++k)
+                {
+                  change.push_back(trial.assumed.points[k].F);
+                  for (int d = 0; d < dim; ++d)
+                    for (int e = 0; e < dim; ++e)
+                      change[k][d][e] -= before.assumed.points[k].F[d][e];
+                }
+              result = before.assumed.change_of_volume_ratios(change);
+              for (std::size_t k = 0; k < result.size(); ++k)
+                result[k] *= before.growth_per_volume(k);
+            }
+        return result;
+      }
+
       // Replace the stress by that of the previous iterate plus its
       // linearisation in the displacement since, which is linear in the
       // material frame.
       void
-      extrapolate(const Trial &before, Trial &trial) const
+      extrapolate(Trial &before, Trial &trial) const
       {
         static_assert(!flows);
-        double slope_of_cell = before.slope, mean_growth = 0;
+        double                    slope_of_cell = before.slope, mean_growth = 0;
+        const std::vector<double> growths = assumed_growths(before, trial);
         for (std::size_t k = 0; k < trial.motions.size(); ++k)
           {
             const Motion &from  = before.motions[k];
@@ -175,9 +200,9 @@ namespace limber
             if (strain.mean_volume)
               mean_growth += from.volume / before.volume * from.growth * trace;
             else
-              to.slope =
-                strain.slope(from, from.growth) +
-                strain.curvature(from, from.growth) * from.growth * trace;
+              to.slope = strain.slope(from, from.growth) +
+                         strain.curvature(from, from.growth) *
+                           (strain.assumes ? growths[k] : from.growth * trace);
           }
         if (strain.mean_volume)
           {

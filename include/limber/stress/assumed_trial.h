@@ -102,6 +102,49 @@ namespace limber
         operation->evaluate(points[p].F, points[p].xi));
     }
 
+    /** The derivatives of J_a of the points in the direction of changes of
+     * their F. */
+    std::vector<double>
+    change_of_volume_ratios(const std::vector<Matrix> &change)
+    {
+      static_assert(finite_strain);
+      const Matrix &U       = operation->stretch;
+      const auto    back_by = [&](const std::size_t p) {
+        return operation->turned_back(change[p]);
+      };
+      const Means means = means_of(back_by);
+      invert_inertia();
+      Axis axis{};
+      for (int a = 0; a < n_spins; ++a)
+        axis[a] = contract(spin(a), means.first);
+      axis = divided(axis);
+      Matrix S{};
+      for (int a = 0; a < n_spins; ++a)
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            S[d][e] += axis[a] * spin(a)[d][e];
+
+      // of A G and U, but for the turn of A G
+      const auto moved = [&](const std::size_t p) {
+        Matrix       result = back_by(p);
+        const Matrix spun = times<dim>(S, operation->turned_back(points[p].F));
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            result[d][e] -= spun[d][e];
+        return result;
+      };
+      const Means         means_moved = means_of(moved);
+      const Matrix        of_stretch  = means_moved.first; // <g> - S U
+      const double        of_volume   = contract(cofactor<dim>(U), of_stretch);
+      std::vector<double> result(points.size());
+      for (std::size_t p = 0; p < points.size(); ++p)
+        result[p] =
+          operation->volume *
+            (trace(assume(moved(p), means_moved, p)) - trace(of_stretch)) +
+          volume_ratio(p) / operation->volume * of_volume;
+      return result;
+    }
+
     /** Add the nodal force (N) of the stress of the points. */
     void
     add_force(const std::vector<Stress> &stress, double *const force)
