@@ -99,7 +99,8 @@ namespace limber
     /**
      * Velocity at a place, m/s: the mean one over the step of what of the
      * obstacle is there in the middle of the step. The chord from there at the
-     * beginning would point out of what turns: a smooth disc would stir water.
+     * beginning points out of what turns: the pressure on a smooth disc that
+     * turns about its centre would do work.
      */
     dealii::Tensor<1, dim>
     velocity(const dealii::Point<dim> &x) const
