@@ -564,7 +564,8 @@ namespace limber
   {
     for (const std::string &name : root.list("Bodies"))
       problem.bodies.push_back(read_body(root, name, problem));
-    choose_frames_and_kernel(root, problem);
+    choose_frames(root, problem);
+    choose_kernel(root, problem);
     Meetings meets;
     meets.obstacles = !root.list("Obstacles").empty();
     meets.bodies    = !root.subsection("Contact").list("Pairs").empty();

@@ -448,11 +448,6 @@ namespace limber
              "Kernel",
              "joined points ('Grid/Join points') have no domain",
              "'Kernel = linear', or 'Join points = false'");
-    if (is_solved_by_newton(problem.method.integration))
-      refuse(method,
-             "Time integration",
-             "its equations have not been tried across a change of size",
-             "'Time integration = explicit'");
     for (const Body<dim> &body : problem.bodies)
       {
         const Section section = root.subsection("Body " + body.name);

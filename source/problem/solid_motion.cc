@@ -3,6 +3,8 @@
 #include <deal.II/base/symmetric_tensor.h>
 
 #include <limber/base/text.h>
+#include <limber/problem/ball.h>
+#include <limber/problem/block.h>
 #include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
@@ -10,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 /** @file Notes on motions of solids that frame and kernel do badly. */
@@ -262,6 +265,30 @@ namespace limber
 
 
   template <int dim>
+  bool
+  is_compact(const Shape<dim> &shape)
+  {
+    // longest over shortest edge, beyond which it may fold in an impact
+    constexpr double slender = 4;
+    const auto      *block   = dynamic_cast<const BlockShape<dim> *>(&shape);
+    if (block == nullptr)
+      return dynamic_cast<const BallShape<dim> *>(&shape) != nullptr;
+    using Info     = dealii::GeometryInfo<dim>;
+    double longest = 0, shortest = std::numeric_limits<double>::max();
+    for (unsigned int line = 0; line < Info::lines_per_cell; ++line)
+      {
+        const double edge =
+          block->vertices[Info::line_to_cell_vertices(line, 0)].distance(
+            block->vertices[Info::line_to_cell_vertices(line, 1)]);
+        longest  = std::max(longest, edge);
+        shortest = std::min(shortest, edge);
+      }
+    return longest <= slender * shortest;
+  }
+
+
+
+  template <int dim>
   void
   warn_of_solid_motion(Problem<dim> &problem)
   {
@@ -276,6 +303,10 @@ namespace limber
   initial_rotation(const Body<2> &, double);
   template double
   initial_rotation(const Body<3> &, double);
+  template bool
+  is_compact(const Shape<2> &);
+  template bool
+  is_compact(const Shape<3> &);
   template void
   warn_of_solid_motion(Problem<2> &);
   template void

@@ -33,14 +33,13 @@ namespace limber
       void
       add(const std::size_t volume, const unsigned int corner)
       {
-        volumes[n_volumes] = volume;
-        corners[n_volumes] = corner;
-        ++n_volumes;
+        volumes.push_back(volume);
+        corners.push_back(corner);
       }
 
-      unsigned int                        n_volumes = 0;
-      std::array<std::uint32_t, 1 << dim> volumes;
-      std::array<unsigned char, 1 << dim> corners; // that the node is of each
+      // as many as a cell has corners; with levels more
+      std::vector<std::uint32_t> volumes;
+      std::vector<unsigned char> corners; // that the node is of each
     };
   } // namespace
 
@@ -59,10 +58,10 @@ namespace limber
                        const std::vector<Volume> &volumes,
                        const std::vector<double> &scale)
     {
-      std::array<double, 1 << dim> direction;
+      std::vector<double> direction(around.volumes.size());
       for (int d = -1; d < dim; ++d)
         {
-          for (unsigned int i = 0; i < around.n_volumes; ++i)
+          for (std::size_t i = 0; i < around.volumes.size(); ++i)
             {
               const std::size_t c = around.volumes[i];
               // zero where all nodes of a cell are held
@@ -71,7 +70,7 @@ namespace limber
                   scale[c] :
                   volumes[c].row[around.corners[i] * dim + d] / scale[c];
             }
-          add(direction, around.n_volumes);
+          add(direction);
         }
     }
 
@@ -79,40 +78,39 @@ namespace limber
     operator()(const unsigned int i, const unsigned int j) const
     {
       double result = i == j ? 1 - filtered_share : 0;
-      for (unsigned int k = 0; k < n_directions; ++k)
-        result += filtered_share * directions[k][i] * directions[k][j];
+      for (const auto &direction : directions)
+        result += filtered_share * direction[i] * direction[j];
       return result;
     }
 
   private:
     void
-    add(std::array<double, 1 << dim> &direction, const unsigned int n)
+    add(std::vector<double> direction)
     {
       const auto length = [&] {
         return std::sqrt(std::inner_product(
-          direction.begin(), direction.begin() + n, direction.begin(), 0.));
+          direction.begin(), direction.end(), direction.begin(), 0.));
       };
       const double before = length();
       for (unsigned int twice = 0; twice < 2; ++twice)
-        for (unsigned int k = 0; k < n_directions; ++k)
+        for (const auto &former : directions)
           {
             const double part = std::inner_product(direction.begin(),
-                                                   direction.begin() + n,
-                                                   directions[k].begin(),
+                                                   direction.end(),
+                                                   former.begin(),
                                                    0.);
-            for (unsigned int i = 0; i < n; ++i)
-              direction[i] -= part * directions[k][i];
+            for (std::size_t i = 0; i < direction.size(); ++i)
+              direction[i] -= part * former[i];
           }
       const double after = length();
       if (after <= 1e-6 * before)
         return;
-      for (unsigned int i = 0; i < n; ++i)
-        directions[n_directions][i] = direction[i] / after;
-      ++n_directions;
+      for (double &component : direction)
+        component /= after;
+      directions.push_back(std::move(direction));
     }
 
-    unsigned int                                      n_directions = 0;
-    std::array<std::array<double, 1 << dim>, dim + 1> directions;
+    std::vector<std::vector<double>> directions;
   };
 
 
@@ -213,16 +211,16 @@ namespace limber
           for (unsigned int i = 0; i < n; ++i)
             around[volumes[end].numbers[i]].add(end, i);
         for (const Around &of_node : around)
-          if (of_node.n_volumes > 0)
+          if (!of_node.volumes.empty())
             all_around.push_back(of_node);
       }
 
     dealii::DynamicSparsityPattern pattern(volumes.size(), volumes.size());
     for (const Around &of_node : all_around)
-      for (unsigned int i = 0; i < of_node.n_volumes; ++i)
+      for (std::size_t i = 0; i < of_node.volumes.size(); ++i)
         pattern.add_entries(of_node.volumes[i],
                             of_node.volumes.begin(),
-                            of_node.volumes.begin() + of_node.n_volumes);
+                            of_node.volumes.end());
     of_pressure.clear();
     pressure_pattern.copy_from(pattern);
     of_pressure.reinit(pressure_pattern);
@@ -253,8 +251,8 @@ namespace limber
     for (const Around &of_node : all_around)
       {
         const CheckerboardFilter filter(of_node, volumes, root);
-        for (unsigned int i = 0; i < of_node.n_volumes; ++i)
-          for (unsigned int j = 0; j < of_node.n_volumes; ++j)
+        for (std::size_t i = 0; i < of_node.volumes.size(); ++i)
+          for (std::size_t j = 0; j < of_node.volumes.size(); ++j)
             of_pressure.add(of_node.volumes[i],
                             of_node.volumes[j],
                             root[of_node.volumes[i]] * filter(i, j) *

@@ -39,22 +39,16 @@ namespace limber
 
 
 
-  // Numbers of the at.n nodes of the support of a point, in their order.
+  // The support of a point in the nodes of its cell, numbers_in().
   template <int dim>
-  typename FollowerLoads<dim>::Numbers
-  FollowerLoads<dim>::numbers_of(const Support<dim> &at,
-                                 const std::uint32_t cell) const
+  Support<dim>
+  FollowerLoads<dim>::at_free_nodes(Support<dim>        at,
+                                    const std::uint32_t cell) const
   {
-    Numbers result;
-    result.fill(invalid_cell);
-    for (int i = 0; i < at.n; ++i)
-      {
-        for (const std::uint32_t number : nodes.numbers_in(cell))
-          if (nodes.on_grid()[number] == at.node[i])
-            result[i] = number;
-        Assert(result[i] != invalid_cell, dealii::ExcInternalError());
-      }
-    return result;
+    const auto &corners = nodes.hanging_corners(nodes.number_of(cell));
+    corners.condense(at.value.data(), 1);
+    corners.condense(at.gradient.front().data(), dim);
+    return at;
   }
 
 
@@ -72,7 +66,8 @@ namespace limber
         for (const auto &[p, former] : face.here())
           {
             const Support<dim> at =
-              support_of_point<dim>(parts.grid.view(), points, p);
+              at_free_nodes(support_of_point<dim>(parts.grid.view(), points, p),
+                            points.cell[p]);
             const dealii::Tensor<2, dim> pull   = pull_back(points, p);
             const auto                   slopes = [&](const auto &vector) {
               const dealii::Tensor<1, dim> pulled = pull * vector;
@@ -83,15 +78,16 @@ namespace limber
               return result;
             };
             Piece piece;
-            piece.face            = &face;
-            piece.edges           = former->edges;
-            const Numbers numbers = numbers_of(at, points.cell[p]);
-            piece.numbers.assign(numbers.begin(), numbers.begin() + at.n);
+            piece.face         = &face;
+            piece.edges        = former->edges;
+            const auto numbers = nodes.numbers_in(points.cell[p]);
+            piece.numbers.assign(numbers.begin(), numbers.end());
             piece.moving = slopes(former->arm);
             for (int i = 0; i < at.n; ++i)
               piece.moving[i] += at.value[i];
-            const Support<dim> of_force =
-              support_of_piece(parts.grid.view(), points, p, *former);
+            const Support<dim> of_force = at_free_nodes(
+              support_of_piece(parts.grid.view(), points, p, *former),
+              points.cell[p]);
             piece.weights.assign(of_force.value.begin(),
                                  of_force.value.begin() + at.n);
             for (unsigned int e = 0; e < dim - 1; ++e)
@@ -151,7 +147,7 @@ namespace limber
                    [&](const dealii::Point<dim> &place,
                        const double              mass,
                        const Support<dim>       &at,
-                       const Numbers            &numbers) {
+                       const Numbers             numbers) {
                      const dealii::Tensor<1, dim> force =
                        factor * mass *
                        parts.problem.loads.body_force->vector(place, time);
@@ -214,8 +210,9 @@ namespace limber
         for (std::size_t p = 0; p < points.size; ++p)
           {
             const Support<dim> at =
-              support_of_point<dim>(parts.grid.view(), points, p);
-            const auto         numbers = numbers_of(at, points.cell[p]);
+              at_free_nodes(support_of_point<dim>(parts.grid.view(), points, p),
+                            points.cell[p]);
+            const auto         numbers = nodes.numbers_in(points.cell[p]);
             dealii::Point<dim> place;
             for (int d = 0; d < dim; ++d)
               {
@@ -257,7 +254,7 @@ namespace limber
                    [&](const dealii::Point<dim> &place,
                        const double              mass,
                        const Support<dim>       &at,
-                       const Numbers            &numbers) {
+                       const Numbers             numbers) {
                      dealii::Tensor<2, dim> slope; // of minus the force
                      for (int e = 0; e < dim; ++e)
                        {

@@ -2,6 +2,7 @@
 #include <limber/interpolation/spline_factors.h>
 #include <limber/time/ghost_penalty.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace limber
@@ -59,14 +60,12 @@ namespace limber
 
 
     /**
-     * Coefficients of the values at the p + 2 nodes in a line across a face in
-     * the jump of the derivative of order p times h^p.
+     * Coefficients of the values at the four nodes in a line across a face in
+     * the jump of the second derivative times h^2.
      */
     std::array<double, 4>
-    difference_of(const unsigned int n, const Ends &own, const Ends &next)
+    difference_of(const Ends &own, const Ends &next)
     {
-      if (n == 2)
-        return {{1, -2, 1}};
       // u'' is twice the coefficient of xi^2, see SplineFactors<2>
       return {{-2 * own.lower,
                2 * (own.lower + own.upper + next.lower),
@@ -99,42 +98,126 @@ namespace limber
     for (std::size_t c = 0; c < n_cells; ++c)
       for (int d = 0; d < dim; ++d)
         for (const int step : {-1, 1})
-          if (const auto next = nodes.neighbour(c, d, step);
-              next.in_box && !next.cell)
-            at_surface[c] = 1;
+          at_surface[c] |= nodes.neighbours(c, d, step).any_is_empty;
 
     for (std::size_t c = 0; c < n_cells; ++c)
       for (int d = 0; d < dim; ++d)
+        for (const int step : {-1, 1})
+          for (const std::size_t other : nodes.neighbours(c, d, step).cells)
+            {
+              const unsigned int size   = nodes.size_of_cell(c),
+                                 beyond = nodes.size_of_cell(other);
+              // once, by the smaller cell or the lower one of two alike
+              if (!(at_surface[c] || at_surface[other]) || size > beyond ||
+                  (size == beyond && step < 0))
+                continue;
+              Face face = along == 2 ?
+                            face_of_vertices(nodes, c, other, d, step) :
+                            face_of_splines(nodes, c, other, d);
+              // h^(2p-1) / ((2p+1) p!^2) area / h^2p: jumps are times h^p
+              double area = 1;
+              for (int e = 0, k = 0; e < dim; ++e)
+                if (e != d)
+                  {
+                    area *= nodes.edge(c, e);
+                    face.mass[k++] = mass_along(along, ends_of(nodes, c, e));
+                  }
+              face.stiffness = std::min(moduli[c], moduli[other]) * area /
+                               nodes.edge(other, d) / (along == 2 ? 3 : 20);
+              of_surface.push_back(std::move(face));
+            }
+  }
+
+
+
+  // The upper face of a cell along d, with the nodes in lines across it.
+  template <int dim>
+  typename GhostPenalty<dim>::Face
+  GhostPenalty<dim>::face_of_splines(const NumberedNodes<dim> &nodes,
+                                     const std::size_t         cell,
+                                     const std::size_t         other,
+                                     const int                 d) const
+  {
+    const auto own = nodes.of_cell(cell), next = nodes.of_cell(other);
+    const auto difference =
+      difference_of(ends_of(nodes, cell, d), ends_of(nodes, other, d));
+    const unsigned int stride = dealii::Utilities::pow(along, d);
+    const unsigned int n = n_lines<dim>(along), n_nodes = n * (along + 1);
+    Face               face;
+    face.jumps.assign(n * n_nodes, 0.);
+    for (unsigned int i = 0, line = 0; i < own.size(); ++i)
+      if (i / stride % along == 0)
         {
-          const auto other = nodes.neighbour(c, d, 1).cell;
-          if (!other || !(at_surface[c] || at_surface[*other]))
-            continue;
-          const auto own = nodes.of_cell(c), next = nodes.of_cell(*other);
-          Face       face;
-          double     area = 1;
-          for (int e = 0, k = 0; e < dim; ++e)
-            if (e != d)
-              {
-                area *= nodes.edge(e);
-                face.mass[k++] = mass_along(along, ends_of(nodes, c, e));
-              }
-          // h^(2p-1) / ((2p+1) p!^2) area / h^2p: jumps are differences over
-          // h^p
-          face.stiffness = std::min(moduli[c], moduli[*other]) * area /
-                           nodes.edge(d) / (along == 2 ? 3 : 20);
-          face.difference           = difference_of(along,
-                                          ends_of(nodes, c, d),
-                                          ends_of(nodes, *other, d));
-          const unsigned int stride = dealii::Utilities::pow(along, d);
-          for (unsigned int i = 0; i < own.size(); ++i)
-            if (i / stride % along == 0)
-              {
-                for (unsigned int k = 0; k < along; ++k)
-                  face.nodes.push_back(own[i + k * stride]);
-                face.nodes.push_back(next[i + (along - 1) * stride]);
-              }
-          of_surface.push_back(std::move(face));
+          std::copy(difference.begin(),
+                    difference.end(),
+                    &face.jumps[line++ * n_nodes + face.nodes.size()]);
+          for (unsigned int k = 0; k < along; ++k)
+            face.nodes.push_back(own[i + k * stride]);
+          face.nodes.push_back(next[i + (along - 1) * stride]);
         }
+    return face;
+  }
+
+
+
+  // The face of a cell along d to one of the same size or larger, whose edge is
+  // h. The slope of a linear function along d is a difference of corners, and
+  // linear along the face.
+  template <int dim>
+  typename GhostPenalty<dim>::Face
+  GhostPenalty<dim>::face_of_vertices(const NumberedNodes<dim> &nodes,
+                                      const std::size_t         cell,
+                                      const std::size_t         other,
+                                      const int                 d,
+                                      const int                 step)
+  {
+    constexpr unsigned int n_corners = 1 << dim;
+    const auto own = nodes.of_cell(cell), next = nodes.of_cell(other);
+    const auto place           = nodes.place_of_cell(cell),
+               place_of_other  = nodes.place_of_cell(other);
+    const double size          = nodes.size_of_cell(cell),
+                 size_of_other = nodes.size_of_cell(other);
+    Face face;
+    face.nodes.assign(own.begin(), own.end());
+    std::array<unsigned int, n_corners> at; // in face.nodes, of next
+    for (unsigned int j = 0; j < n_corners; ++j)
+      {
+        const auto found =
+          std::find(face.nodes.begin(), face.nodes.end(), next[j]);
+        at[j] = found - face.nodes.begin();
+        if (found == face.nodes.end())
+          face.nodes.push_back(next[j]);
+      }
+    for (unsigned int i = 0; i < n_corners; ++i)
+      if ((i >> d & 1) == 0)
+        {
+          // slopes times h at the corner of the own face
+          std::array<double, n_corners> of_own{}, of_next{};
+          of_own[i]            = -size_of_other / size;
+          of_own[i | (1 << d)] = size_of_other / size;
+          for (unsigned int j = 0; j < n_corners; ++j)
+            {
+              of_next[j] = (j >> d & 1) != 0 ? 1 : -1;
+              for (int e = 0; e < dim; ++e)
+                if (e != d)
+                  {
+                    const double xi = (double(place[e]) + (i >> e & 1) * size -
+                                       double(place_of_other[e])) /
+                                      size_of_other;
+                    of_next[j] *= (j >> e & 1) != 0 ? xi : 1 - xi;
+                  }
+            }
+          nodes.hanging_corners(cell).condense(of_own.data(), 1);
+          nodes.hanging_corners(other).condense(of_next.data(), 1);
+          const std::size_t row = face.jumps.size();
+          face.jumps.resize(row + face.nodes.size());
+          for (unsigned int j = 0; j < n_corners; ++j)
+            {
+              face.jumps[row + j] -= step * of_own[j];
+              face.jumps[row + at[j]] += step * of_next[j];
+            }
+        }
+    return face;
   }
 
 
@@ -160,21 +243,19 @@ namespace limber
   GhostPenalty<dim>::add_forces(const std::vector<double> &displacement,
                                 std::vector<double>       &forces) const
   {
-    const unsigned int  n = n_lines<dim>(along), n_in_line = along + 1;
+    const unsigned int  n      = n_lines<dim>(along);
     double              energy = 0;
     std::vector<double> jump(n);
     for (const Face &face : of_surface)
       for (int d = 0; d < dim; ++d)
         {
+          const std::size_t n_nodes = face.nodes.size();
           for (unsigned int i = 0; i < n; ++i)
             {
               jump[i] = 0;
-              for (unsigned int k = 0; k < n_in_line; ++k)
-                jump[i] +=
-                  face.difference[k] *
-                  displacement[std::size_t(face.nodes[i * n_in_line + k]) *
-                                 dim +
-                               d];
+              for (std::size_t k = 0; k < n_nodes; ++k)
+                jump[i] += face.jumps[i * n_nodes + k] *
+                           displacement[std::size_t(face.nodes[k]) * dim + d];
             }
           for (unsigned int i = 0; i < n; ++i)
             {
@@ -182,9 +263,9 @@ namespace limber
               for (unsigned int j = 0; j < n; ++j)
                 force += face.stiffness * mass(face, i, j, along) * jump[j];
               energy += 0.5 * force * jump[i];
-              for (unsigned int k = 0; k < n_in_line; ++k)
-                forces[std::size_t(face.nodes[i * n_in_line + k]) * dim + d] +=
-                  face.difference[k] * force;
+              for (std::size_t k = 0; k < n_nodes; ++k)
+                forces[std::size_t(face.nodes[k]) * dim + d] +=
+                  face.jumps[i * n_nodes + k] * force;
             }
         }
     return energy;
@@ -196,19 +277,25 @@ namespace limber
   void
   GhostPenalty<dim>::add_tangent(const Add &add) const
   {
-    const unsigned int  n_in_line = along + 1;
-    const unsigned int  n_nodes   = n_lines<dim>(along) * n_in_line;
-    const unsigned int  n         = n_nodes * dim;
-    std::vector<double> block(std::size_t(n) * n);
+    const unsigned int  n_rows = n_lines<dim>(along);
+    std::vector<double> block, of_row;
     for (const Face &face : of_surface)
       {
-        for (unsigned int i = 0; i < n_nodes; ++i)
-          for (unsigned int j = 0; j < n_nodes; ++j)
-            for (int d = 0; d < dim; ++d)
-              block[(i * dim + d) * n + j * dim + d] =
-                face.stiffness *
-                mass(face, i / n_in_line, j / n_in_line, along) *
-                face.difference[i % n_in_line] * face.difference[j % n_in_line];
+        const std::size_t n_nodes = face.nodes.size(), n = n_nodes * dim;
+        block.assign(n * n, 0.);
+        for (unsigned int i = 0; i < n_rows; ++i)
+          {
+            of_row.assign(n_nodes, 0.);
+            for (unsigned int j = 0; j < n_rows; ++j)
+              for (std::size_t k = 0; k < n_nodes; ++k)
+                of_row[k] += face.stiffness * mass(face, i, j, along) *
+                             face.jumps[j * n_nodes + k];
+            for (std::size_t k = 0; k < n_nodes; ++k)
+              if (const double jump = face.jumps[i * n_nodes + k]; jump != 0)
+                for (std::size_t l = 0; l < n_nodes; ++l)
+                  for (int d = 0; d < dim; ++d)
+                    block[(k * dim + d) * n + l * dim + d] += jump * of_row[l];
+          }
         add(face.nodes.data(), n_nodes, block.data());
       }
   }

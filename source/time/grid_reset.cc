@@ -157,6 +157,8 @@ namespace limber
             }
         });
       }
+    for (std::size_t c = 0; c < nodes.n_cells(); ++c)
+      nodes.hanging_corners(c).condense_matrix(&blocks[c * n * n], dim);
     nodes.sum(blocks.data(), blocks.size());
   }
 
@@ -176,14 +178,19 @@ namespace limber
     const auto           &places = nodes.places();
     for (std::size_t c = 0; c < nodes.n_cells(); ++c)
       {
-        const auto               numbers = nodes.of_cell(c);
+        const auto            numbers = nodes.of_cell(c);
+        std::array<double, n> at_corners;
+        for (std::size_t k = 0; k < n; ++k)
+          at_corners[k] =
+            displacement[std::size_t(numbers[k / dim]) * dim + k % dim];
+        nodes.hanging_corners(c).interpolate(at_corners.data(), dim);
         SmallMatrix<dim, double> gradient{}, turn{};
         for (std::size_t i = 0; i < numbers.size(); ++i)
           for (int e = 0; e < dim; ++e)
             for (int d = 0; d < dim; ++d)
               gradient[d][e] += ((i >> e & 1) ? 2. : -2.) /
-                                (numbers.size() * nodes.edge(e)) *
-                                displacement[std::size_t(numbers[i]) * dim + d];
+                                (numbers.size() * nodes.edge(c, e)) *
+                                at_corners[i * dim + d];
         double squared = 0;
         for (int d = 0; d < dim; ++d)
           for (int e = 0; e < dim; ++e)

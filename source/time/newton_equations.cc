@@ -195,8 +195,8 @@ namespace limber
       {
         for (std::uint32_t c = 0; c < root.size(); ++c)
           for (int d = 0; d < dim; ++d)
-            if (const auto next = nodes.neighbour(c, d, 1).cell)
-              root[find(*next)] = find(c);
+            for (const std::size_t next : nodes.neighbours(c, d, 1).cells)
+              root[find(next)] = find(c);
       }
     else
       {
@@ -250,6 +250,7 @@ namespace limber
         std::copy_n(&displacement[i * dim],
                     dim,
                     &on_grid[std::size_t(node) * dim]);
+    parts.nodes.table.take_from_masters(on_grid.data(), dim, 0, dim);
   }
 
 
@@ -299,7 +300,10 @@ namespace limber
             former != nullptr ? former_by_node.data() : nullptr,
             inertia != nullptr,
             [&](const std::uint32_t cell, CellResponse &response) {
-              const auto numbers = nodes.numbers_in(cell);
+              const std::size_t number  = nodes.number_of(cell);
+              const auto        numbers = nodes.of_cell(number);
+              nodes.hanging_corners(number).condense(response.force.data(),
+                                                     dim);
               total_energy += response.energy;
               for (unsigned int i = 0; i < numbers.size(); ++i)
                 for (int d = 0; d < dim; ++d)
@@ -307,7 +311,11 @@ namespace limber
                     response.force[i * dim + d];
               if (inertia == nullptr)
                 return;
-              add_volume(b, numbers, response);
+              nodes.hanging_corners(number).condense_matrix(
+                response.tangent.data(), dim);
+              nodes.hanging_corners(number).condense(response.volume_row.data(),
+                                                     dim);
+              add_volume(b, number, response);
               tangent->add(numbers.data(),
                            numbers.size(),
                            response.tangent.data());
@@ -384,16 +392,16 @@ namespace limber
   // mixed form has in its pressure unknowns.
   template <int dim>
   void
-  NewtonEquations<dim>::add_volume(
-    const std::size_t                          body,
-    const typename NumberedNodes<dim>::Numbers numbers,
-    CellResponse                              &response)
+  NewtonEquations<dim>::add_volume(const std::size_t body,
+                                   const std::size_t cell,
+                                   CellResponse     &response)
   {
+    const auto   numbers         = nodes.of_cell(cell);
     const double bulk_over_shear = responses[body]->bulk_over_shear();
     const double shear           = response.volume_stiffness / bulk_over_shear;
     const double of_full_cell    = responses[body]->young_modulus() *
                                 (3 + 1 / bulk_over_shear) / 9 *
-                                nodes.volume_of_cell();
+                                nodes.volume_of_cell(cell);
     const double to_keep =
       kept_bulk * std::sqrt(shear * std::max(shear, of_full_cell));
     double kept = response.volume_stiffness;

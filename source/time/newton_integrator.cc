@@ -447,7 +447,7 @@ namespace limber
                                              }))
       return true;
     for (std::size_t k = 0; k < equations.size(); ++k)
-      if (std::abs(displacement[k]) > nodes.edge(k % dim))
+      if (std::abs(displacement[k]) > nodes.finest_edge(k % dim))
         {
           obstacle = "points would pass more than a cell, which is as far as "
                      "ranks follow them (one rank does, and so does 'Frame = "
@@ -489,6 +489,7 @@ namespace limber
       for (std::size_t k = 0; k < equations.size(); ++k)
         if (nodes.on_grid()[k / dim] != invalid_cell)
           work(k, parts.nodes.record(nodes.on_grid()[k / dim]) + k % dim);
+      parts.nodes.interpolate_hanging();
     };
     if (loads.any())
       {

@@ -41,6 +41,9 @@ namespace limber
                   points.mass[p] * support.value[i] * support.value[j];
           }
       }
+    for (std::size_t c = 0; c < nodes.n_cells(); ++c)
+      nodes.hanging_corners(c).condense_matrix(&blocks[c * in_cell * in_cell],
+                                               1);
     nodes.sum(blocks.data(), blocks.size());
     lump_light_nodes();
   }

@@ -23,25 +23,11 @@ namespace limber
     const auto &lattice = parts.grid.description;
     for (int d = 0; d < dim; ++d)
       {
-        edges[d] = (lattice.upper[d] - lattice.lower[d]) / lattice.cells[d];
-        n_cells_along[d] = lattice.cells[d];
+        n_cells_along[d] = lattice.cells[d] << lattice.levels;
+        edges[d] = (lattice.upper[d] - lattice.lower[d]) / n_cells_along[d];
         // a cell begins with the node of its own number
-        n_nodes[d] = lattice.cells[d] + along - 1;
+        n_nodes[d] = n_cells_along[d] + along - 1;
       }
-  }
-
-
-
-  template <int dim>
-  typename NumberedNodes<dim>::Place
-  NumberedNodes<dim>::cell_at(const std::uint32_t cell) const
-  {
-    const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
-    Place                    result;
-    for (int d = 0; d < dim; ++d)
-      result[d] = std::lround(
-        (geometry.origin[d] - parts.grid.description.lower[d]) / edges[d]);
-    return result;
   }
 
 
@@ -73,16 +59,43 @@ namespace limber
 
 
 
-  // Keys of all ranks, sorted and unique.
   template <int dim>
-  std::vector<typename NumberedNodes<dim>::Key>
-  NumberedNodes<dim>::united(std::vector<Key> own) const
+  typename NumberedNodes<dim>::HangingVertices
+  NumberedNodes<dim>::hanging_vertices() const
   {
-    if (parallel)
-      unite(own, parts.grid.communicator);
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
-    return own;
+    HangingVertices result;
+    if (parts.grid.has_levels())
+      result.resize(parts.grid.vertices.n());
+    for (const HangingNode &vertex : parts.grid.vertices.hanging)
+      result[vertex.node] = &vertex;
+    return result;
+  }
+
+
+
+  template <int dim>
+  typename NumberedNodes<dim>::CellInLattice
+  NumberedNodes<dim>::in_lattice(const std::uint32_t    cell,
+                                 const HangingVertices &hanging) const
+  {
+    const CellGeometry<dim> &geometry = parts.grid.geometry[cell];
+    const unsigned int       level    = parts.grid.level_of(cell);
+    CellInLattice            result;
+    result.coarser = parts.grid.description.levels - level;
+    Place place;
+    for (int d = 0; d < dim; ++d)
+      {
+        place[d] = std::lround(
+          (geometry.origin[d] - parts.grid.description.lower[d]) / edges[d]);
+        if (level > 0)
+          result.corners.shared |= (place[d] >> result.coarser & 1) << d;
+      }
+    result.key = key_of(place, n_cells_along);
+    if (!hanging.empty())
+      for (unsigned int i = 0; i < geometry.node.size(); ++i)
+        if (hanging[geometry.node[i] / NodeLayout<dim>::stride] != nullptr)
+          result.corners.hanging |= 1 << i;
+    return result;
   }
 
 
@@ -91,25 +104,32 @@ namespace limber
   bool
   NumberedNodes<dim>::update()
   {
-    std::vector<std::uint32_t> cells;
+    std::vector<std::uint32_t> with_points;
     for (const auto &body : parts.bodies)
       for_each_batch(body->points.view(), [&](const CellBatch &batch) {
-        cells.push_back(batch.cell);
+        with_points.push_back(batch.cell);
       });
-    int differs = cell_keys.empty() || cells != own_cells;
+    int differs = cells.empty() || with_points != own_cells;
     if (parallel)
       differs = dealii::Utilities::MPI::max(differs, parts.grid.communicator);
     if (!differs)
       return false;
-    own_cells = std::move(cells);
-    std::vector<Key> own;
-    own.reserve(own_cells.size());
+    own_cells                     = std::move(with_points);
+    const HangingVertices hanging = hanging_vertices();
+    cells.clear();
+    cells.reserve(own_cells.size());
     for (const std::uint32_t cell : own_cells)
-      own.push_back(key_of(cell_at(cell), n_cells_along));
-    cell_keys = united(std::move(own));
+      cells.push_back(in_lattice(cell, hanging));
+    const std::vector<CellInLattice> own = cells;
+    if (parallel)
+      unite(cells, parts.grid.communicator);
+    std::sort(cells.begin(), cells.end());
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
     number_nodes();
     find_places();
-    find_on_grid();
+    find_on_grid(own);
+    find_masters(hanging);
+    find_owners();
     return true;
   }
 
@@ -120,16 +140,23 @@ namespace limber
   NumberedNodes<dim>::number_nodes()
   {
     std::vector<Key> of_cells;
-    of_cells.reserve(cell_keys.size() * in_cell);
-    for (const Key cell : cell_keys)
+    of_cells.reserve(cells.size() * in_cell);
+    for (std::size_t c = 0; c < cells.size(); ++c)
       {
-        const Place first = place_of(cell, n_cells_along);
+        const Place                first   = place_of_cell(c);
+        const unsigned int         size    = size_of_cell(c);
+        const HangingCorners<dim> &corners = hanging_corners(c);
         for (unsigned int i = 0; i < in_cell; ++i)
           {
             Place        place = first;
             unsigned int rest  = i;
             for (int d = 0; d < dim; ++d, rest /= along)
-              place[d] += rest % along;
+              {
+                place[d] += rest % along * size;
+                // from the middle of an edge or face to the parent's corner
+                if (corners.hangs(i) && ((i ^ corners.shared) >> d & 1) != 0)
+                  place[d] += rest % along == 1 ? size : -size;
+              }
             of_cells.push_back(key_of(place, n_nodes));
           }
       }
@@ -168,28 +195,68 @@ namespace limber
 
 
 
-  // Nodes on this rank's grid, and the owners of all
+  // Nodes on this rank's grid but for the masters of hanging vertices. @p own:
+  // places of the cells of this rank.
   template <int dim>
   void
-  NumberedNodes<dim>::find_on_grid()
+  NumberedNodes<dim>::find_on_grid(const std::vector<CellInLattice> &own)
   {
     local.assign(keys.size(), invalid_cell);
     index_of_local.assign(parts.grid.n_cells(), invalid_cell);
     with_basis(parts.nodes.view(), [&](const auto basis) {
       using Basis = std::decay_t<decltype(basis)>;
-      for (const std::uint32_t cell : own_cells)
+      for (std::size_t k = 0; k < own.size(); ++k)
         {
-          const Key key = key_of(cell_at(cell), n_cells_along);
+          const std::uint32_t cell = own_cells[k];
           index_of_local[cell] =
-            std::lower_bound(cell_keys.begin(), cell_keys.end(), key) -
-            cell_keys.begin();
+            std::lower_bound(cells.begin(), cells.end(), own[k]) -
+            cells.begin();
           const Numbers of_this = numbers_in(cell);
           const auto   &node = Basis::nodes_of(parts.nodes.view(), cell).node;
           for (unsigned int i = 0; i < in_cell; ++i)
-            local[of_this[i]] = node[i] / NodeLayout<dim>::stride;
+            if (!own[k].corners.hangs(i))
+              local[of_this[i]] = node[i] / NodeLayout<dim>::stride;
         }
     });
+  }
 
+
+
+  // Of the masters of a hanging corner the node in its place is the one that is
+  // not in the place of another corner; in a face these come after its edges.
+  template <int dim>
+  void
+  NumberedNodes<dim>::find_masters(const HangingVertices &hanging)
+  {
+    if (hanging.empty())
+      return;
+    for (const std::uint32_t cell : own_cells)
+      {
+        const HangingCorners<dim> &corners = hanging_corners(number_of(cell));
+        const Numbers              of_this = numbers_in(cell);
+        const auto                &node    = parts.grid.geometry[cell].node;
+        corners.for_each_hanging([&](const unsigned int i) {
+          const HangingNode &vertex =
+            *hanging[node[i] / NodeLayout<dim>::stride];
+          for (const auto &[master, weight] : vertex.masters)
+            {
+              bool is_of_other = false;
+              corners.for_each_other_master(i, [&](const unsigned int j) {
+                is_of_other |= local[of_this[j]] == master;
+              });
+              if (!is_of_other)
+                local[of_this[i]] = master;
+            }
+        });
+      }
+  }
+
+
+
+  template <int dim>
+  void
+  NumberedNodes<dim>::find_owners()
+  {
     this_rank =
       dealii::Utilities::MPI::this_mpi_process(parts.grid.communicator);
     speakers.assign(keys.size(), std::numeric_limits<int>::max());
@@ -230,29 +297,64 @@ namespace limber
   NumberedNodes<dim>::at_sides(const std::size_t  cell,
                                const unsigned int direction) const
   {
-    const unsigned int place =
-      place_of(cell_keys[cell], n_cells_along)[direction];
-    return {{place == 0, place + 1 == n_cells_along[direction]}};
+    const unsigned int place = place_of_cell(cell)[direction];
+    return {
+      {place == 0, place + size_of_cell(cell) == n_cells_along[direction]}};
+  }
+
+
+
+  // The cell with points of that lower corner and size, if there is one
+  template <int dim>
+  std::optional<std::size_t>
+  NumberedNodes<dim>::find(const Place &place, const unsigned int coarser) const
+  {
+    CellInLattice sought;
+    sought.key       = key_of(place, n_cells_along);
+    const auto found = std::lower_bound(cells.begin(), cells.end(), sought);
+    if (found == cells.end() || !(*found == sought) ||
+        found->coarser != coarser)
+      return {};
+    return found - cells.begin();
   }
 
 
 
   template <int dim>
-  typename NumberedNodes<dim>::Neighbour
-  NumberedNodes<dim>::neighbour(const std::size_t  cell,
-                                const unsigned int direction,
-                                const int          step) const
+  typename NumberedNodes<dim>::Neighbours
+  NumberedNodes<dim>::neighbours(const std::size_t  cell,
+                                 const unsigned int direction,
+                                 const int          step) const
   {
     if (at_sides(cell, direction)[step > 0])
-      return {false, {}};
-    Place place = place_of(cell_keys[cell], n_cells_along);
-    place[direction] += step;
-    const Key  key = key_of(place, n_cells_along);
-    const auto found =
-      std::lower_bound(cell_keys.begin(), cell_keys.end(), key);
-    if (found == cell_keys.end() || *found != key)
-      return {true, {}};
-    return {true, found - cell_keys.begin()};
+      return {{}, false};
+    const unsigned int coarser = cells[cell].coarser, size = size_of_cell(cell);
+    Place              place = place_of_cell(cell);
+    place[direction] += step * int(size);
+    if (const auto alike = find(place, coarser))
+      return {{*alike}, false};
+    Place of_larger = place;
+    for (unsigned int &along_axis : of_larger)
+      along_axis -= along_axis % (2 * size);
+    if (const auto larger = find(of_larger, coarser + 1))
+      return {{*larger}, false};
+    Neighbours result{{}, true};
+    if (size == 1)
+      return result;
+    if (step < 0)
+      place[direction] += size / 2;
+    constexpr unsigned int n_in_face = 1 << (dim - 1);
+    for (unsigned int k = 0; k < n_in_face; ++k)
+      {
+        Place of_smaller = place;
+        for (unsigned int d = 0, bit = 0; d < dim; ++d)
+          if (d != direction)
+            of_smaller[d] += (k >> bit++ & 1) * size / 2;
+        if (const auto smaller = find(of_smaller, coarser - 1))
+          result.cells.push_back(*smaller);
+      }
+    result.any_is_empty = result.cells.size() < n_in_face;
+    return result;
   }
 
 

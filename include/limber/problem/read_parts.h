@@ -189,13 +189,22 @@ namespace limber
                  const SceneNames  &names);
 
   /**
-   * Resolves 'auto' of the frames and the kernel, with a note for the log;
-   * refuses what either cannot do (source/problem/frame_and_kernel.cc). Needs
-   * the sides, and of the bodies all but treatment and points.
+   * Resolves 'auto' of the frames, with a note for the log; refuses what a
+   * frame cannot do (source/problem/frame.cc). Needs the sides, and of the
+   * bodies all but treatment and points.
    */
   template <int dim>
   void
-  choose_frames_and_kernel(const Section &root, Problem<dim> &problem);
+  choose_frames(const Section &root, Problem<dim> &problem);
+
+  /** The same for the kernel (source/problem/kernel.cc); after the frames. */
+  template <int dim>
+  void
+  choose_kernel(const Section &root, Problem<dim> &problem);
+
+  /** Whether an entry is a positive number, not 'auto'. */
+  bool
+  is_switched_on(const Section &section, const std::string &control);
 
   /**
    * Notes for the log on motions of solids for which frame and kernel are
@@ -213,6 +222,18 @@ namespace limber
   template <int dim>
   double
   initial_rotation(const Body<dim> &body, double end_time);
+
+  /** Rotation, rad, up to which a small-strain law in the initial frame is
+   * accurate enough: it takes half the square of the angle for a strain. */
+  inline constexpr double small_rotation = 0.1;
+
+  /**
+   * Whether a body cannot fold onto itself (self-contact): a ball, or a box or
+   * block that is not slender (source/problem/solid_motion.cc).
+   */
+  template <int dim>
+  bool
+  is_compact(const Shape<dim> &shape);
 
   /** Needs grid, sides and gravity; chooses the kernel with the frames. */
   template <int dim>

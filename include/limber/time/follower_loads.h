@@ -98,9 +98,8 @@ namespace limber
     has_pressures() const;
     bool
     has_body_force() const;
-    using Numbers = std::array<std::uint32_t, Support<dim>::most>;
-    Numbers
-    numbers_of(const Support<dim> &at, std::uint32_t cell) const;
+    Support<dim>
+    at_free_nodes(Support<dim> at, std::uint32_t cell) const;
     FacePiece<dim>
     moved(const Piece &piece, const std::vector<double> &displacement) const;
     double

@@ -25,13 +25,14 @@ namespace limber
   class GhostPenalty
   {
   public:
-    // A face between two cells with points, of which one is at the surface
+    // A face between two cells with points, of which one is at the surface; or
+    // the part of a cell's face that a smaller one has
     struct Face
     {
-      // Numbers of nodes in lines along the normal, p + 2 in each
-      std::vector<std::uint32_t> nodes;
-      // Coefficients of the values in a line: jump of the derivative times h^p
-      std::array<double, 4> difference;
+      std::vector<std::uint32_t> nodes; // of both cells
+      // Jump of the derivative times h^p at each node in the face, as
+      // coefficients of the values at all nodes, row by row
+      std::vector<double> jumps;
       // Integrals of products of the functions over the unit interval, for each
       // direction in the face
       std::array<std::array<std::array<double, 3>, 3>, dim - 1> mass;
@@ -75,6 +76,17 @@ namespace limber
     add_tangent(const Add &add) const;
 
   private:
+    Face
+    face_of_splines(const NumberedNodes<dim> &nodes,
+                    std::size_t               cell,
+                    std::size_t               other,
+                    int                       d) const;
+    static Face
+    face_of_vertices(const NumberedNodes<dim> &nodes,
+                     std::size_t               cell,
+                     std::size_t               other,
+                     int                       d,
+                     int                       step);
     static double
     mass(const Face        &face,
          unsigned int       i,

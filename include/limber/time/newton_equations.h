@@ -40,7 +40,7 @@ namespace limber
   /**
    * The nonlinear equations of a step in the displacements of nodes: nodes of
    * occupied cells alone, dim equations each, in the order of NumberedNodes.
-   * They are set up anew when points have moved. For cells of one size.
+   * They are set up anew when points have moved.
    *
    * Each rank finds internal forces and tangents of its points, which are
    * summed; then every rank solves all equations, alike to the last bit.
@@ -301,9 +301,7 @@ namespace limber
     void
     find_places();
     void
-    add_volume(std::size_t                          body,
-               typename NumberedNodes<dim>::Numbers numbers,
-               CellResponse                        &response);
+    add_volume(std::size_t body, std::size_t cell, CellResponse &response);
     void
     condense_volumes();
     std::vector<double>

@@ -5,6 +5,7 @@
 #include <deal.II/base/array_view.h>
 #include <deal.II/base/point.h>
 
+#include <limber/time/hanging_corners.h>
 #include <limber/time/integrator.h>
 
 #include <array>
@@ -17,10 +18,11 @@ namespace limber
   /**
    * The nodes of all cells that hold points, on whatever rank, numbered in the
    * order of their places in the lattice (the first direction runs fastest):
-   * the same on every rank and for any number of ranks. For cells of one size,
-   * with linear functions, whose nodes are the vertices, or quadratic splines,
-   * whose nodes along a direction are the centres of the cells and both sides.
-   * What is summed over ranks is the same on all of them, to the last bit.
+   * the same on every rank and for any number of ranks. With linear functions
+   * nodes are the vertices that do not hang, on which those that do depend
+   * (HangingCorners); with quadratic splines, on cells of one size, along each
+   * direction the centres of the cells and both sides. What is summed over
+   * ranks is the same on all of them, to the last bit.
    */
   template <int dim>
   class NumberedNodes
@@ -41,7 +43,7 @@ namespace limber
     forget()
     {
       own_cells.clear();
-      cell_keys.clear();
+      cells.clear();
     }
 
     std::size_t
@@ -89,10 +91,11 @@ namespace limber
     std::size_t
     n_cells() const
     {
-      return cell_keys.size();
+      return cells.size();
     }
 
-    /** Nodes of such a cell, in the order of the lattice. */
+    /** Nodes of such a cell, in the order of the basis; of cells with hanging
+     * corners those on which these depend. */
     Numbers
     of_cell(const std::size_t cell) const
     {
@@ -114,33 +117,62 @@ namespace limber
       return of_cell(number_of(cell));
     }
 
+    /** Of a cell of that index; none with splines. */
+    const HangingCorners<dim> &
+    hanging_corners(const std::size_t cell) const
+    {
+      return cells[cell].corners;
+    }
+
     /** Whether a cell of that index ends at the lower and upper side. */
     std::array<bool, 2>
     at_sides(std::size_t cell, unsigned int direction) const;
 
-    /** The next cell along a direction from a cell with points. */
-    struct Neighbour
+    /** The next cells along a direction from a cell with points: one of its
+     * size or larger, or smaller ones. */
+    struct Neighbours
     {
-      bool                       in_box;
-      std::optional<std::size_t> cell; // with points
+      std::vector<std::size_t> cells;        // with points
+      bool                     any_is_empty; // in the box
     };
-    Neighbour
-    neighbour(std::size_t cell, unsigned int direction, int step) const;
+    Neighbours
+    neighbours(std::size_t cell, unsigned int direction, int step) const;
 
-    /** Edge of a cell, m. */
+    /** Lower corner of a cell of that index, in edges of the finest cells. */
+    std::array<unsigned int, dim>
+    place_of_cell(const std::size_t cell) const
+    {
+      return place_of(cells[cell].key, n_cells_along);
+    }
+
+    /** Its edges over those of the finest cells. */
+    unsigned int
+    size_of_cell(const std::size_t cell) const
+    {
+      return 1u << cells[cell].coarser;
+    }
+
+    /** Its edge, m. */
     double
-    edge(const unsigned int direction) const
+    edge(const std::size_t cell, const unsigned int direction) const
+    {
+      return size_of_cell(cell) * edges[direction];
+    }
+
+    /** Edge of the finest cells that a mesh may have, m. */
+    double
+    finest_edge(const unsigned int direction) const
     {
       return edges[direction];
     }
 
     /** Volume of a whole cell, m^dim. */
     double
-    volume_of_cell() const
+    volume_of_cell(const std::size_t cell) const
     {
       double result = 1;
       for (int d = 0; d < dim; ++d)
-        result *= edges[d];
+        result *= edge(cell, d);
       return result;
     }
 
@@ -164,30 +196,59 @@ namespace limber
     using Key   = std::uint64_t;
     using Place = std::array<unsigned int, dim>;
 
-    Place
-    cell_at(std::uint32_t cell) const;
+    // Of the lattices of the finest cells that a mesh may have
+    struct CellInLattice
+    {
+      bool
+      operator<(const CellInLattice &other) const
+      {
+        return key < other.key;
+      }
+      bool
+      operator==(const CellInLattice &other) const
+      {
+        return key == other.key;
+      }
+
+      Key                 key = 0; // of the lower corner
+      HangingCorners<dim> corners;
+      std::uint8_t        coarser = 0; // than the finest, in levels
+    };
+
+    // By local number; null: it does not hang. Empty with cells of one size.
+    using HangingVertices = std::vector<const HangingNode *>;
+
+    HangingVertices
+    hanging_vertices() const;
+    CellInLattice
+    in_lattice(std::uint32_t cell, const HangingVertices &hanging) const;
+    std::optional<std::size_t>
+    find(const Place &place, unsigned int coarser) const;
     static Key
     key_of(const Place &place, const Place &extent);
     static Place
     place_of(Key key, const Place &extent);
-    std::vector<Key>
-    united(std::vector<Key> own) const;
     void
     number_nodes();
     void
     find_places();
     void
-    find_on_grid();
+    find_on_grid(const std::vector<CellInLattice> &own);
+    void
+    find_masters(const HangingVertices &hanging);
+    void
+    find_owners();
 
     const RunParts<dim>             parts;
     const bool                      parallel;
     const unsigned int              along, in_cell; // nodes of a cell
-    dealii::Point<dim>              edges;
-    Place                           n_nodes, n_cells_along; // of the lattice
-    std::vector<std::uint32_t>      own_cells; // of this rank, with points
-    std::vector<Key>                keys, cell_keys; // sorted
-    std::vector<std::uint32_t>      numbers;         // in_cell for each cell
-    std::vector<std::uint32_t>      index_of_local;  // cells
+    dealii::Point<dim>              edges;          // of the finest cells, m
+    Place                           n_nodes, n_cells_along; // of such cells
+    std::vector<std::uint32_t>      own_cells;      // of this rank, with points
+    std::vector<CellInLattice>      cells;          // sorted
+    std::vector<Key>                keys;           // of nodes, sorted
+    std::vector<std::uint32_t>      numbers;        // in_cell for each cell
+    std::vector<std::uint32_t>      index_of_local; // cells
     std::vector<std::uint32_t>      local;
     std::vector<int>                speakers; // ranks, by number
     int                             this_rank = 0;

@@ -18,10 +18,10 @@ using namespace limber;
 namespace
 {
   // Without a side, so that the functions are not those at one; with one at
-  // the left and the bottom
+  // the left and the bottom. @p levels: as finer cells in the middle.
   template <int dim>
   std::string
-  scene(const std::string &kernel)
+  scene(const std::string &kernel, const unsigned int levels)
   {
     const std::string z = dim == 3 ? ", 0.5" : "";
     return "set Dimension = " + std::to_string(dim) + R"(
@@ -47,7 +47,16 @@ namespace
         set Upper corner = 4, 2)" +
            (dim == 3 ? ", 2.5" : "") + R"(
         set Cells = 8, 5)" +
-           (dim == 3 ? ", 5" : "") + R"(
+           (dim == 3 ? ", 5" : "") +
+           (levels == 0 ? "" :
+                          "\nset Levels = " + std::to_string(levels) + R"(
+        set Refine = middle
+        subsection Refine middle
+          set Lower corner = 0.9, 0.5)" +
+                            (dim == 3 ? ", 0.6" : "") + R"(
+          set Upper corner = 1.3, 1.4)" +
+                            (dim == 3 ? ", 1.3" : "") + "\nend") +
+           R"(
       end
       subsection Method
         set Time integration = quasi-static
@@ -60,8 +69,8 @@ namespace
   template <int dim>
   struct Penalty
   {
-    explicit Penalty(const std::string &kernel)
-      : run(scene<dim>(kernel))
+    explicit Penalty(const std::string &kernel, const unsigned int levels)
+      : run(scene<dim>(kernel, levels))
       , nodes({run.problem, run.grid, run.nodes, run.bodies, run.ledger})
       , p(kernel == "linear" ? 1 : 2)
     {
@@ -88,13 +97,15 @@ namespace
                const int                  d,
                const unsigned int         component)
     {
-      const double h     = nodes.edge(d);
-      const auto   value = [&](const double step) {
+      const std::size_t number = nodes.number_of(cell);
+      const double      h      = nodes.edge(number, d);
+      const auto        value  = [&](const double step) {
         auto at = x;
         at[d] += step;
-        const auto support = support_at<dim>(run.nodes.view(), cell, at);
-        const auto numbers = nodes.numbers_in(cell);
-        double     result  = 0;
+        auto       support = support_at<dim>(run.nodes.view(), cell, at);
+        const auto numbers = nodes.of_cell(number);
+        nodes.hanging_corners(number).condense(support.value.data(), 1);
+        double result = 0;
         for (int i = 0; i < support.n; ++i)
           result += support.value[i] * u[numbers[i] * dim + component];
         return result;
@@ -104,7 +115,8 @@ namespace
                       (value(h) - 2 * value(0) + value(-h)) / (h * h);
     }
 
-    /** g E / 2 h^(2p-1) / ((2p+1) p!^2) times the integral of jumps. */
+    /** g E / 2 h^(2p-1) / ((2p+1) p!^2) times the integral of jumps, h of the
+     * larger cell. */
     double
     energy(const std::vector<double> &u)
     {
@@ -112,13 +124,19 @@ namespace
       double       result = 0;
       const auto   view   = run.nodes.view();
       for (std::uint32_t c = 0; c < run.grid.n_owned_cells(); ++c)
-        for (int d = 0; d < dim; ++d)
+        for (int face = 0; face < 2 * dim; ++face)
           {
-            const std::uint32_t other = beyond(c, d, 1);
+            const int           d     = face / 2;
+            const std::uint32_t other = beyond(c, d, face % 2, 0.5, 0.5);
             if (!is_occupied(c) || !is_occupied(other) ||
                 !(at_surface(c) || at_surface(other)))
               continue;
-            const double h = nodes.edge(d);
+            const auto own   = nodes.number_of(c);
+            const int  ratio = nodes.size_of_cell(nodes.number_of(other)) /
+                              nodes.size_of_cell(own);
+            if (ratio == 0 || (ratio == 1 && face % 2 == 0))
+              continue; // the other's turn
+            const double h = nodes.edge(nodes.number_of(other), d);
             // Gauss' rule of three points in each direction of the face
             for (int k = 0; k < (dim == 2 ? 3 : 9); ++k)
               {
@@ -126,14 +144,14 @@ namespace
                 double                  weight = 1;
                 for (int e = 0, rest = k; e < dim; ++e)
                   if (e == d)
-                    x[e] += h;
+                    x[e] += face % 2 * nodes.edge(own, d);
                   else
                     {
                       const int at = rest % 3;
                       rest /= 3;
-                      x[e] +=
-                        nodes.edge(e) * (0.5 + 0.5 * (at - 1) * std::sqrt(0.6));
-                      weight *= nodes.edge(e) * (at == 1 ? 4. : 2.5) / 9;
+                      x[e] += nodes.edge(own, e) *
+                              (0.5 + 0.5 * (at - 1) * std::sqrt(0.6));
+                      weight *= nodes.edge(own, e) * (at == 1 ? 4. : 2.5) / 9;
                     }
                 for (unsigned int component = 0; component < dim; ++component)
                   {
@@ -148,13 +166,19 @@ namespace
     }
 
     std::uint32_t
-    beyond(const std::uint32_t cell, const int d, const int step)
+    beyond(const std::uint32_t cell,
+           const int           d,
+           const bool          upper,
+           const double        first,
+           const double        second)
     {
       const auto              view = run.nodes.view();
       std::array<double, dim> x;
-      for (int e = 0; e < dim; ++e)
-        x[e] = view.cells[cell].origin[e] +
-               (0.5 + (e == d ? step : 0)) * nodes.edge(e);
+      for (int e = 0, k = 0; e < dim; ++e)
+        x[e] = view.cells[cell].origin[e] + (e == d   ? (upper ? 1.01 : -0.01) :
+                                             k++ == 0 ? first :
+                                                        second) /
+                                              view.cells[cell].inverse_edge[e];
       return view.bins.cell_at(x);
     }
 
@@ -172,10 +196,12 @@ namespace
     at_surface(const std::uint32_t cell)
     {
       for (int d = 0; d < dim; ++d)
-        for (const int step : {-1, 1})
-          if (const auto next = beyond(cell, d, step);
-              next != invalid_cell && !is_occupied(next))
-            return true;
+        for (const bool upper : {false, true})
+          for (const double first : {0.25, 0.75})
+            for (const double second : {0.25, 0.75})
+              if (const auto next = beyond(cell, d, upper, first, second);
+                  next != invalid_cell && !is_occupied(next))
+                return true;
       return false;
     }
 
@@ -191,10 +217,11 @@ namespace
 
   template <int dim>
   void
-  check_penalty(const std::string &kernel)
+  check_penalty(const std::string &kernel, const unsigned int levels)
   {
-    SCOPED_TRACE(kernel + " in " + std::to_string(dim) + "d");
-    Penalty<dim> of(kernel);
+    SCOPED_TRACE(kernel + " in " + std::to_string(dim) +
+                 "d, levels: " + std::to_string(levels));
+    Penalty<dim> of(kernel, levels);
     ASSERT_GT(of.penalty.faces().size(), 4u);
 
     // Any values of the nodes, the same in each run
@@ -232,7 +259,7 @@ namespace
       if (of.p == 2)
         for (int e = 0; e < dim; ++e)
           {
-            const double h       = of.nodes.edge(e);
+            const double h       = of.nodes.edge(0, e);
             const bool   at_side = (of.nodes.sides(i) >> (2 * e) & 3) != 0;
             result +=
               (e + d + 1) * (x[e] * x[e] - (at_side ? 0 : 0.25 * h * h));
@@ -249,7 +276,9 @@ TEST(GhostPenalties, JumpsCostEnergyAndSmoothFieldsDoNot)
 {
   for (const std::string kernel : {"linear", "quadratic"})
     {
-      check_penalty<2>(kernel);
-      check_penalty<3>(kernel);
+      check_penalty<2>(kernel, 0);
+      check_penalty<3>(kernel, 0);
     }
+  check_penalty<2>("linear", 2);
+  check_penalty<3>("linear", 1);
 }

@@ -4,28 +4,18 @@
 #include <limber/materials/law_list.h>
 #include <limber/materials/linear_elastic.h>
 #include <limber/materials/neo_hookean.h>
-#include <limber/problem/ball.h>
-#include <limber/problem/block.h>
 #include <limber/problem/body_at_sides.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 namespace limber
 {
   namespace
   {
-    // Longest over shortest edge, beyond which a body may fold onto itself in
-    // an impact (self-contact).
-    constexpr double slender = 4;
-
-    // Rotation, rad, up to which a small-strain law in the initial frame is
-    // accurate enough: it takes half the square of the angle for a strain.
-    constexpr double small_rotation = 0.1;
-
     // Impact energy per volume over Young's modulus up to which 'auto' is the
     // initial frame: a disc with 0.13 from its fall bounces there, with 1.3 its
     // points invert.
@@ -40,14 +30,6 @@ namespace limber
       std::string remedy; // what to set, besides leaving the choice
       bool        goes_in_current = true; // the current frame takes it
     };
-
-    bool
-    is_set(const Section &section, const std::string &control)
-    {
-      return section.text(control) != "auto" && section.number(control) > 0;
-    }
-
-
 
     /**
      * Which entry excludes the initial frame (total Lagrangian); empty: none.
@@ -72,11 +54,11 @@ namespace limber
           "has no locking treatment " +
             in_quotes(section.text("Locking treatment")),
           ", or 'Locking treatment = assumed strain', 'cell' or 'none'"};
-      if (is_set(section, "Hourglass control"))
+      if (is_switched_on(section, "Hourglass control"))
         return Hindrance{"leaves no motion of a cell without resistance, so "
                          "that 'Hourglass control' has nothing to do",
                          ", or 'Hourglass control = 0'"};
-      if (is_set(section, "Checkerboard control"))
+      if (is_switched_on(section, "Checkerboard control"))
         return Hindrance{"has no checkerboard control",
                          ", or 'Checkerboard control = 0'"};
       for (const std::string history : {"History", "Deviatoric history"})
@@ -142,126 +124,6 @@ namespace limber
                          "notice that they meet later",
                          ""};
       return {};
-    }
-
-
-
-    /** An entry of a body that is incompatible with the kernel. */
-    struct Misfit
-    {
-      std::string entry, reason, remedy;
-    };
-
-    std::optional<Misfit>
-    misfit_of_splines(const Section &section)
-    {
-      if (read_word(section, "Locking treatment", locking_words()) ==
-          Treatment::assumed_strain)
-        return Misfit{"Locking treatment",
-                      "splines have no hourglass modes to which it could give "
-                      "a strain",
-                      "'Locking treatment = node'"};
-      if (is_set(section, "Hourglass control"))
-        return Misfit{"Hourglass control",
-                      "splines have no hourglass modes",
-                      "'Hourglass control = 0'"};
-      return {};
-    }
-
-
-
-    std::optional<Misfit>
-    misfit_of_domains(const Section &section)
-    {
-      if (!treatment_of(
-             read_word(section, "Locking treatment", locking_words()))
-             .with_domains)
-        return Misfit{"Locking treatment",
-                      "domains reach over several cells",
-                      "'Locking treatment = cell', 'node' or 'none'"};
-      if (is_set(section, "Hourglass control"))
-        return Misfit{"Hourglass control",
-                      "domains that reach over several cells resist",
-                      "'Hourglass control = 0'"};
-      if (is_set(section, "Checkerboard control"))
-        return Misfit{"Checkerboard control",
-                      "it is for kernels whose points see one cell",
-                      "'Checkerboard control = 0'"};
-      if (read_word(section, "History", volume_history_words()) !=
-          HistoryTreatment::keep)
-        return Misfit{"History",
-                      "points with domains keep their own",
-                      "'History = keep'"};
-      return {};
-    }
-
-
-
-    std::optional<Misfit>
-    misfit_of_dual_domain(const Section &section)
-    {
-      if (!treatment_of(
-             read_word(section, "Locking treatment", locking_words()))
-             .with_domains)
-        return Misfit{"Locking treatment",
-                      "its gradients come from several cells",
-                      "'Locking treatment = cell', 'node' or 'none'"};
-      if (is_set(section, "Hourglass control"))
-        return Misfit{"Hourglass control",
-                      "no motion of a cell is without resistance",
-                      "'Hourglass control = 0'"};
-      if (is_set(section, "Checkerboard control"))
-        return Misfit{"Checkerboard control",
-                      "it is for kernels whose points see one cell",
-                      "'Checkerboard control = 0'"};
-      if (read_word(section, "History", volume_history_words()) !=
-          HistoryTreatment::keep)
-        return Misfit{"History", "points keep their own", "'History = keep'"};
-      return {};
-    }
-
-
-
-    /**
-     * The first entry in the section of a body that is incompatible with the
-     * kernel.
-     */
-    std::optional<Misfit>
-    misfit(const KernelKind kernel, const Section &section, const bool liquid)
-    {
-      if (is_spline(kernel))
-        return misfit_of_splines(section);
-      if (kernel == KernelKind::ddmp && !liquid)
-        return misfit_of_dual_domain(section);
-      if (has_domains(kernel) && !liquid)
-        return misfit_of_domains(section);
-      return {};
-    }
-
-
-
-    /**
-     * Whether self-contact is excluded: a ball, or a box or block that is not
-     * slender.
-     */
-    template <int dim>
-    bool
-    is_compact(const Shape<dim> &shape)
-    {
-      const auto *block = dynamic_cast<const BlockShape<dim> *>(&shape);
-      if (block == nullptr)
-        return dynamic_cast<const BallShape<dim> *>(&shape) != nullptr;
-      using Info     = dealii::GeometryInfo<dim>;
-      double longest = 0, shortest = std::numeric_limits<double>::max();
-      for (unsigned int line = 0; line < Info::lines_per_cell; ++line)
-        {
-          const double edge =
-            block->vertices[Info::line_to_cell_vertices(line, 0)].distance(
-              block->vertices[Info::line_to_cell_vertices(line, 1)]);
-          longest  = std::max(longest, edge);
-          shortest = std::min(shortest, edge);
-        }
-      return longest <= slender * shortest;
     }
 
 
@@ -538,175 +400,24 @@ namespace limber
 
 
 
-    template <int dim>
-    bool
-    any_in_current_frame(const Problem<dim> &problem)
-    {
-      return std::any_of(problem.bodies.begin(),
-                         problem.bodies.end(),
-                         [](const auto &body) {
-                           return body.frame == Frame::current;
-                         });
-    }
-
-
-
-    /**
-     * Why 'Kernel = auto' does not take splines here, whatever solids would
-     * gain; empty if it may.
-     */
-    template <int dim>
-    std::string
-    against_splines(const Section &root, const Problem<dim> &problem)
-    {
-      if (problem.method.integration == TimeIntegration::semi_implicit)
-        return "the time integration is made for linear functions";
-      if (is_solved_by_newton(problem.method.integration) &&
-          any_in_current_frame(problem))
-        return "the time integration knows splines in the initial frame alone";
-      if (problem.grid.levels > 0)
-        return "splines need cells of one size ('Grid/Levels')";
-      for (const auto &body : problem.bodies)
-        {
-          const Section section = root.subsection("Body " + body.name);
-          if (const auto found = misfit_of_splines(section))
-            return found->reason + " (" + section.where(found->entry) + ")";
-        }
-      for (const auto &body : problem.bodies)
-        if (body.is_plastic && !body.keeps_surface)
-          return "material that flows without end, like body " +
-                 in_quotes(body.name) + ", keeps no strain that could creep";
-      // With splines and FLIP liquids lose volume, so that floating bodies
-      // sink; only affine transfers (APIC, AFLIP) conserve it.
-      const std::string transfer = root.subsection("Method").text("Transfer");
-      if (transfer != "apic" && transfer != "aflip")
-        for (const auto &body : problem.bodies)
-          if (body.is_liquid)
-            return "with splines liquids, like body " + in_quotes(body.name) +
-                   ", lose volume";
-      return "";
-    }
-
-
-
-    /**
-     * Whether points with domains serve a scene on cells of several sizes: of
-     * solids that keep their connection, where linear functions creep. They go
-     * neither with joined points nor with pairs in contact.
-     */
-    template <int dim>
-    bool
-    takes_domains(const Section &root, const Problem<dim> &problem)
-    {
-      return problem.method.integration == TimeIntegration::explicit_steps &&
-             !root.subsection("Grid").flag("Join points") &&
-             root.subsection("Contact").list("Pairs").empty() &&
-             !is_affine(read_word(root.subsection("Method"),
-                                  "Transfer",
-                                  transfer_words())) &&
-             std::all_of(problem.bodies.begin(),
-                         problem.bodies.end(),
-                         [&](const auto &body) {
-                           return !body.is_liquid &&
-                                  (!body.is_plastic || body.keeps_surface) &&
-                                  !misfit_of_domains(
-                                    root.subsection("Body " + body.name));
-                         });
-    }
-
-
-
-    template <int dim>
-    void
-    choose_kernel(const Section &root, Problem<dim> &problem)
-    {
-      const auto say = [&](const std::string &choice) {
-        problem.notes.push_back("Kernel 'auto' is " + choice + ".");
-      };
-      problem.grid.kernel = KernelKind::linear;
-      if (problem.grid.levels > 0 && any_in_current_frame(problem) &&
-          takes_domains(root, problem))
-        {
-          problem.grid.kernel = KernelKind::cpdi;
-          return say("'cpdi', as solids creep with linear functions when their "
-                     "points cross cells, and splines need cells of one size");
-        }
-      if (!problem.grid.against_splines.empty())
-        return say("'linear', as " + problem.grid.against_splines);
-      for (const auto &body : problem.bodies)
-        if (!body.is_liquid && body.frame == Frame::current)
-          {
-            problem.grid.kernel = KernelKind::quadratic;
-            return say("'quadratic', as solids like body " +
-                       in_quotes(body.name) +
-                       " creep with linear functions when their points cross "
-                       "cells");
-          }
-      // Linear functions represent bending along the axes of the grid only: a
-      // strip two cells thick that runs across the cells is 20 % too stiff,
-      // with splines right to 0.3 %. But with splines the spin of a free body
-      // excites vibrations.
-      const bool may_spin =
-        !root.subsection("Loads").list("Face loads").empty();
-      for (const auto &body : problem.bodies)
-        if (!body.is_liquid && !is_upright(*body.shape) &&
-            root.list("Obstacles").empty() &&
-            (is_held(body, problem) ||
-             (!may_spin && !is_compact(*body.shape) &&
-              initial_rotation(body, problem.end_time) < small_rotation)))
-          {
-            problem.grid.kernel = KernelKind::quadratic;
-            return say("'quadratic', as linear functions are too stiff where "
-                       "bodies bend across the cells, as " +
-                       in_quotes(body.name) + " may");
-          }
-      say("'linear', as no solid crosses cells");
-    }
   } // namespace
 
 
 
   template <int dim>
   void
-  choose_frames_and_kernel(const Section &root, Problem<dim> &problem)
+  choose_frames(const Section &root, Problem<dim> &problem)
   {
     const auto obstacle_of_all = obstacle_to_one_piece(root, problem);
     for (auto &body : problem.bodies)
       choose_frame(root, obstacle_of_all, body, problem);
     check_frames(problem);
-
-    const Section method         = root.subsection("Method");
-    problem.grid.kernel          = read_word(method, "Kernel", kernel_words());
-    problem.grid.against_splines = against_splines(root, problem);
-    if (problem.grid.kernel == KernelKind::automatic)
-      choose_kernel(root, problem);
-    for (const auto &body : problem.bodies)
-      {
-        const Section section = root.subsection("Body " + body.name);
-        if (const auto found =
-              misfit(problem.grid.kernel, section, body.is_liquid))
-          throw InputError(
-            "The entry " + in_quotes(section.text(found->entry)) + " in " +
-            section.where(found->entry) +
-            " does not go with 'Method/Kernel = " + method.text("Kernel") +
-            "': " + found->reason + ". Set " + found->remedy +
-            ", or 'Kernel = linear'.");
-      }
-    warn_of_solid_motion(problem);
-    if (has_domains(problem.grid.kernel) &&
-        is_affine(read_word(method, "Transfer", transfer_words())))
-      throw InputError("The transfer " + in_quotes(method.text("Transfer")) +
-                       " in " + method.where("Transfer") +
-                       " does not go with 'Kernel = " + method.text("Kernel") +
-                       "', which has no moments "
-                       "for it. Set 'Transfer = flip' or 'fmpm', or 'Kernel = "
-                       "quadratic'.");
   }
 
 
 
   template void
-  choose_frames_and_kernel(const Section &, Problem<2> &);
+  choose_frames(const Section &, Problem<2> &);
   template void
-  choose_frames_and_kernel(const Section &, Problem<3> &);
+  choose_frames(const Section &, Problem<3> &);
 } // namespace limber
