@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/point_support.h>
 #include <limber/points/cell_batch.h>
 #include <limber/time/averaged_volumes.h>
 #include <limber/time/newton_equations.h>
@@ -510,6 +511,34 @@ namespace limber
               rigid_motion<dim>(m, d, place, places[0]);
       }
     return result;
+  }
+
+
+
+  template <int dim>
+  double
+  NewtonEquations<dim>::longest_way(const std::vector<double> &displacement)
+  {
+    spread(displacement, by_node);
+    const GridView<dim> grid   = parts.nodes.view();
+    double              result = 0;
+    for (const auto &body : parts.bodies)
+      {
+        const PointView<dim> points = body->points.view();
+        for (std::size_t p = 0; p < points.size; ++p)
+          {
+            const auto at = support_of_point<dim, false>(grid, points, p);
+            for (int d = 0; d < dim; ++d)
+              {
+                double way = 0;
+                for (int i = 0; i < at.n; ++i)
+                  way +=
+                    at.value[i] * by_node[std::size_t(at.node[i]) * dim + d];
+                result = std::max(result, std::abs(way) / nodes.finest_edge(d));
+              }
+          }
+      }
+    return dealii::Utilities::MPI::max(result, parts.grid.communicator);
   }
 
 

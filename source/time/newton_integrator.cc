@@ -432,29 +432,23 @@ namespace limber
 
 
 
-  // On several ranks no node may move by more than a cell: there is one layer
+  // On several ranks no point may move by more than a cell: there is one layer
   // of ghost cells.
   template <int dim>
   bool
   NewtonIntegrator<dim>::stays_with_ranks(const Values &displacement)
   {
-    const NumberedNodes<dim> &nodes = equations.numbered_nodes();
-    if (!nodes.is_parallel() || std::none_of(parts.bodies.begin(),
-                                             parts.bodies.end(),
-                                             [](const auto &body) {
-                                               return body->description.frame ==
-                                                      Frame::current;
-                                             }))
+    if (!equations.numbered_nodes().is_parallel() ||
+        std::all_of(parts.bodies.begin(),
+                    parts.bodies.end(),
+                    [](const auto &body) {
+                      return body->description.frame == Frame::initial;
+                    }) ||
+        equations.longest_way(displacement) <= 1)
       return true;
-    for (std::size_t k = 0; k < equations.size(); ++k)
-      if (std::abs(displacement[k]) > nodes.finest_edge(k % dim))
-        {
-          obstacle = "points would pass more than a cell, which is as far as "
-                     "ranks follow them (one rank does, and so does 'Frame = "
-                     "initial')";
-          return false;
-        }
-    return true;
+    obstacle = "points would pass more than a cell, which is as far as ranks "
+               "follow them (one rank does, and so does 'Frame = initial')";
+    return false;
   }
 
 

@@ -98,6 +98,7 @@ namespace limber
     has_pressures() const;
     bool
     has_body_force() const;
+    using Numbers = typename NumberedNodes<dim>::Numbers;
     Support<dim>
     at_free_nodes(Support<dim> at, std::uint32_t cell) const;
     FacePiece<dim>

@@ -280,6 +280,11 @@ namespace limber
       return factorises_all;
     }
 
+    /** How far these displacements move any point along an axis at most, over
+     * the edge of the finest cells. Collective. */
+    double
+    longest_way(const std::vector<double> &displacement);
+
     /** Update the points by these displacements. */
     AcceptedMotion
     accept(const std::vector<double> &displacement);

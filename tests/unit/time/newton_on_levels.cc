@@ -105,31 +105,30 @@ namespace
 
 
   // A constant stress is in equilibrium on any cells: all points are stretched
-  // alike.
+  // alike, in the initial frame, as none leaves its cell.
   template <int dim>
   void
-  check_constant_stress(const std::string &frame, const std::string &treatment)
+  check_constant_stress(const std::string &treatment)
   {
-    SCOPED_TRACE(frame + ", " + treatment + ", " + std::to_string(dim) + "d");
-    SceneRun<dim> run(drawn_block<dim>(frame, treatment));
+    SCOPED_TRACE(treatment + ", " + std::to_string(dim) + "d");
+    SceneRun<dim> run(drawn_block<dim>("initial", treatment));
     run.advance_to(1);
-    const auto   points = run.points();
-    double       worst = 0, longest = 0;
-    const double along = points.position[0][0] /
-                         run.bodies[0]->points.reference_position(0)[0],
-                 across = points.position[1][0] /
-                          run.bodies[0]->points.reference_position(0)[1];
+    const auto points   = run.points();
+    const auto at_start = [&](const std::size_t p) {
+      return run.bodies[0]->points.reference_position(p);
+    };
+    double worst = 0, longest = 0;
     for (std::size_t p = 0; p < points.size; ++p)
-      {
-        const auto place = run.bodies[0]->points.reference_position(p);
-        worst            = std::max({worst,
-                                     std::abs(points.position[0][p] - along * place[0]),
-                                     std::abs(points.position[1][p] - across * place[1])});
-        longest          = std::max(longest, points.position[0][p]);
-      }
+      for (int d = 0; d < dim; ++d)
+        {
+          const double stretch = points.position[d][0] / at_start(0)[d];
+          worst                = std::max(worst,
+                           std::abs(points.position[d][p] -
+                                    stretch * at_start(p)[d]));
+          longest              = std::max(longest, points.position[d][p]);
+        }
     EXPECT_GT(longest, 1.15);
-    // points that cross cells are not at the places of a quadrature
-    EXPECT_LT(worst, frame == "initial" ? 1e-9 : 0.02);
+    EXPECT_LT(worst, 1e-9);
   }
 
 
@@ -194,9 +193,11 @@ namespace
     ASSERT_TRUE(equations.evaluate(beside(correction, -step), nullptr));
     for (std::size_t k = 0; k < n; ++k)
       if (!equations.is_held(k))
-        EXPECT_NEAR((forces[k] - equations.forces()[k]) / (2 * step),
-                    load[k],
-                    1e-5);
+        {
+          EXPECT_NEAR((forces[k] - equations.forces()[k]) / (2 * step),
+                      load[k],
+                      1e-5);
+        }
   }
 } // namespace
 
@@ -206,10 +207,9 @@ TEST(NewtonOnLevels, AConstantStressIsInEquilibrium)
 {
   for (const std::string treatment : {"none", "cell", "assumed strain"})
     {
-      check_constant_stress<2>("initial", treatment);
-      check_constant_stress<3>("initial", treatment);
+      check_constant_stress<2>(treatment);
+      check_constant_stress<3>(treatment);
     }
-  check_constant_stress<2>("current", "cell");
 }
 
 
