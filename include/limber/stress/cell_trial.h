@@ -6,7 +6,7 @@
 #include <limber/interpolation/basis_functions.h>
 #include <limber/materials/frame.h>
 #include <limber/materials/further_deformation.h>
-#include <limber/stress/assumed_trial.h>
+#include <limber/stress/assumed_tangent.h>
 
 #include <array>
 #include <vector>
@@ -73,7 +73,7 @@ namespace limber
 
 
 
-  /** Replaces AssumedTrial for bases without bending modes. */
+  /** Replaces AssumedTangent for bases without bending modes. */
   struct NoAssumedTrial
   {};
 
@@ -89,7 +89,7 @@ namespace limber
     std::vector<BasisFunctions<Basis>>   functions;        // at the points
     std::vector<TrialMotion<Basis, Law>> motions;
     using Assumed = std::conditional_t<has_bending_modes<Basis>,
-                                       AssumedTrial<dim, Law::finite_strain>,
+                                       AssumedTangent<dim, Law::finite_strain>,
                                        NoAssumedTrial>;
     Assumed assumed;
     Assumed assumed_before;           // before the step; plastic, initial frame
