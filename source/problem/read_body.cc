@@ -233,6 +233,32 @@ namespace limber
 
 
 
+    /** Level of the coarsest cells that a body may have at the start. */
+    template <int dim>
+    unsigned int
+    coarsest_level(const Body<dim> &body, const GridDescription<dim> &grid)
+    {
+      const Corners<dim> of_body = body.shape->bounding_box();
+      unsigned int       result  = 0;
+      for (const Refinement<dim> &refinement : grid.refinements)
+        {
+          const auto &names = refinement.bodies;
+          bool        covers =
+            refinement.where.empty() &&
+            (refinement.criterion == RefinementCriterion::region ||
+             (refinement.criterion == RefinementCriterion::body &&
+              std::find(names.begin(), names.end(), body.name) != names.end()));
+          for (unsigned int d = 0; d < dim; ++d)
+            covers = covers && refinement.box.first[d] <= of_body.first[d] &&
+                     of_body.second[d] <= refinement.box.second[d];
+          if (covers)
+            result = std::max(result, refinement.level);
+        }
+      return result;
+    }
+
+
+
     /** Cells across the box around a body, where it is thinnest. */
     template <int dim>
     double
@@ -243,7 +269,7 @@ namespace limber
       for (unsigned int d = 0; d < dim; ++d)
         result =
           std::min(result, (box.second[d] - box.first[d]) / grid.edge(d));
-      return result;
+      return result * (1u << coarsest_level(body, grid));
     }
 
 

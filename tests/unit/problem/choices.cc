@@ -293,6 +293,35 @@ TEST(Choices, KernelOfSolidsOverLevels)
 
 
 
+// The cells that count are the fine ones, where all of the body has them.
+TEST(Choices, TreatmentFollowsTheCellsAcrossTheBody)
+{
+  const auto treatment = [](const std::string       &cells,
+                            std::vector<std::string> changes) {
+    changes.push_back("Grid/Cells=" + cells);
+    changes.push_back("Body block/Box/Upper corner=1, 0.3");
+    changes.push_back("Body block/Linear elastic/Poisson's ratio=0.499");
+    changes.push_back("Body block/Frame=initial");
+    changes.push_back("Method/Kernel=linear");
+    return read(changes).bodies[0].treatment;
+  };
+  EXPECT_EQ(treatment("8, 8", {}), Treatment::assumed_strain);
+  EXPECT_EQ(treatment("16, 16", {}), Treatment::cell);
+  EXPECT_EQ(treatment("8, 8",
+                      {"Grid/Levels=1",
+                       "Grid/Refine=all",
+                       "Grid/Refine all/Criterion=body",
+                       "Grid/Refine all/Bodies=block"}),
+            Treatment::cell);
+  EXPECT_EQ(treatment("8, 8",
+                      {"Grid/Levels=1",
+                       "Grid/Refine=half",
+                       "Grid/Refine half/Upper corner=0.5, 1"}),
+            Treatment::assumed_strain);
+}
+
+
+
 // Splines where bodies may bend across the cells
 TEST(Choices, KernelInTheInitialFrameFollowsTheFaces)
 {
