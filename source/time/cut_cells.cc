@@ -17,9 +17,10 @@ namespace limber
     // between their normals is larger. In explicit steps each Surface has an
     // impulse along its mean normal, which leaves a force along a curved one:
     // there the facets of a plane alone are merged, in three dimensions, where
-    // there would be dozens in a cell, and with an implicit pressure, whose
-    // forces have the normal of each facet, those within some 6 degrees.
-    constexpr double same_plane = 1 - 1e-7, nearly_flat = 0.995;
+    // there would be dozens in a cell, those within some 2 degrees, and with an
+    // implicit pressure, whose forces have the normal of each facet, 6 degrees.
+    constexpr double same_plane = 1 - 1e-7, almost_flat = 0.9995,
+                     nearly_flat = 0.995;
 
     // A facet counts as normal to an axis if the cosine of the angle between
     // its normal and the axis is larger.
@@ -527,7 +528,7 @@ namespace limber
         cell.beside_tips[a] +=
           (functions[a] / area - (*at_tip)[a]) * along_wall;
     const double least_cosine =
-      dim == 2 && !is_implicit ? same_plane : nearly_flat;
+      is_implicit ? nearly_flat : (dim == 2 ? same_plane : almost_flat);
     const auto same = [&](const Surface &surface) {
       return surface.obstacle == obstacle &&
              surface.normal * normal >

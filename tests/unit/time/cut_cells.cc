@@ -567,6 +567,54 @@ TEST(CutCells, WaterRestsBesideAWall)
 
 
 
+// Water under 100 kPa fills a box around a ball, whose facets differ from cell
+// to cell and within each: what the impulses on them leave is a millionth of
+// the elastic energy. (With facets merged up to 6 degrees it was 0.026 J.)
+TEST(CutCells, WaterUnderPressureRestsAroundABall)
+{
+  SceneRun<3> run(R"(
+    set Dimension = 3
+    set Bodies = water
+    set Obstacles = ball
+    subsection Body water
+      set Shape = formula
+      subsection Formula
+        set Inside = (x - 0.5)^2 + (y - 0.45)^2 + (z - 0.5)^2 - 0.04
+        set Upper corner = 1, 1, 1
+      end
+      set Points per cell edge = 2
+      set Placement = cut
+      set Initial pressure = 1e5
+      set Material = newtonian fluid
+      subsection Newtonian fluid
+        set Density = 1000
+        set Bulk modulus = 1e6
+      end
+    end
+    subsection Obstacle ball
+      set Shape = ball
+      subsection Ball
+        set Centre = 0.5, 0.45, 0.5
+        set Radius = 0.2
+      end
+    end
+    subsection Grid
+      set Upper corner = 1, 1, 1
+      set Cells = 10, 10, 10
+    end
+    subsection Method
+      set Time integration = explicit
+    end)");
+  double      largest = 0;
+  run.advance_to(0.1, [&]() {
+    largest = std::max(largest, run.totals().all.kinetic_energy);
+  });
+  EXPECT_GT(run.totals().all.strain_energy, 4e3);
+  EXPECT_LT(largest, 6e-3);
+}
+
+
+
 // A rock moves through a box with a slope: what is known of all cells step by
 // step is what is found of them at once, to the last bit, near the rock and far
 // from it.
