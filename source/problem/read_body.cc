@@ -324,10 +324,15 @@ namespace limber
       const bool   newton = is_solved_by_newton(problem.method.integration);
       // The mean volume of a cell says nothing of the pressure of a bent one:
       // bodies one square cell thick bend by two thirds too much, on cells four
-      // times as long by a fifth too little (doc/theory/initial_frame.md).
-      constexpr double fewest_cells = 2.9, largest_aspect_ratio = 1.25;
-      const bool bends = cells_across(body, problem.grid) < fewest_cells ||
-                         aspect_ratio(problem.grid) > largest_aspect_ratio;
+      // times as long by a fifth too little. In three dimensions 'cell' is
+      // nearer with two cells already (doc/theory/initial_frame.md).
+      constexpr double fewest_cells         = dim == 2 ? 2.9 : 1.5;
+      constexpr double largest_aspect_ratio = 1.25;
+      const bool       few = cells_across(body, problem.grid) < fewest_cells;
+      // equations with 'cell' are solved with any number of flat cells
+      const bool bends =
+        few || (!(newton && dim == 3) &&
+                aspect_ratio(problem.grid) > largest_aspect_ratio);
       struct Choice
       {
         Treatment   kind;
@@ -337,7 +342,7 @@ namespace limber
         fluid ?
           Choice{Treatment::cell,
                  "'cell', as a liquid resists volume changes only."} :
-        !soft && linear && bends && !(newton && dim == 3) ?
+        !soft && linear && bends ?
           Choice{Treatment::assumed_strain,
                  "'assumed strain', as bodies of few or flat cells bend far "
                  "too easily, or not enough, with 'cell'."} :

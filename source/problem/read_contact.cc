@@ -225,20 +225,23 @@ namespace limber
               break;
             const Corners<dim> a = first.shape->bounding_box(),
                                b = second.shape->bounding_box();
-            bool apart           = false;
+            double gap           = 0; // in cells
             for (unsigned int d = 0; d < dim; ++d)
-              {
-                const double gap = 1e-6 * problem.grid.edge(d);
-                apart |= a.first[d] > b.second[d] + gap ||
-                         b.first[d] > a.second[d] + gap;
-              }
-            if (apart && !first.is_liquid && !second.is_liquid)
+              gap = std::max(gap,
+                             std::max(a.first[d] - b.second[d],
+                                      b.first[d] - a.second[d]) /
+                               problem.grid.edge(d));
+            if (gap > 1e-6 && !first.is_liquid && !second.is_liquid)
               return problem.notes.push_back(
                 "Bodies " + in_quotes(second.name) + " and " +
                 in_quotes(first.name) +
-                " are apart and in no pair of 'Contact': should they meet, "
-                "they stick together, from a cell apart. 'Contact/Pairs' makes "
-                "them bounce, slide and part.");
+                (gap < 2 ?
+                   " are " + brief(gap) +
+                     " cells apart and in no pair of 'Contact': nearer than "
+                     "about two they share nodes, and stick together. " :
+                   " are apart and in no pair of 'Contact': should they meet, "
+                   "they stick together, from about two cells apart. ") +
+                "'Contact/Pairs' makes them bounce, slide and part.");
           }
     }
 

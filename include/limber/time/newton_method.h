@@ -115,6 +115,11 @@ namespace limber
     evaluate_residual(const StepQuestion &question,
                       const Values       &displacement,
                       Values             &residual);
+    void
+    renew_ghost_penalty(const StepQuestion &question,
+                        const Values       &last,
+                        Values             &displacement,
+                        Values             &residual);
     double
     potential(const StepQuestion &question, const Values &displacement) const;
     bool

@@ -752,6 +752,53 @@ TEST(Scenes, SidesThatMoveInwardLetGoBodiesOfTheCurrentFrame)
 
 
 
+// Where a side moves into the cells of a solid these are softer; told of the
+// softest solid alone.
+TEST(Scenes, SidesThatMoveIntoSolidsAreWarnedOf)
+{
+  const auto warnings = [](const std::string              &velocity,
+                           const std::vector<std::string> &changes = {}) {
+    return check_moving_sides(
+      read_problem<2>(SceneFile(ParameterText{R"(
+      set End time = 1
+      set Bodies = left, right
+      subsection Body left
+        subsection Box
+          set Upper corner = 0.5, 1
+        end
+        set Frame = current
+      end
+      subsection Body right
+        subsection Box
+          set Lower corner = 0.5, 0
+          set Upper corner = 1, 1
+        end
+        set Frame = current
+      end
+      subsection Boundaries
+        set left  = velocity
+        subsection Side left
+          set Velocity = )" + velocity +
+                                                R"(
+        end
+      end
+      subsection Grid
+        set Cells = 10, 10
+      end)",
+                                              FileFormat::prm,
+                                              "scene"},
+                                changes)));
+  };
+  EXPECT_TRUE(warnings("0.009; 0").empty());
+  ASSERT_EQ(warnings("0.011; 0").size(), 1u);
+  EXPECT_NE(warnings("0.011; 0").front().find("of 'left'"), std::string::npos);
+  EXPECT_TRUE(
+    warnings("0.011; 0", {"Body left/Linear elastic/Young's modulus=1e12"})
+      .empty());
+}
+
+
+
 // What a side would displace of a liquid, particle shifting gives back.
 TEST(Scenes, SidesThatMoveIntoLiquidAreWarnedOf)
 {

@@ -127,6 +127,36 @@ namespace
 
 
 
+// A cantilever 0.3 cells thick under a small weight, in one step and in ten:
+// the strain energy of a beam, q^2 L^5 / (40 E' I).
+TEST(NewtonSteps, BodiesThinnerThanACell)
+{
+  const double thickness = 0.015, weight = 0.9; // m, N/m^3
+  for (const double step : {1., 0.1})
+    {
+      SceneRun<2> run(held_strip,
+                      {"Body strip/Box/Lower corner=0, 0.5",
+                       "Body strip/Box/Upper corner=1, " +
+                         digits(0.5 + thickness),
+                       "Body strip/Frame=initial",
+                       "Grid/Upper corner=1.2, 1",
+                       "Grid/Cells=24, 20",
+                       "Loads/Gravity=0, " + digits(-weight / 1000),
+                       "Method/Time integration=quasi-static",
+                       "Method/Time step=" + digits(step)});
+      run.advance_to(1);
+      const double modulus = 1e6 / (1 - 0.3 * 0.3), load = weight * thickness;
+      const double exact =
+        load * load / (40 * modulus * std::pow(thickness, 3) / 12);
+      std::printf("step %g s: %.4f of the energy of a beam\n",
+                  step,
+                  run.totals().all.strain_energy / exact);
+      EXPECT_NEAR(run.totals().all.strain_energy, exact, 0.03 * exact);
+    }
+}
+
+
+
 // Nominal stress - rho g (H - Z) at any deformation; the shortening of the
 // column by quadrature of the stretch that the law has under it.
 TEST(NewtonSteps, ColumnSettlesUnderItsWeight)
