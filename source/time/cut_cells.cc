@@ -14,13 +14,12 @@ namespace limber
   namespace
   {
     // Facets in a cell are merged into one Surface if the cosine of the angle
-    // between their normals is larger. In explicit steps each Surface has an
-    // impulse along its mean normal, which leaves a force along a curved one:
-    // there the facets of a plane alone are merged, in three dimensions, where
-    // there would be dozens in a cell, those within some 2 degrees, and with an
-    // implicit pressure, whose forces have the normal of each facet, 6 degrees.
-    constexpr double same_plane = 1 - 1e-7, almost_flat = 0.9995,
-                     nearly_flat = 0.995;
+    // between their normals is larger. A Surface acts along its mean normal,
+    // with the velocity of its centroid: of a curved one a force along it would
+    // be left, and one that turns in itself would push. So in the plane the
+    // facets of a straight wall alone are merged, and in three dimensions,
+    // where there would be dozens in a cell, those within some 2 degrees.
+    constexpr double same_plane = 1 - 1e-7, nearly_flat = 0.9995;
 
     // A facet counts as normal to an axis if the cosine of the angle between
     // its normal and the axis is larger.
@@ -527,9 +526,8 @@ namespace limber
       for (unsigned int a = 0; a < n_nodes; ++a)
         cell.beside_tips[a] +=
           (functions[a] / area - (*at_tip)[a]) * along_wall;
-    const double least_cosine =
-      is_implicit ? nearly_flat : (dim == 2 ? same_plane : almost_flat);
-    const auto same = [&](const Surface &surface) {
+    const double least_cosine = dim == 2 ? same_plane : nearly_flat;
+    const auto   same         = [&](const Surface &surface) {
       return surface.obstacle == obstacle &&
              surface.normal * normal >
                least_cosine * surface.normal.norm() * area;
