@@ -56,8 +56,10 @@ namespace limber
                 (!filters ?
                    "'Method/Stress update = auto'." :
                  problem.grid.against_splines.empty() ?
-                   "'Method/Kernel = quadratic', or 'Transfer = flip'." :
-                   "'Method/Transfer = flip'.")};
+                   "'Method/Kernel = quadratic', or 'Transfer = flip'" +
+                     entries_of_filter(method) + "." :
+                   "'Method/Transfer = flip'" + entries_of_filter(method) +
+                     ".")};
     }
 
 
@@ -122,7 +124,8 @@ namespace limber
                 "the last step had Courant number " +
                   brief(symptoms.courant_number) + ", and the transfer holds " +
                   brief(bound) +
-                  ". Set 'Method/Time step = 0', or 'Transfer = flip'."};
+                  ". Set 'Method/Time step = 0', or 'Transfer = flip'" +
+                  entries_of_filter(problem.method) + "."};
       // MUSL and USF are stable to 1.3 and more in full cells, with and without
       // locking treatment.
       if (symptoms.courant_number > 1)

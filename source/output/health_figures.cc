@@ -5,6 +5,7 @@
 #include <limber/output/health_figures.h>
 #include <limber/points/shape_volume.h>
 #include <limber/points/single_point.h>
+#include <limber/problem/filter_bound.h>
 
 #include <algorithm>
 #include <cmath>
@@ -297,6 +298,10 @@ namespace limber
     figures.put_back        = totals.put_back;
     figures.put_back_way    = totals.put_back_way;
     figures.against_splines = state.problem.grid.against_splines;
+    figures.has_levels      = state.problem.grid.levels > 0;
+    figures.takes_apic =
+      state.problem.contacts.empty() && !has_domains(state.problem.grid.kernel);
+    figures.with_apic = entries_of_filter(state.problem.method);
     figures.knows_domains =
       state.problem.method.integration == TimeIntegration::explicit_steps;
     if (state.problem.method.time_step > 0 ||

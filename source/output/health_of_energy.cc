@@ -224,9 +224,13 @@ namespace limber
                 " of the largest energy was removed by the transfer between "
                 "points and grid";
     if (line.verdict != Verdict::good)
-      line.text += ", from what turns and from short waves. 'Transfer = apic' "
-                   "or 'Frame = initial' keep rotation, a longer 'Transfer "
-                   "period' loses less, shorter steps lose more";
+      line.text +=
+        ", from what turns and from short waves. " +
+        (figures.takes_apic ?
+           "'Transfer = apic'" + figures.with_apic + ", or 'Frame = initial'," :
+           std::string("'Frame = initial'")) +
+        " keeps rotation, a longer 'Transfer period' loses less, shorter steps "
+        "lose more";
     line.entry = "Method/Transfer";
     return line;
   }

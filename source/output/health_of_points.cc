@@ -42,12 +42,16 @@ namespace limber
     line.entry =
       of_body(body, body.is_cut ? "Points per cell edge" : "Placement");
     if (line.verdict != Verdict::good)
-      line.text += body.is_cut ?
-                     ": it is too thin for the parts of cells that points "
-                     "stand for; take more points per cell edge" :
-                     ", and so of its mass and load: places in cells are in "
-                     "or out as a whole; set 'cut', or 'fitted' for a box "
-                     "or block";
+      line.text +=
+        body.is_cut ?
+          std::string(": it is too thin for the parts of cells that "
+                      "points stand for; take more points per cell "
+                      "edge") :
+          ", and so of its mass and load: places in cells are in "
+          "or out as a whole; set 'cut'" +
+            std::string(figures.has_levels ? "" :
+                                             ", or 'fitted' for a box or "
+                                             "block");
     return line;
   }
 
@@ -210,20 +214,24 @@ namespace limber
     if (line.verdict != Verdict::good)
       line.text +=
         ": they clump, so that it takes less room than it should. " +
-        std::string(!may_shift ?
-                      "With 'linear' or 'quadratic' functions 'Particle "
-                      "shifting' keeps the volume" :
-                    figures.is_semi_implicit ?
-                      "Three points per cell edge or smaller cells keep it "
-                      "better" :
-                    !body.is_shifted ?
-                      "Set 'Particle shifting = auto' and 'Locking treatment "
-                      "= cell'" :
-                    body.kernel == KernelKind::linear ?
-                      "Three points per cell edge, smaller cells or "
-                      "'Time integration = semi-implicit' keep it better" :
-                      "Three points per cell edge, smaller cells or "
-                      "'Transfer = apic' keep it better");
+        std::string(
+          !may_shift ?
+            "With 'linear' or 'quadratic' functions 'Particle "
+            "shifting' keeps the volume" :
+          figures.is_semi_implicit ?
+            "Three points per cell edge or smaller cells keep it "
+            "better" :
+          !body.is_shifted ?
+            "Set 'Particle shifting = auto' and 'Locking treatment "
+            "= cell'" :
+          body.kernel == KernelKind::linear ?
+            "Three points per cell edge, smaller cells or "
+            "'Time integration = semi-implicit' keep it better" :
+            "Three points per cell edge" +
+              (figures.takes_apic ?
+                 ", smaller cells or 'Transfer = apic'" + figures.with_apic :
+                 " or smaller cells") +
+              " keep it better");
     return line;
   }
 

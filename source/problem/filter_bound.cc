@@ -90,6 +90,23 @@ namespace limber
 
 
 
+  std::string
+  entries_of_filter(const Method &method)
+  {
+    const Method usual;
+    std::string  result;
+    if (method.transfer_order != usual.transfer_order)
+      result +=
+        " and 'Transfer order = " + std::to_string(usual.transfer_order) + "'";
+    if (method.transfer_period != usual.transfer_period)
+      result +=
+        " and 'Transfer period = " + std::to_string(usual.transfer_period) +
+        "'";
+    return result;
+  }
+
+
+
   template <int dim>
   void
   obey_filter(Problem<dim> &problem)

@@ -262,7 +262,6 @@ namespace limber
             "': " + found->reason + ". Set " + found->remedy +
             ", or 'Kernel = linear'.");
       }
-    warn_of_solid_motion(problem);
     if (has_domains(problem.grid.kernel) &&
         is_affine(read_word(method, "Transfer", transfer_words())))
       throw InputError("The transfer " + in_quotes(method.text("Transfer")) +

@@ -2,6 +2,7 @@
 #include <limber/base/exceptions.h>
 #include <limber/base/text.h>
 #include <limber/materials/law_list.h>
+#include <limber/problem/filter_bound.h>
 #include <limber/problem/read_parts.h>
 #include <limber/problem/words.h>
 
@@ -52,7 +53,7 @@ namespace limber
         refuse(section,
                "Transfer",
                "where points take increments",
-               "'Transfer = flip'");
+               "'Transfer = flip'" + entries_of_filter(method));
       if (method.blend_time > 0)
         refuse(section,
                "Blend time",

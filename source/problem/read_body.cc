@@ -556,26 +556,14 @@ namespace limber
 
 
 
-    /**
-     * With AFLIP and linear functions points take the gradient of the new
-     * velocity, as with USL. It is unbounded where a point is so close to an
-     * edge of its cell that the nodes beyond have next to no mass (small cut),
-     * and the momentum that points give back (P2G) includes it; APIC bounds it.
-     * Points of 'regular' placement stay away from edges until they move, in
-     * the initial frame for ever.
-     */
     template <int dim>
     void
     warn_of_unbounded_gradients(Problem<dim> &problem)
     {
-      if (problem.method.transfer != Transfer::aflip ||
-          problem.grid.kernel != KernelKind::linear)
+      if (problem.method.transfer != Transfer::aflip)
         return;
       for (const Body<dim> &body : problem.bodies)
-        if (body.frame == Frame::current ||
-            body.placement == Placement::fitted ||
-            body.placement == Placement::cut ||
-            body.placement == Placement::gauss)
+        if (!bounds_gradients(body, problem.grid))
           problem.notes.push_back(
             "Warning: 'Transfer = aflip' with linear functions is unstable "
             "where points come near the edges of cells, as those of body " +
@@ -613,6 +601,7 @@ namespace limber
         meets.sides = any_hit && why_at_nodes(body, problem).empty();
         read_placement(section, meets, body, problem);
       }
+    warn_of_solid_motion(problem);
     warn_of_unbounded_gradients(problem);
   }
 

@@ -133,6 +133,26 @@ namespace limber
 
 
     /**
+     * What helps in the initial frame, as far as the placement of points lets
+     * it.
+     */
+    template <int dim>
+    std::string
+    remedy_for_lag(const Problem<dim> &problem)
+    {
+      return std::all_of(problem.bodies.begin(),
+                         problem.bodies.end(),
+                         [&](const Body<dim> &body) {
+                           return bounds_gradients(body, problem.grid);
+                         }) ?
+               "'Method/Transfer = aflip' keeps up, and so do implicit steps; "
+               "or set more 'Grid/Cells'." :
+               "Implicit steps keep up; or set more 'Grid/Cells'.";
+    }
+
+
+
+    /**
      * With FLIP rows of points that rotate through the cells take the mean of
      * the velocity next to them, and the spin that is lost becomes vibration
      * (doc/theory/transfers.md). In the initial frame a body turns too slowly.
@@ -142,9 +162,9 @@ namespace limber
     warn_of_rotation(Problem<dim> &problem)
     {
       constexpr double noted_lag = 5; // degrees per turn
-      // implicit steps have the consistent mass
+      // implicit steps have the consistent mass, quasi-static ones none
       if (problem.method.transfer != Transfer::flip ||
-          problem.method.integration == TimeIntegration::implicit_steps)
+          is_solved_by_newton(problem.method.integration))
         return;
       for (const Body<dim> &body : problem.bodies)
         {
@@ -169,8 +189,8 @@ namespace limber
             problem.notes.push_back(
               what + ", and falls behind by about " + brief(std::round(lag)) +
               " degrees in each, as nodes carry the mass further out than "
-              "points. 'Method/Transfer = aflip' keeps up, and so do implicit "
-              "steps; or set more 'Grid/Cells'.");
+              "points. " +
+              remedy_for_lag(problem));
         }
     }
 
@@ -289,6 +309,19 @@ namespace limber
 
 
   template <int dim>
+  bool
+  bounds_gradients(const Body<dim> &body, const GridDescription<dim> &grid)
+  {
+    return grid.kernel != KernelKind::linear ||
+           !(body.frame == Frame::current ||
+             body.placement == Placement::fitted ||
+             body.placement == Placement::cut ||
+             body.placement == Placement::gauss);
+  }
+
+
+
+  template <int dim>
   void
   warn_of_solid_motion(Problem<dim> &problem)
   {
@@ -307,6 +340,10 @@ namespace limber
   is_compact(const Shape<2> &);
   template bool
   is_compact(const Shape<3> &);
+  template bool
+  bounds_gradients(const Body<2> &, const GridDescription<2> &);
+  template bool
+  bounds_gradients(const Body<3> &, const GridDescription<3> &);
   template void
   warn_of_solid_motion(Problem<2> &);
   template void

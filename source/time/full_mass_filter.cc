@@ -26,8 +26,7 @@ namespace limber
       throw InputError(
         "The transfers 'fmpm' and 'xpic' with 'Kernel = cubic' are for one "
         "rank only. Usually a scene that ran on one was started with mpirun. "
-        "Set 'Method/Transfer = flip' or 'Kernel = quadratic', or run it on "
-        "one rank.");
+        "Set 'Method/Kernel = quadratic', or run it on one rank.");
     reinit();
   }
 

@@ -100,11 +100,14 @@ namespace limber
     std::vector<BodyFigures>     bodies;
     std::vector<ObstacleFigures> obstacles; // in the order of the scene
     unsigned int                 dim          = 2;
-    double                       energy_scale = 0; // see Balance
-    double                       kinetic      = 0; // energy of all points
-    double                       drift        = 0; // over the scale
-    std::string                  against_splines;  // GridDescription
-    bool          knows_domains = true; // the steps: cpdi and the like
+    double                       energy_scale = 0;   // see Balance
+    double                       kinetic      = 0;   // energy of all points
+    double                       drift        = 0;   // over the scale
+    std::string                  against_splines;    // GridDescription
+    bool                         has_levels = false; // cells of several sizes
+    bool                         takes_apic = true;  // the scene, as a transfer
+    std::string                  with_apic; // entries that it needs besides
+    bool          knows_domains = true;     // the steps: cpdi and the like
     bool          may_hit = false; // obstacles, each other or sides that let go
     unsigned long points  = 0;
     double        put_back     = 0; // points, each time; see Ledger

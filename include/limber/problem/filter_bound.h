@@ -4,6 +4,8 @@
 
 #include <limber/problem/problem.h>
 
+#include <string>
+
 namespace limber
 {
   /**
@@ -27,6 +29,13 @@ namespace limber
   template <int dim>
   double
   courant_number_of_filter(const Problem<dim> &problem);
+
+  /**
+   * What has to change along with a transfer that filters the velocity, as
+   * others refuse it: " and 'Transfer order = 4'", or nothing.
+   */
+  std::string
+  entries_of_filter(const Method &method);
 
   /** Lowers the Courant number of the scene to that limit, and says so. */
   template <int dim>

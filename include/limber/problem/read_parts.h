@@ -216,6 +216,19 @@ namespace limber
   warn_of_solid_motion(Problem<dim> &problem);
 
   /**
+   * Whether points can have affine velocities with increments (AFLIP). With
+   * linear functions they then take the gradient of the new velocity, as with
+   * USL. It is unbounded where a point is so close to an edge of its cell that
+   * the nodes beyond have next to no mass (small cut), and the momentum that
+   * points give back (P2G) includes it; APIC bounds it. Points of 'regular'
+   * placement stay away from edges until they move, in the initial frame for
+   * ever.
+   */
+  template <int dim>
+  bool
+  bounds_gradients(const Body<dim> &body, const GridDescription<dim> &grid);
+
+  /**
    * Approximate angle, rad, by which the initial velocity rotates a body until
    * the end of the run, if nothing stops it (source/problem/solid_motion.cc).
    */

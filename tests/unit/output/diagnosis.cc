@@ -177,6 +177,7 @@ namespace limber::test
     EXPECT_NE(of_filter.find("less than 0.32 edges"), std::string::npos)
       << of_filter;
     EXPECT_NE(of_filter.find("Kernel = quadratic"), std::string::npos);
+    EXPECT_EQ(of_filter.find("Transfer order"), std::string::npos);
     problem.grid.kernel = KernelKind::gimp;
     seen.courant_number = 0.2;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "");
@@ -192,5 +193,31 @@ namespace limber::test
     seen.courant_number            = 0.4;
     seen.bodies[0].smallest_volume = -0.2;
     EXPECT_EQ(diagnose(seen, problem, true).mode, "inverted point");
+  }
+
+
+
+  // FLIP refuses the entries of the filter.
+  TEST(Diagnosis, FlipIsProposedWithWhatItTakes)
+  {
+    SampleRun<2> run(/*projected=*/true);
+    Symptoms     seen = find_symptoms(run.state, 1.);
+    if (!speaks())
+      return;
+    Problem<2> problem            = run.problem;
+    problem.method.order          = StressUpdateOrder::usl;
+    problem.method.transfer       = Transfer::fmpm;
+    problem.method.transfer_order = 8;
+    const std::string flip = "'Transfer = flip' and 'Transfer order = 4'";
+    for (const double courant_number : {0.4, 0.9}) // small cut cell, and beyond
+      {
+        seen.courant_number    = courant_number;
+        const std::string text = diagnose(seen, problem, true).text;
+        EXPECT_NE(text.find(flip), std::string::npos) << text;
+      }
+    problem.method.transfer_period = 3;
+    EXPECT_NE(diagnose(seen, problem, true)
+                .text.find(flip + " and 'Transfer period = 1'"),
+              std::string::npos);
   }
 } // namespace limber::test

@@ -308,6 +308,34 @@ namespace limber::test
 
 
 
+  // 'fitted' is refused on cells of several sizes, APIC in contact.
+  TEST(Health, RemediesAreWhatTheSceneTakes)
+  {
+    HealthFigures figures    = sound();
+    figures.bodies[0].volume = 0.9;
+    EXPECT_NE(line("mass", figures).text.find("'fitted'"), std::string::npos);
+    figures.has_levels      = true;
+    const HealthLine levels = line("mass", figures);
+    EXPECT_EQ(levels.text.find("fitted"), std::string::npos) << levels.text;
+    EXPECT_NE(levels.text.find("set 'cut'"), std::string::npos);
+
+    figures                = sound();
+    figures.is_smoothed    = true;
+    figures.transfer       = 60;
+    figures.with_apic      = " and 'Transfer order = 4'";
+    const HealthLine order = line("transfer", figures);
+    EXPECT_NE(order.text.find("'Transfer = apic' and 'Transfer order = 4'"),
+              std::string::npos)
+      << order.text;
+    EXPECT_LT(n_words(order.text), 60u);
+    figures.takes_apic       = false;
+    const HealthLine touches = line("transfer", figures);
+    EXPECT_EQ(touches.text.find("apic"), std::string::npos) << touches.text;
+    EXPECT_NE(touches.text.find("'Frame = initial'"), std::string::npos);
+  }
+
+
+
   TEST(Health, BetweenGoodAndBadThereIsLook)
   {
     HealthFigures figures = sound();

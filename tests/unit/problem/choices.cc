@@ -850,6 +850,35 @@ TEST(Choices, LagOfASpinIsTold)
 
 
 
+// What the note on a lag proposes, no warning says is unstable.
+TEST(Choices, RemedyForALagGoesWithThePlacement)
+{
+  const auto says = [](const std::vector<std::string> &notes,
+                       const std::string              &words) {
+    return std::any_of(notes.begin(), notes.end(), [&](const auto &note) {
+      return note.find(words) != std::string::npos;
+    });
+  };
+  const std::string aflip = "'Method/Transfer = aflip'";
+  for (const std::string placement : {"regular", "gauss", "cut", "fitted"})
+    {
+      std::vector<std::string> scene = {
+        "End time=1",
+        "Grid/Cells=8, 8",
+        "Method/Kernel=linear",
+        "Body block/Frame=initial",
+        "Body block/Placement=" + placement,
+        "Body block/Initial velocity=7 - pi*y; pi*x"};
+      const auto notes = read(scene).notes;
+      EXPECT_TRUE(says(notes, "falls behind by about")) << placement;
+      scene.emplace_back("Method/Transfer=aflip");
+      EXPECT_NE(says(notes, aflip), says(read(scene).notes, "is unstable"))
+        << placement;
+    }
+}
+
+
+
 // The largest of blocks at any place, as computed, are 0.33 and 0.24 with GIMP
 // and 0.40 with splines (doc/theory/kernels.md).
 TEST(Choices, CourantNumberIsOneThatTheFilterHolds)
