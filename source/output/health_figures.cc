@@ -251,16 +251,19 @@ namespace limber
 
   template <int dim>
   HealthFigures
-  Health<dim>::look(const State<dim>  &state,
-                    const Totals<dim> &totals,
-                    const double       energy_scale) const
+  Health<dim>::look(const State<dim>        &state,
+                    const Totals<dim>       &totals,
+                    const BalanceState<dim> &balance) const
   {
     HealthFigures figures;
     figures.bodies       = at_start;
     figures.dim          = dim;
-    figures.energy_scale = energy_scale;
+    figures.energy_scale = balance.energy_scale;
+    figures.inner_scale  = balance.inner_scale;
     figures.kinetic      = totals.all.kinetic_energy;
-    figures.drift        = totals.energy_drift;
+    figures.drift        = balance.inner_scale > 0 ?
+                             totals.unexplained_energy / balance.inner_scale :
+                             0;
     figures.transfer     = totals.removed_by_transfer;
     figures.viscous      = totals.dissipated;
     figures.is_semi_implicit =
@@ -274,7 +277,7 @@ namespace limber
     figures.is_implicit =
       state.problem.method.integration == TimeIntegration::implicit_steps &&
       state.step > 3 &&
-      totals.kinetic_action > at_rest * energy_scale * state.time;
+      totals.kinetic_action > at_rest * balance.energy_scale * state.time;
     figures.kinetic_action    = totals.kinetic_action;
     figures.action_of_changes = totals.action_of_changes;
     figures.history           = totals.removed_with_history;

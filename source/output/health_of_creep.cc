@@ -118,7 +118,7 @@ namespace limber
     const bool       softens       = line.value <= softening_in_tension(body);
     if (line.verdict == Verdict::bad && !flows_in_tension(body) && !softens &&
         std::abs(figures.drift) <= balance_holds &&
-        figures.contact <= balance_holds * figures.energy_scale)
+        figures.contact <= balance_holds * figures.inner_scale)
       line.verdict = Verdict::look;
     const Remedy remedy = remedy_for_creep(body, figures);
     line.entry          = remedy.entry;

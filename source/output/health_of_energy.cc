@@ -49,9 +49,9 @@ namespace limber
     line.value   = figures.drift;
     line.verdict = check.verdict(line.value);
     line.text    = "the balance of energy leaves " +
-                brief(figures.drift * figures.energy_scale) + " J, " +
-                percent(figures.drift) + " of the largest energy, " +
-                brief(figures.energy_scale) + " J";
+                brief(figures.drift * figures.inner_scale) + " J, " +
+                percent(figures.drift) + " of the largest inner energy, " +
+                brief(figures.inner_scale) + " J";
     if (line.verdict != Verdict::good)
       line.text +=
         "; on record are " + brief(figures.loads) + " J from loads, " +
@@ -93,8 +93,8 @@ namespace limber
 
   // Energy that elastic solids lose in contact is an error, as is energy that
   // any solid gains; liquids that land on a floor, and plastic flow, lose it
-  // physically. Where nothing can be hit the loss is at a clamp, of a body
-  // whose points cross cells (creep), which has a line of its own.
+  // physically. Where nothing can be hit the loss is at a clamp, which stops
+  // what runs against it in each step.
   HealthLine
   judge_impacts(const HealthFigures &figures, const HealthCheck &check)
   {
@@ -113,19 +113,31 @@ namespace limber
                              std::min(0., figures.contact + figures.friction) :
                              figures.contact;
     const bool   created = lost < 0;
-    const bool   counts  = figures.may_hit && (created ? is_solid : is_elastic);
-    if (counts && figures.energy_scale > 0)
-      line.value = lost / figures.energy_scale;
+    const bool   counts  = created ? is_solid : is_elastic;
+    if (counts && figures.inner_scale > 0)
+      line.value = lost / figures.inner_scale;
     line.verdict =
       created ? created_bounds.verdict(line.value) : check.verdict(line.value);
     line.text =
       counts ?
         percent(std::abs(line.value)) + " of the energy scale was " +
-          (created ? "created where bodies" : "lost where elastic bodies") +
-          " hit each other, obstacles or sides" :
-        "no elastic bodies that may hit something";
+          (created ? "created where bodies " : "lost where elastic bodies ") +
+          (figures.may_hit ? "hit each other, obstacles or sides" :
+                             "are held by sides") :
+        "no elastic bodies that may lose energy in impacts";
     if (line.verdict == Verdict::good)
       return line;
+    if (!created && !figures.may_hit)
+      {
+        line.entry = figures.step_entry;
+        line.text +=
+          std::string(", as these stop in each step what moves at them: ") +
+          (figures.has_levels ?
+             "cells that stay as they are lose less, as do shorter steps" :
+             "shorter steps lose less; in 'Frame = initial', for a body that "
+             "is alone, nothing is lost");
+        return line;
+      }
     const bool is_uneven =
       std::any_of(figures.bodies.begin(),
                   figures.bodies.end(),

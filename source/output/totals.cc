@@ -129,6 +129,20 @@ namespace limber
 
 
 
+    /** Kinetic energy relative to the motion of the centre of mass. */
+    template <int dim>
+    double
+    inner_energy(const double                  kinetic_energy,
+                 const dealii::Tensor<1, dim> &momentum,
+                 const double                  mass)
+    {
+      return mass > 0 ?
+               std::max(0., kinetic_energy - 0.5 * momentum * momentum / mass) :
+               0;
+    }
+
+
+
     /** Totals that are sums over points, without the balances. */
     template <int dim>
     Totals<dim>
@@ -192,6 +206,7 @@ namespace limber
     start.strain_energy           = all.strain_energy;
     start.gravitational_energy    = all.gravitational_energy;
     start.momentum                = all.momentum;
+    start.mass                    = all.mass;
 
     for (unsigned int b = 0; b < state.bodies.size(); ++b)
       {
@@ -206,6 +221,7 @@ namespace limber
                                 totals.bodies[b].mass *
                                 state.problem.loads.gravity.norm();
       }
+    start.inner_scale = start.energy_scale;
   }
 
 
@@ -235,8 +251,9 @@ namespace limber
     totals.load_work             = ledger.load_work;
     totals.side_impulse          = ledger.side_impulse;
     totals.obstacles             = ledger.obstacles;
-    start.energy_scale =
-      std::max(start.energy_scale, energy_of_round_off(state));
+    const double round_off       = energy_of_round_off(state);
+    start.energy_scale           = std::max(start.energy_scale, round_off);
+    start.inner_scale            = std::max(start.inner_scale, round_off);
     balance_energy(ledger, state, totals);
     balance_momentum(ledger, sums.absolute_momentum(), totals);
     return totals;
@@ -273,22 +290,34 @@ namespace limber
     // Subtract the initial values first: potentials can be large numbers.
     const double potential_change =
       all.gravitational_energy - start.gravitational_energy;
-    const double gain =
-      (all.kinetic_energy - start.kinetic_energy) +
-      (all.strain_energy - start.strain_energy) + potential_change +
-      ledger.transfer + ledger.viscous + ledger.history + ledger.plastic +
-      ledger.friction + ledger.contact + ledger.adaptation +
-      ledger.lost_energy - ledger.boundary_work - ledger.load_work;
+    const double losses = ledger.transfer + ledger.viscous + ledger.history +
+                          ledger.plastic + ledger.friction + ledger.contact +
+                          ledger.adaptation;
+    const double strain_change = all.strain_energy - start.strain_energy;
+    const double gain          = (all.kinetic_energy - start.kinetic_energy) +
+                        strain_change + potential_change + losses +
+                        ledger.lost_energy - ledger.boundary_work -
+                        ledger.load_work;
     start.energy_scale =
       std::max(start.energy_scale,
                all.kinetic_energy + std::abs(all.strain_energy) +
                  std::abs(potential_change) + std::abs(ledger.boundary_work) +
                  std::abs(ledger.load_work));
-    // Round-off of the potentials, added up over the steps: of a body at rest
-    // that is more than all of its motion.
-    const double round_off =
-      (64. + state.step) * std::numeric_limits<double>::epsilon() *
-      (std::abs(all.gravitational_energy) + std::abs(all.strain_energy));
+    const double inner =
+      inner_energy(all.kinetic_energy, all.momentum, all.mass);
+    const double given =
+      inner - inner_energy(start.kinetic_energy, start.momentum, start.mass) +
+      strain_change + losses;
+    start.inner_scale = std::max({start.inner_scale,
+                                  inner + std::abs(all.strain_energy),
+                                  std::abs(given)});
+    // Round-off of the energies, added up over the steps: of a body at rest
+    // that of the potentials is more than all of its motion, of one in flight
+    // that of the flight more than all of its vibration.
+    const double round_off = (64. + state.step) *
+                             std::numeric_limits<double>::epsilon() *
+                             (std::abs(all.gravitational_energy) +
+                              std::abs(all.strain_energy) + all.kinetic_energy);
     // In a leapfrog scheme velocities belong to the middle of a step and places
     // to its end, which leaves this part of the potential undetermined: a fall
     // from rest would seem to lose 1 / (2 n + 1) of its energy after n steps.
@@ -298,10 +327,11 @@ namespace limber
           std::abs(state.problem.loads.gravity *
                    (all.momentum + ledger.lost_momentum - start.momentum)) :
         0;
-    const double unknown = round_off + of_half_a_step;
-    const double beyond  = gain > unknown  ? gain - unknown :
-                           gain < -unknown ? gain + unknown :
-                                             0;
+    const double unknown      = round_off + of_half_a_step;
+    const double beyond       = gain > unknown  ? gain - unknown :
+                                gain < -unknown ? gain + unknown :
+                                                  0;
+    totals.unexplained_energy = beyond;
     totals.energy_drift =
       start.energy_scale > 0 ? beyond / start.energy_scale : 0;
   }

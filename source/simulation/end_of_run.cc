@@ -297,7 +297,7 @@ namespace limber
     summary.suspected = suspected;
     integrator->bring_points_home();
     summary.health =
-      judge(health.look(state, totals, balance_of_start.state().energy_scale));
+      judge(health.look(state, totals, balance_of_start.state()));
     if (statistics)
       write_summary(problem.output.directory, summary);
     show_summary(summary);

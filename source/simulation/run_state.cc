@@ -92,8 +92,8 @@ namespace limber
   serialize(Archive &archive, BalanceState<dim> &state, const unsigned int)
   {
     archive &state.kinetic_energy &state.strain_energy &state
-      .gravitational_energy &state.momentum &state.stiffness &state
-      .energy_scale &state.momentum_scale;
+      .gravitational_energy &state.momentum &state.mass &state.stiffness &state
+      .energy_scale &state.inner_scale &state.momentum_scale;
   }
 
 

@@ -227,6 +227,8 @@ namespace limber
         else if (problem.method.integration == TimeIntegration::quasi_static)
           observables.follow_forces(state.time,
                                     balance_of_start.evaluate(state));
+        else if (state.step % Balance<dim>::longest_interval == 0)
+          balance_of_start.evaluate(state); // for its scales
         if (problem.output.time_interval > 0 &&
             state.time >= next_pictures - same_time * step)
           write_pictures();

@@ -101,8 +101,9 @@ namespace limber
     std::vector<ObstacleFigures> obstacles; // in the order of the scene
     unsigned int                 dim          = 2;
     double                       energy_scale = 0;   // see Balance
+    double                       inner_scale  = 0;   // see Balance
     double                       kinetic      = 0;   // energy of all points
-    double                       drift        = 0;   // over the scale
+    double                       drift        = 0;   // over the inner scale
     std::string                  against_splines;    // GridDescription
     bool                         has_levels = false; // cells of several sizes
     bool                         takes_apic = true;  // the scene, as a transfer

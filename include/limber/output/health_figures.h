@@ -104,13 +104,14 @@ namespace limber
     explicit Health(const State<dim> &start);
 
     /**
-     * @p totals and @p energy_scale (J) of the present state. Collective; costs
-     * as much as some hundred steps. Only the first rank gets all figures.
+     * @p totals and the scales of @p balance of the present state. Collective;
+     * costs as much as some hundred steps. Only the first rank gets all
+     * figures.
      */
     HealthFigures
-    look(const State<dim>  &state,
-         const Totals<dim> &totals,
-         double             energy_scale) const;
+    look(const State<dim>        &state,
+         const Totals<dim>       &totals,
+         const BalanceState<dim> &balance) const;
 
   private:
     std::vector<BodyFigures> at_start;

@@ -59,6 +59,7 @@ namespace limber
     double boundary_work         = 0; // done on the material, J
     double load_work             = 0; // J
     double energy_drift          = 0; // gain over the scale of energy
+    double unexplained_energy    = 0; // that gain, J
     double momentum_error        = 0; // over the scale of momentum
     // Impulse of each side of the box on the material so far, kg m/s
     std::array<dealii::Tensor<1, dim>, 2 * dim> side_impulse;
@@ -88,9 +89,11 @@ namespace limber
     double                 strain_energy        = 0;
     double                 gravitational_energy = 0;
     dealii::Tensor<1, dim> momentum;
+    double                 mass      = 0;
     double                 stiffness = 0; // sum of mass c^2, J
-    // largest so far: J, kg m/s
+    // largest so far: J, J, kg m/s
     double energy_scale   = 0;
+    double inner_scale    = 0;
     double momentum_scale = 0;
   };
 
@@ -112,6 +115,11 @@ namespace limber
    * step, which belongs to its middle (leapfrog). The scale is the largest T +
    * |U| + |V - V_0| + |W_sides| + |W_loads| so far, and at least what lifts the
    * liquids by 1e-4 of a cell.
+   *
+   * These terms depend on the frame of the observer. The inner scale does not:
+   * T' + |U| with T' relative to the motion of the centre of mass, or |G| with
+   * the work G of all outer forces beyond that on this motion, which is T' + U
+   * and all losses, minus the initial T' + U.
    */
   template <int dim>
   class Balance
@@ -126,6 +134,10 @@ namespace limber
     {
       start = former;
     }
+
+    /** Steps between evaluations of the scales, at most: peaks of energy last
+     * longer, as waves cross few cells in so many steps. */
+    static constexpr unsigned int longest_interval = 10;
 
     /** All totals of the present state; collective, a pass over the points. */
     Totals<dim>

@@ -10,7 +10,7 @@
 namespace limber
 {
   /** To be raised when the content of the files changes. */
-  inline constexpr unsigned long checkpoint_format = 20;
+  inline constexpr unsigned long checkpoint_format = 21;
 
 
 

@@ -31,8 +31,8 @@ namespace limber::test
       body.strain_energy              = 20;
       HealthFigures figures;
       figures.bodies       = {body};
-      figures.energy_scale = 100;
-      figures.kinetic      = 50;
+      figures.energy_scale = figures.inner_scale = 100;
+      figures.kinetic                            = 50;
       return figures;
     }
 
@@ -381,7 +381,25 @@ namespace limber::test
     figures.bodies[0].is_liquid = false;
     figures.contact             = 5;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::look);
-    figures.may_hit = false; // a clamp has taken it
+  }
+
+
+
+  // A clamp stops what runs against it, as a floor does.
+  TEST(Health, WhatClampsTakeIsTold)
+  {
+    HealthFigures figures = sound();
+    figures.contact       = 40;
+    expect_bad("impacts", figures, "Courant number");
+    EXPECT_NE(line("impacts", figures).text.find("held by sides"),
+              std::string::npos);
+    EXPECT_NE(line("impacts", figures).text.find("'Frame = initial'"),
+              std::string::npos);
+    figures.has_levels = true; // where it may be refused
+    EXPECT_EQ(line("impacts", figures).text.find("'Frame = initial'"),
+              std::string::npos);
+    figures.contact              = 5;
+    figures.bodies[0].is_plastic = true;
     EXPECT_EQ(line("impacts", figures).verdict, Verdict::good);
   }
 
@@ -527,7 +545,7 @@ namespace limber::test
     at_start(SceneRun<2> &run)
     {
       const auto state = run.state();
-      return Health<2>(state).look(state, run.totals(), 1.).bodies[0];
+      return Health<2>(state).look(state, run.totals(), {}).bodies[0];
     }
   } // namespace
 

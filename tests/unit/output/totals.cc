@@ -105,6 +105,60 @@ namespace limber::test
 
 
 
+  /** A stretching body, at rest as a whole and as a moving observer sees it. */
+  TEST(Totals, InnerScaleIsThatOfAnyObserver)
+  {
+    std::array<double, 2> energy, inner, unexplained;
+    for (const unsigned int seen : {0, 1})
+      {
+        SampleRun<2> run(false);
+        PointView<2> points = run.points().view();
+        const auto   move   = [&](const double rate) {
+          for (std::size_t p = 0; p < points.size; ++p)
+            points.velocity[0][p] =
+              rate * (points.position[0][p] - 0.25) + 100. * seen;
+        };
+        move(2);
+        Balance<2> balance(run.state);
+        balance.evaluate(run.state);
+        move(1); // half of the loss is on record
+        run.state.ledger.contact = 6;
+        const Totals<2> totals   = balance.evaluate(run.state);
+        energy[seen]             = balance.state().energy_scale;
+        inner[seen]              = balance.state().inner_scale;
+        unexplained[seen]        = totals.unexplained_energy;
+      }
+    EXPECT_GT(inner[0], 1);
+    EXPECT_NEAR(inner[0], energy[0], 1e-10);
+    EXPECT_NEAR(inner[1], inner[0], 1e-6);
+    // up to the round-off of 2.5 MJ
+    EXPECT_NEAR(unexplained[1], unexplained[0], 1e-6);
+    EXPECT_GT(energy[1], 1e6);
+  }
+
+
+
+  /** A ball that a floor stops has given its energy of flight to its strain. */
+  TEST(Totals, InnerScaleHoldsWhatWallsTurnIntoInnerEnergy)
+  {
+    SampleRun<2> run(false);
+    PointView<2> points = run.points().view();
+    const auto   move   = [&](const double speed) {
+      for (std::size_t p = 0; p < points.size; ++p)
+        points.velocity[0][p] = speed;
+    };
+    move(2);
+    Balance<2> balance(run.state);
+    balance.evaluate(run.state);
+    EXPECT_LT(balance.state().inner_scale, 1e-6);
+    move(0);
+    run.state.ledger.contact = 1000 * run.points().size() / 32.;
+    balance.evaluate(run.state);
+    EXPECT_NEAR(balance.state().inner_scale, 1000, 1e-9);
+  }
+
+
+
   /** Tractions that pull at two ends have no sum but round-off. */
   TEST(Totals, RoundOffOfLoadsInBalanceIsNoErrorOfMomentum)
   {
