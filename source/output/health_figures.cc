@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace limber
 {
@@ -40,6 +41,31 @@ namespace limber
       for (unsigned int d = 0; d < dim; ++d)
         numbers.push_back(brief(moment[d] / volume));
       return join(numbers, ", ");
+    }
+
+
+
+    /** Weight times depth of the points of a body: twice the energy that its
+     * levels could release. Collective. */
+    template <int dim>
+    double
+    weight_times_depth(const PointView<dim>         &points,
+                       const dealii::Tensor<1, dim> &gravity,
+                       const MPI_Comm                ranks)
+    {
+      double mass  = 0;
+      double above = std::numeric_limits<double>::lowest(), below = above;
+      for (std::size_t p = 0; p < points.size; ++p)
+        {
+          double fallen = 0; // along gravity, times its size
+          for (unsigned int d = 0; d < dim; ++d)
+            fallen += gravity[d] * points.position[d][p];
+          mass += points.mass[p];
+          below = std::max(below, fallen);
+          above = std::max(above, -fallen);
+        }
+      mass = sum(mass, ranks);
+      return mass > 0 ? mass * (max(below, ranks) + max(above, ranks)) : 0;
     }
 
 
@@ -123,6 +149,13 @@ namespace limber
         body.volume       = sum(volume, start.grid.communicator);
         body.points       = own.points.n_global();
         body.shape_volume = shape_volume(*description.shape);
+        // all ranks, as it is collective
+        const double potential =
+          weight_times_depth<dim>(points,
+                                  start.problem.loads.gravity,
+                                  start.grid.communicator);
+        if (body.is_liquid)
+          body.potential = potential;
       }
     for (std::size_t a = 0; a < bodies.size(); ++a)
       for (std::size_t b = 0; b < bodies.size(); ++b)

@@ -56,6 +56,7 @@ namespace limber
     double        shape_volume = 0;
     bool          is_cut       = false; // 'Placement' is 'cut' or 'fitted'
     double        overlap      = 0;     // share that lies in another body
+    double        potential    = 0;     // weight times depth of a liquid
     std::string   overlaps_with;        // the name of that body
     std::string   overlap_place;        // its centre, as "0.5, 1"
     unsigned long gaps_at_start = 0;

@@ -691,6 +691,48 @@ namespace limber::test
 
 
 
+  // The motion of water at rest is no scale for what it loses; what stirs
+  // itself is told.
+  TEST(Health, LiquidsAtRestDissipateNothingThatMatters)
+  {
+    HealthFigures figures       = sound();
+    figures.is_semi_implicit    = true;
+    figures.bodies[0].is_liquid = true;
+    figures.energy_scale        = 0.05;
+    figures.lost_by_steps       = -0.05;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::bad);
+    figures.bodies[0].potential = 1000;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::good);
+    EXPECT_DOUBLE_EQ(line("dissipation", figures).value, 0.025);
+    EXPECT_NE(line("dissipation", figures).text.find("of low waves, 2 J"),
+              std::string::npos);
+    figures.lost_by_steps = -10;
+    figures.energy_scale  = 10;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::bad);
+    figures.lost_by_steps = 0.5;
+    figures.energy_scale  = 0.05;
+    EXPECT_EQ(line("dissipation", figures).verdict, Verdict::look);
+  }
+
+
+
+  // A tank of water, half a metre deep.
+  TEST(Health, PotentialOfALiquidIsItsWeightTimesItsDepth)
+  {
+    SceneRun<2> run("set Bodies = water\nsubsection Body water\n set Shape = "
+                    "box\n subsection Box\n set Lower corner = 0, 0\n set "
+                    "Upper corner = 1, 0.5\n end\n set Material = newtonian "
+                    "fluid\nend\nsubsection Grid\n set Cells = 10, "
+                    "10\nend\nsubsection Loads\n set Gravity = 0, "
+                    "-10\nend\n");
+    // between the outermost points, which stand half their distance inside
+    const BodyFigures water = at_start(run);
+    EXPECT_NEAR(water.potential, 0.5 * 1000 * 10 * 0.5, 0.1 * 2500);
+    EXPECT_LT(water.potential, 2500);
+  }
+
+
+
   TEST(Health, TellsWhatATransferThatSmoothsTakes)
   {
     HealthFigures figures = sound();
