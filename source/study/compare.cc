@@ -373,6 +373,11 @@ Exit codes: 0 done, 1 wrong input, 3 file error.
         console.show(compare_usage);
         return int(ExitCode::success);
       }
+    for (const std::string &word : words)
+      if (word.compare(0, 1, "-") == 0)
+        throw InputError("The option " + in_quotes(word) +
+                         " on the command line is not known: 'compare' takes "
+                         "two words and none. See 'limber compare --help'.");
     if (words.size() != 2)
       throw InputError(
         "The word 'compare' on the command line is followed by " +

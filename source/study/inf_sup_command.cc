@@ -33,6 +33,8 @@ square, no velocity on its boundary.
   --samples n               random fillings; smallest and mean beta are told
   --output-directory path   also write study.csv, study.md and a chart there
   --replace                 also if there are such results of a former call
+
+Exit codes: 0 done, 1 wrong input, 3 file error.
 )";
 
     struct InfSupCall
@@ -114,6 +116,9 @@ square, no velocity on its boundary.
           call.cells.clear();
           for (const std::string &part : split(value, ','))
             call.cells.push_back(count_of(option, part, 2, 64));
+          if (call.cells.empty())
+            throw InputError("The option '--cells' on the command line lists "
+                             "no mesh. Write '--cells 4,8,12', for instance.");
         }
       else if (option == "--pressure")
         {
@@ -131,7 +136,14 @@ square, no velocity on its boundary.
       else if (option == "--samples")
         call.samples = count_of(option, value, 1, 1000);
       else if (option == "--output-directory")
-        call.directory = value;
+        {
+          call.directory = value;
+          if (value.empty())
+            throw InputError("The option '--output-directory' on the command "
+                             "line has an empty value. Usually a variable of "
+                             "the shell is not set. Name a folder, or leave "
+                             "the option out.");
+        }
     }
 
 

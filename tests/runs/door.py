@@ -266,6 +266,22 @@ def helps(folder):
             expect(option in said, f"'{command}' takes {option}", said)
 
 
+def misused(folder):
+    """Options that a command does not know and values that are none are wrong
+    input, with a message that names them."""
+    for command in COMMANDS:
+        words = (command,) if command else ()
+        for wrong in (("--wrong",), ("--wrong", "x")):
+            code, said, complaint = limber(*words, *wrong)
+            expect(code == 1 and not said and complaint.startswith("Error: ") and
+                   (command in ("plot", "animate") or "'--wrong'" in complaint),
+                   f"'limber {command} {' '.join(wrong)}'", code, said, complaint)
+    for option, value in (("--cells", ""), ("--cells", "4,"), ("--points", "1.5"),
+                          ("--fill", "0"), ("--output-directory", ""),
+                          ("--pressure", "face"), ("--samples", "none")):
+        expect_refused(limber("inf-sup", option, value), "command line")
+
+
 def intended(folder):
     """Nothing is said about an entry that '--set' gives and the run uses; one that
     has no effect is told."""
