@@ -248,6 +248,19 @@ namespace limber
   bool
   is_compact(const Shape<dim> &shape);
 
+  // Locking treatment, its stabilisation and histories
+  // (source/problem/treatment.cc)
+
+  void
+  declare_treatment(Parameters &parameters);
+
+  /** Needs shape, law, frame and kernel. */
+  template <int dim>
+  void
+  read_treatment(const Section &section,
+                 Body<dim>     &body,
+                 Problem<dim>  &problem);
+
   /** Needs grid, sides and gravity; chooses the kernel with the frames. */
   template <int dim>
   void
