@@ -11,13 +11,23 @@
  *
  *   F_a = R A(R^T F),   <F> = R U the polar decomposition of the cell's mean,
  *
- *   (A G)_dd = <G_dd> + e1 G_dd' + e2 sum_e G_ee',
- *   (A G)_de = <G_de>  (2d),  <G_de> + xi_f' <xi_f' G_de> / <xi_f'^2>  (3d),
+ *   (A G)_dd = <G_dd> + e1 G_dd' + e2 G_ee',  (A G)_de = <G_de>  (2d),
  *
  * where brackets are means over the points of the cell, weighted by mass,
  * primes the deviations from them, and d, e, f different axes. So a cell in
  * bending has no (parasitic) shear, and its transverse strain is given by
  * (e1, e2); the corotational frame R makes this objective for any rotation.
+ * In 3d, with the slopes G_dd,f = <xi_f' G_dd> / <xi_f'^2> of bending cells and
+ * the rest, G_dd" = G_dd' - sum_f G_dd,f xi_f', of trilinear modes,
+ *
+ *   (A G)_dd = <G_dd> + e1 sum_f G_dd,f xi_f'
+ *                     + e2 sum_e (G_ee,d xi_d' + G_ee,e xi_e')
+ *                     + t1 G_dd" + t2 sum_e G_ee",
+ *   (A G)_de = <G_de> + G_de,f xi_f'.
+ *
+ * So strains that vary along f have their transverse strain along f alone, as
+ * those of a plate: the others are free to give one. (The terms G_ee,e vanish,
+ * but make A symmetric.)
  *
  * The determinant of F_a varies in a bent cell by the product of curvature and
  * stretch, which locks if K is large. So the law gets the volume ratio
@@ -38,8 +48,7 @@
  * which gives the nodal forces. Without the terms with S, which are quadratic
  * in the strain, a body at rest would not conserve its angular momentum. With
  * laws for small strain R = 1 and J_a = 1 + tr(F_a - 1): it is the operator of
- * strain_operator.h except for the part of a bending cell normal to its plane
- * in 3d.
+ * strain_operator.h.
  */
 namespace limber
 {
@@ -51,9 +60,18 @@ namespace limber
     using Matrix = SmallMatrix<dim, Number>;
     using Mean   = SmallMatrix<dim, double>;
 
+    /** Means of a field G over the points, and in 3d its slopes: of G_de along
+     * the third coordinate ("torsion"), and of G_dd along f ("bending"). */
+    struct Means
+    {
+      Mean mean{}, torsion{}, bending{};
+    };
+
     explicit AssumedDeformation(const StrainTreatment &treatment)
-      : own(dim == 2 ? treatment.own : treatment.trilinear_own)
-      , mate(dim == 2 ? treatment.mate : treatment.trilinear_mate)
+      : own(treatment.own)
+      , mate(treatment.mate)
+      , trilinear_own(treatment.trilinear_own)
+      , trilinear_mate(treatment.trilinear_mate)
     {
       set_zero(sums);
     }
@@ -80,8 +98,7 @@ namespace limber
               for (int c = 0; c < dim; ++c)
 #pragma GCC unroll 8
                 for (int e = 0; e < dim; ++e)
-                  if (e != d)
-                    sums[slope_sum(d, c, e)] += moment * F[c][e];
+                  sums[slope_sum(d, c, e)] += moment * F[c][e];
             }
         }
     }
@@ -117,23 +134,26 @@ namespace limber
             // points in one plane cannot resolve a torsion of the cell
             inverse_variance[f] = variance > 1e-12 ? 1 / variance : 0;
             for (int e = 0; e < dim; ++e)
-              if (e != f)
-                {
-                  std::array<double, dim> slope;
-                  for (int c = 0; c < dim; ++c)
-                    slope[c] = total[slope_sum(f, c, e)] * inverse_mass -
-                               centroid[f] * mean[c][e];
-                  const int d = 3 - e - f;
-                  double    turned;
+              {
+                std::array<double, dim> slope;
+                for (int c = 0; c < dim; ++c)
+                  slope[c] = inverse_variance[f] *
+                             (total[slope_sum(f, c, e)] * inverse_mass -
+                              centroid[f] * mean[c][e]);
+                const auto turned = [&](const int d) {
                   if constexpr (finite_strain)
-                    turned = rotation[0][d] * slope[0] +
-                             rotation[1][d] * slope[1] +
-                             rotation[2][d] * slope[2];
+                    return rotation[0][d] * slope[0] +
+                           rotation[1][d] * slope[1] +
+                           rotation[2][d] * slope[2];
                   else
-                    turned = slope[d];
-                  torsion[d][e] = inverse_variance[f] * turned;
-                }
+                    return slope[d];
+                };
+                of_points.bending[e][f] = turned(e);
+                if (e != f)
+                  of_points.torsion[3 - e - f][e] = turned(3 - e - f);
+              }
           }
+      of_points.mean = stretch;
     }
 
     /** R^T F, of packs or means */
@@ -161,7 +181,7 @@ namespace limber
     __attribute__((always_inline)) Matrix
     evaluate(const Matrix &F, const std::array<Number, dim> &xi) const
     {
-      return assume(turned_back(F), stretch, torsion, xi);
+      return assume(turned_back(F), of_points, xi);
     }
 
     /** J_a of what evaluate() returns. */
@@ -178,43 +198,63 @@ namespace limber
         return result - (dim - 1.);
     }
 
-    /** A G, with known mean and torsion of G. */
+    /** A G, with the known means of G. */
     __attribute__((always_inline)) Matrix
     assume(const Matrix                  &G,
-           const Mean                    &mean,
-           const Mean                    &torsion,
+           const Means                   &means,
            const std::array<Number, dim> &xi) const
     {
-      Number all{};
+      const Mean &mean = means.mean;
+      Matrix      result;
+      if constexpr (dim == 2)
+        {
+          const Number x = G[0][0] - mean[0][0], y = G[1][1] - mean[1][1];
+          result[0][0] = mean[0][0] + own * x + mate * y;
+          result[1][1] = mean[1][1] + own * y + mate * x;
+          result[0][1] = broadcast<Number>(mean[0][1]);
+          result[1][0] = broadcast<Number>(mean[1][0]);
+          return result;
+        }
+      else
+        {
+          const auto             &slope = means.bending;
+          std::array<Number, dim> x, bent, rest;
+          Number                  all{};
 #pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-        all += G[d][d] - mean[d][d];
-      Matrix result;
+          for (int d = 0; d < dim; ++d)
+            x[d] = xi[d] - centroid[d];
 #pragma GCC unroll 8
-      for (int d = 0; d < dim; ++d)
-#pragma GCC unroll 8
-        for (int e = 0; e < dim; ++e)
-          if (d == e)
-            result[d][d] =
-              mean[d][d] + (own - mate) * (G[d][d] - mean[d][d]) + mate * all;
-          else if constexpr (dim == 2)
-            result[d][e] = broadcast<Number>(mean[d][e]);
-          else
+          for (int d = 0; d < dim; ++d)
             {
-              const int f  = 3 - d - e;
-              result[d][e] = mean[d][e] + torsion[d][e] * (xi[f] - centroid[f]);
+              bent[d] =
+                slope[d][0] * x[0] + slope[d][1] * x[1] + slope[d][2] * x[2];
+              rest[d] = G[d][d] - mean[d][d] - bent[d];
+              all += rest[d];
             }
-      return result;
+#pragma GCC unroll 8
+          for (int d = 0; d < dim; ++d)
+            {
+              const int e = (d + 1) % 3, f = (d + 2) % 3;
+              result[d][d] = mean[d][d] + own * bent[d] +
+                             mate * ((slope[e][d] + slope[f][d]) * x[d] +
+                                     slope[e][e] * x[e] + slope[f][f] * x[f]) +
+                             (trilinear_own - trilinear_mate) * rest[d] +
+                             trilinear_mate * all;
+              result[d][e] = mean[d][e] + means.torsion[d][e] * x[f];
+              result[d][f] = mean[d][f] + means.torsion[d][f] * x[e];
+            }
+          return result;
+        }
     }
 
-    const double            own, mate;        // e1, e2
-    std::array<double, dim> centroid;         // of the points
+    const double            own, mate;                     // e1, e2
+    const double            trilinear_own, trilinear_mate; // t1, t2, 3d
+    std::array<double, dim> centroid;                      // of the points
     Mean                    rotation;         // R, at finite strain
     Mean                    stretch;          // U = R^T <F>
     double                  volume;           // det U, at finite strain
     double                  trace_of_stretch; // tr U, at finite strain
-    // In 3d: slope of (R^T F)_de along the third coordinate
-    Mean                    torsion;
+    Means                   of_points;        // of R^T F
     std::array<double, dim> inverse_variance; // of the coordinates, 3d
 
   private:
@@ -238,7 +278,7 @@ namespace limber
     static constexpr int
     slope_sum(const int d, const int c, const int e)
     {
-      return square_sum(dim) + (d * dim + c) * (dim - 1) + (e < d ? e : e - 1);
+      return square_sum(dim) + (d * dim + c) * dim + e;
     }
 
     static constexpr std::size_t n_sums =
@@ -306,9 +346,17 @@ namespace limber
             sums[1 + d * dim + e] += VP;
             if constexpr (dim == 3)
               {
-                const int f = 3 - d - e;
                 if (d != e)
-                  sums[moment_sum(d, e)] += VP * (xi[f] - assumed.centroid[f]);
+                  {
+                    const int f = 3 - d - e;
+                    sums[torsion_sum(d, e)] +=
+                      VP * (xi[f] - assumed.centroid[f]);
+                  }
+                else
+#pragma GCC unroll 8
+                  for (int f = 0; f < dim; ++f)
+                    sums[bending_sum(d, f)] +=
+                      VP * (xi[f] - assumed.centroid[f]);
               }
           }
     }
@@ -321,11 +369,17 @@ namespace limber
       for (int d = 0; d < dim; ++d)
         for (int e = 0; e < dim; ++e)
           {
-            mean[d][e] = total[1 + d * dim + e] * inverse_volume;
+            means.mean[d][e] = total[1 + d * dim + e] * inverse_volume;
             if constexpr (dim == 3)
-              if (d != e)
-                torsion[d][e] = total[moment_sum(d, e)] * inverse_volume *
-                                assumed.inverse_variance[3 - d - e];
+              {
+                if (d != e)
+                  means.torsion[d][e] = total[torsion_sum(d, e)] *
+                                        inverse_volume *
+                                        assumed.inverse_variance[3 - d - e];
+                means.bending[d][e] = total[bending_sum(d, e)] *
+                                      inverse_volume *
+                                      assumed.inverse_variance[e];
+              }
           }
     }
 
@@ -336,7 +390,7 @@ namespace limber
         const std::array<Number, dim> &xi,
         const Number                  &V)
     {
-      Matrix Q = assumed.assume(P, mean, torsion, xi);
+      Matrix Q = assumed.assume(P, means, xi);
       for (auto &row : Q)
         for (Number &entry : row)
           entry *= V;
@@ -427,15 +481,21 @@ namespace limber
     const Assumption &assumed;
 
     static constexpr int
-    moment_sum(const int d, const int e)
+    torsion_sum(const int d, const int e)
     {
       return 1 + dim * dim + d * (dim - 1) + (e < d ? e : e - 1);
     }
+    static constexpr int
+    bending_sum(const int d, const int f)
+    {
+      return torsion_sum(dim, 0) + d * dim + f;
+    }
 
-    // sums of V, V P^ and, in 3d, first moments of V P^_de along the third axis
-    std::array<Number, dim == 2 ? 5 : 16> sums;
+    // sums of V, V P^ and, in 3d, first moments of V P^_de along the third
+    // axis, and of V P^_dd along all
+    std::array<Number, dim == 2 ? 5 : 25> sums;
     double                                inverse_volume = 0;
-    Mean                                  mean, torsion;
+    typename Assumption::Means            means;
     std::array<Number, dim == 2 ? 1 : 3>  torque;
     std::array<Number, 2> volumetric; // sums of V dW/dJ_a, and times J_a
     StressOnNodes<dim>    stress;

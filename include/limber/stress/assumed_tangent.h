@@ -140,10 +140,12 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               {
                 const double component = component_of(k, c);
-                means.first[c][e]  = component * of_nodes[k / dim].first[c][e];
-                means.second[c][e] = component * of_nodes[k / dim].second[c][e];
+                const Means &of_node   = of_nodes[k / dim];
+                means.mean[c][e]       = component * of_node.mean[c][e];
+                means.torsion[c][e]    = component * of_node.torsion[c][e];
+                means.bending[c][e]    = component * of_node.bending[c][e];
               }
-          mean[k] = means.first;
+          mean[k] = means.mean;
           if constexpr (finite_strain)
             {
               Axis axis;

@@ -107,7 +107,7 @@ namespace limber
       invert_inertia();
       Axis axis{};
       for (int a = 0; a < n_spins; ++a)
-        axis[a] = contract(spin(a), means.first);
+        axis[a] = contract(spin(a), means.mean);
       axis = divided(axis);
       Matrix S{};
       for (int a = 0; a < n_spins; ++a)
@@ -125,7 +125,7 @@ namespace limber
         return result;
       };
       const Means         means_moved = means_of(moved);
-      const Matrix        of_stretch  = means_moved.first; // <g> - S U
+      const Matrix        of_stretch  = means_moved.mean; // <g> - S U
       const double        of_volume   = contract(cofactor<dim>(U), of_stretch);
       std::vector<double> result(points.size());
       for (std::size_t p = 0; p < points.size(); ++p)
@@ -171,7 +171,8 @@ namespace limber
     }
 
   protected:
-    using Means = std::pair<Matrix, Matrix>; // mean and, in 3d, torsion
+    using Operation = AssumedDeformation<dim, finite_strain, double>;
+    using Means     = typename Operation::Means;
 
     static double
     contract(const Matrix &a, const Matrix &b)
@@ -224,15 +225,20 @@ namespace limber
             for (int e = 0; e < dim; ++e)
               {
                 const double share = points[p].volume / volume * X[d][e];
-                result.first[d][e] += share;
+                result.mean[d][e] += share;
                 if constexpr (dim == 3)
-                  if (d != e)
-                    {
-                      const int f = 3 - d - e;
-                      result.second[d][e] +=
-                        share * (points[p].xi[f] - operation->centroid[f]) *
-                        operation->inverse_variance[f];
-                    }
+                  {
+                    const auto along = [&](const int f) {
+                      return share *
+                             (points[p].xi[f] - operation->centroid[f]) *
+                             operation->inverse_variance[f];
+                    };
+                    if (d != e)
+                      result.torsion[d][e] += along(3 - d - e);
+                    else
+                      for (int f = 0; f < dim; ++f)
+                        result.bending[d][f] += along(f);
+                  }
               }
         }
       return result;
@@ -242,7 +248,7 @@ namespace limber
     Matrix
     assume(const Matrix &X, const Means &means, const std::size_t p) const
     {
-      return operation->assume(X, means.first, means.second, points[p].xi);
+      return operation->assume(X, means, points[p].xi);
     }
 
     /** The spins about all axes, each times its pull. */
@@ -344,10 +350,10 @@ namespace limber
       return result;
     }
 
-    std::optional<AssumedDeformation<dim, finite_strain, double>> operation;
-    double                                                        volume = 0;
-    std::vector<Matrix> turned, back;     // R^T dW/dF_a and Q of the points
-    Matrix              stress_of_mean{}; // M, J
+    std::optional<Operation> operation;
+    double                   volume = 0;
+    std::vector<Matrix>      turned, back; // R^T dW/dF_a and Q of the points
+    Matrix                   stress_of_mean{}; // M, J
     // Sums of V dW/dJ_a, and times 1 + tr X, J
     std::array<double, 2>  of_volume{};
     SmallMatrix<3, double> inverse{}; // of H
