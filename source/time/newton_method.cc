@@ -26,9 +26,10 @@ namespace limber
     // below this share. A beam that has been bent by its length and let go
     // stays bent by 1.4 % without, by 0.04 % with one restart, by 1e-5 with
     // two, which cost less than one iteration. A body half a cell thick, all of
-    // whose cells are cut, takes more, as the penalty is stiffer than it is.
-    constexpr unsigned int most_renewals = 12;
-    constexpr double       nearly_found  = 0.1;
+    // whose cells are cut, takes more, as the penalty is stiffer than it is;
+    // one that flows plastically may collapse along the way.
+    constexpr unsigned int most_renewals = 12, most_if_plastic = 2;
+    constexpr double       nearly_found = 0.1;
     // Share of the strain energy below which the ghost penalty does not matter
     // and is not restarted. Cook's membrane would take twice the iterations
     // with a tenth of it.
@@ -166,7 +167,8 @@ namespace limber
   // Restart the ghost penalty at the displacement that was found, or further on
   // along the way from the @p last restart (empty: there was none), to where
   // the potential without the penalty is least (by the secant): what the
-  // penalty resists most would approach in many small steps.
+  // penalty resists most would approach in many small steps. Not with plastic
+  // bodies.
   template <int dim>
   void
   NewtonMethod<dim>::renew_ghost_penalty(const StepQuestion &question,
@@ -180,7 +182,7 @@ namespace limber
       relative_residual = evaluate_residual(question, place, residual);
     };
     restart_at(displacement);
-    if (last.empty())
+    if (last.empty() || equations.any_flows())
       return;
     const Values found = displacement;
     Values       way   = found;
@@ -212,6 +214,8 @@ namespace limber
   {
     Values residual, correction, former, last_restart,
       of_held(equations.size());
+    const unsigned int most =
+      equations.any_flows() ? most_if_plastic : most_renewals;
     unsigned int renewals = 0;
     n_iterations          = 0;
     equations.count_jumps_from(Values(equations.size(), 0.));
@@ -228,7 +232,7 @@ namespace limber
         // Near convergence the ghost penalty is relaxed: nodes of small cuts
         // are about where they are going to be.
         if (remaining == 0 && relative_residual <= nearly_found &&
-            n_iterations > 0 && renewals < most_renewals &&
+            n_iterations > 0 && renewals < most &&
             equations.ghost_energy() > known_ghost_energy * equations.energy())
           {
             ++renewals;

@@ -10,6 +10,7 @@
 #include <limber/time/ghost_penalty.h>
 #include <limber/time/grid_reset.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -88,6 +89,18 @@ namespace limber
     reinit()
     {
       nodes.forget();
+    }
+
+    /** Whether any body flows plastically: its potential has no least value
+     * beyond the limit load. */
+    bool
+    any_flows() const
+    {
+      return std::any_of(parts.bodies.begin(),
+                         parts.bodies.end(),
+                         [](const auto &body) {
+                           return body->description.is_plastic;
+                         });
     }
 
     /** Number of unknowns. */
