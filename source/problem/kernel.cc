@@ -43,18 +43,24 @@ namespace limber
 
 
 
+    /** Why kernels whose points see several cells do not take an entry. */
+    struct Reasons
+    {
+      std::string treatment, hourglass, history;
+    };
+
     std::optional<Misfit>
-    misfit_of_domains(const Section &section)
+    misfit_beyond_cells(const Section &section, const Reasons &reasons)
     {
       if (!treatment_of(
              read_word(section, "Locking treatment", locking_words()))
              .with_domains)
         return Misfit{"Locking treatment",
-                      "domains reach over several cells",
+                      reasons.treatment,
                       "'Locking treatment = cell', 'node' or 'none'"};
       if (is_switched_on(section, "Hourglass control"))
         return Misfit{"Hourglass control",
-                      "domains that reach over several cells resist",
+                      reasons.hourglass,
                       "'Hourglass control = 0'"};
       if (is_switched_on(section, "Checkerboard control"))
         return Misfit{"Checkerboard control",
@@ -62,10 +68,20 @@ namespace limber
                       "'Checkerboard control = 0'"};
       if (read_word(section, "History", volume_history_words()) !=
           HistoryTreatment::keep)
-        return Misfit{"History",
-                      "points with domains keep their own",
-                      "'History = keep'"};
+        return Misfit{"History", reasons.history, "'History = keep'"};
       return {};
+    }
+
+
+
+    std::optional<Misfit>
+    misfit_of_domains(const Section &section)
+    {
+      return misfit_beyond_cells(section,
+                                 {"domains reach over several cells",
+                                  "domains that reach over several cells "
+                                  "resist",
+                                  "points with domains keep their own"});
     }
 
 
@@ -73,24 +89,10 @@ namespace limber
     std::optional<Misfit>
     misfit_of_dual_domain(const Section &section)
     {
-      if (!treatment_of(
-             read_word(section, "Locking treatment", locking_words()))
-             .with_domains)
-        return Misfit{"Locking treatment",
-                      "its gradients come from several cells",
-                      "'Locking treatment = cell', 'node' or 'none'"};
-      if (is_switched_on(section, "Hourglass control"))
-        return Misfit{"Hourglass control",
-                      "no motion of a cell is without resistance",
-                      "'Hourglass control = 0'"};
-      if (is_switched_on(section, "Checkerboard control"))
-        return Misfit{"Checkerboard control",
-                      "it is for kernels whose points see one cell",
-                      "'Checkerboard control = 0'"};
-      if (read_word(section, "History", volume_history_words()) !=
-          HistoryTreatment::keep)
-        return Misfit{"History", "points keep their own", "'History = keep'"};
-      return {};
+      return misfit_beyond_cells(section,
+                                 {"its gradients come from several cells",
+                                  "no motion of a cell is without resistance",
+                                  "points keep their own"});
     }
 
 
