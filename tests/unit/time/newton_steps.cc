@@ -157,6 +157,83 @@ TEST(NewtonSteps, BodiesThinnerThanACell)
 
 
 
+// A cantilever of square section, one cell thick and two, under a small weight:
+// its width is free to contract where it is bent, and is not to do so twice.
+// Reference: bending and shear of a beam; its clamp is stiffer, the more the
+// nearer Poisson's ratio is to 0.5.
+TEST(NewtonSteps, BeamsOfFewCellsBendInSpace)
+{
+  const double length = 2, width = 0.2, weight = 20; // m, N/m^3
+  struct Case
+  {
+    double       nu;
+    unsigned int cells; // across
+    double       tolerance;
+  };
+  for (const Case &known :
+       {Case{0.3, 1, 0.03}, Case{0.3, 2, 0.03}, Case{0.48, 1, 0.05}})
+    {
+      const std::string n = std::to_string(6 * known.cells);
+      SceneRun<3>       run(R"(
+        set Dimension = 3
+        set End time = 1
+        set Bodies = beam
+        subsection Body beam
+          subsection Box
+            set Lower corner = 0, 0.6, 0
+            set Upper corner = 2, 0.8, 0.2
+          end
+          set Frame = initial
+          set Locking treatment = assumed strain
+          set Material = neo hookean
+          subsection Neo hookean
+            set Density = 1000
+            set Young's modulus = 1e6
+            set Poisson's ratio = )" +
+                      digits(known.nu) + R"(
+          end
+        end
+        subsection Grid
+          set Upper corner = 2.4, 1.2, 1.2
+          set Cells = )" +
+                      std::to_string(12 * known.cells) + ", " + n + ", " + n +
+                      R"(
+        end
+        subsection Boundaries
+          set left = no slip
+          set right = free
+          set bottom = free
+          set top = free
+          set back = free
+          set front = free
+        end
+        subsection Loads
+          set Gravity = 0, )" +
+                      digits(-weight / 1000) + R"(, 0
+        end
+        subsection Method
+          set Time integration = quasi-static
+          set Time step = 1
+        end)");
+      run.advance_to(1);
+      const double area = width * width, load = weight * area, modulus = 1e6;
+      const double exact =
+        load * load *
+        (std::pow(length, 5) / (40 * modulus * area * area / 12) +
+         std::pow(length, 3) * 2 * (1 + known.nu) /
+           (6 * 5. / 6 * modulus * area));
+      std::printf("nu %g, %u cells: %.4f of the energy of a beam\n",
+                  known.nu,
+                  known.cells,
+                  run.totals().all.strain_energy / exact);
+      EXPECT_NEAR(run.totals().all.strain_energy,
+                  exact,
+                  known.tolerance * exact);
+    }
+}
+
+
+
 // Nominal stress - rho g (H - Z) at any deformation; the shortening of the
 // column by quadrature of the stretch that the law has under it.
 TEST(NewtonSteps, ColumnSettlesUnderItsWeight)
