@@ -98,6 +98,7 @@ namespace limber
       }
     if (obstacles != nullptr)
       meet_obstacles();
+    system.weigh(step);
     if (with_one_sided)
       {
         sum_forces(former_pressures(), false);
@@ -508,7 +509,8 @@ namespace limber
   // Forces change the kinetic energy by their work on the mean of the
   // velocities before and after the step, see account_loads(); the energies of
   // pressures and gravity change by the work along the displacement of points,
-  // dt v1. The difference is lost.
+  // dt v1. The difference is lost. What levels weights takes no energy from
+  // that of gravity.
   template <int dim>
   void
   ImplicitPressure<dim>::account(const double       step,
@@ -531,6 +533,8 @@ namespace limber
                 (force[std::size_t(node) * dim + d] +
                  mass * parts.problem.loads.gravity[d]) *
                 (after - mean));
+              parts.ledger.history -= step * system.missing_mass_of(node) *
+                                      parts.problem.loads.gravity[d] * mean;
             }
       }
   }

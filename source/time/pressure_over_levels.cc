@@ -158,20 +158,14 @@ namespace limber
 
 
 
-  // Overfill at a corner, interpolated from the masters if it hangs; the nodal
-  // volume is the sum of the shares of the cells around.
+  // The sum of the shares of the cells around.
   template <int dim>
   double
-  PressureSystem<dim>::excess_over_levels(const std::uint32_t corner,
-                                          const double        density) const
+  PressureSystem<dim>::nodal_volume_over_levels(const std::uint32_t node) const
   {
     double result = 0;
-    cells.corners.for_each_master(corner, [&](const auto &master) {
-      double nodal_volume = 0;
-      cells.corners.for_each(master.node, [&](const auto &part) {
-        nodal_volume += part.nodal_volume;
-      });
-      result += master.share * excess_in(nodal_volume, master.node, density);
+    cells.corners.for_each(node, [&](const auto &part) {
+      result += part.nodal_volume;
     });
     return result;
   }
@@ -191,7 +185,7 @@ namespace limber
                                                    std::size_t,
                                                    std::uint32_t) const;
   template double
-  PressureSystem<2>::excess_over_levels(std::uint32_t, double) const;
+    PressureSystem<2>::nodal_volume_over_levels(std::uint32_t) const;
   template bool
   PressureSystem<2>::is_inside(const Medium &, std::uint32_t) const;
   template void
@@ -207,7 +201,7 @@ namespace limber
                                                    std::size_t,
                                                    std::uint32_t) const;
   template double
-  PressureSystem<3>::excess_over_levels(std::uint32_t, double) const;
+    PressureSystem<3>::nodal_volume_over_levels(std::uint32_t) const;
   template bool
   PressureSystem<3>::is_inside(const Medium &, std::uint32_t) const;
 } // namespace limber

@@ -84,7 +84,13 @@ namespace limber
                                      return body->description.density_control >
                                             0;
                                    }))
-    , needs_volumes(controls_density && parts.bodies.size() > 1)
+    , levels_weights(parts.problem.loads.gravity.norm() > 0 &&
+                     std::all_of(parts.bodies.begin(),
+                                 parts.bodies.end(),
+                                 [](const auto &body) {
+                                   return body->description.is_liquid;
+                                 }))
+    , looks_at_nodes(controls_density || levels_weights)
     , surroundings(parts.grid)
   {
     reinit();
@@ -102,10 +108,10 @@ namespace limber
     held.clear();
     to_hold = nullptr;
     at_sides.clear();
-    if (needs_volumes)
-      volumes.reinit(parts.nodes.table.n());
-    if (controls_density)
+    if (looks_at_nodes)
       {
+        missing_mass.reinit(parts.nodes.table.n());
+        volumes.reinit(parts.nodes.table.n());
         surroundings.reinit();
         at_surface.reinit(parts.nodes.table.n());
       }
@@ -210,47 +216,80 @@ namespace limber
 
 
 
-  // Relative overfill of a node, V_material/V_node - 1 beyond the dead band, at
-  // the current @p density; negative where it is underfilled.
   template <int dim>
   double
-  PressureSystem<dim>::excess(const std::uint32_t cell,
-                              const std::uint32_t node,
-                              const double        density) const
+  PressureSystem<dim>::nodal_volume(const std::uint32_t node) const
   {
-    double nodal_volume = 1;
+    if (!cells.corners.empty())
+      return nodal_volume_over_levels(node);
+    double result = 1; // cells of one size
     for (int d = 0; d < dim; ++d)
-      nodal_volume /= parts.grid.geometry[cell].inverse_edge[d];
+      result /= parts.grid.geometry[0].inverse_edge[d];
     for (unsigned int side = 0; side < 2 * dim; ++side)
       if (parts.nodes.table.sides[node] >> side & 1)
-        nodal_volume *= 0.5;
-    return excess_in(nodal_volume, node, density);
+        result *= 0.5;
+    return result;
   }
 
 
 
-  // The same with the @p nodal_volume, m^3, before obstacles take a part.
+  // Relative overfill of a node, V_material/V_node - 1 beyond the dead band;
+  // negative where it is underfilled.
   template <int dim>
   double
-  PressureSystem<dim>::excess_in(double              nodal_volume,
-                                 const std::uint32_t node,
-                                 const double        density) const
+  PressureSystem<dim>::excess(const std::uint32_t node) const
   {
-    const double held = needs_volumes ?
-                          volumes[node] :
-                          parts.nodes.record(node)[Layout::mass] / density;
+    double room = nodal_volume(node);
     if (is_at_obstacle(node))
       {
-        nodal_volume = NodalVolumes<dim>::beside_obstacle(
-          cells.surfaces.cells()->open_nodal_volumes()[node], nodal_volume);
-        if (nodal_volume == 0)
+        room = NodalVolumes<dim>::beside_obstacle(
+          cells.surfaces.cells()->open_nodal_volumes()[node], room);
+        if (room == 0)
           return 0;
       }
-    const double excess = held / nodal_volume - 1;
+    const double excess = volumes[node] / room - 1;
     if (excess < 0 && at_surface[node] > 0)
       return 0; // partly filled: at the free surface
     return std::copysign(std::max(0., std::abs(excess) - excess_allowed),
                          excess);
+  }
+
+
+
+  // At corners of cells at the free surface the points tell what is there.
+  template <int dim>
+  void
+  PressureSystem<dim>::weigh(const double step)
+  {
+    if (!looks_at_nodes)
+      return;
+    sum_volumes();
+    find_surface();
+    if (!levels_weights)
+      return;
+    const auto &gravity = parts.problem.loads.gravity;
+    for (const std::uint32_t node : parts.nodes.active_nodes())
+      {
+        double *const record = parts.nodes.record(node);
+        const double  mass   = record[Layout::mass];
+        missing_mass[node]   = 0;
+        if (!(mass > 0) || at_surface[node] > 0)
+          continue;
+        const double room =
+          is_at_obstacle(node) ?
+            cells.surfaces.cells()->open_nodal_volumes()[node] :
+            nodal_volume(node);
+        const double share = room / volumes[node] - 1;
+        missing_mass[node] = share * mass;
+        for (int d = 0; d < dim; ++d)
+          {
+            const double change = step * share * gravity[d];
+            record[Layout::velocity + d] += change;
+            record[Layout::increment + d] += change;
+            if (parts.nodes.owns(node))
+              parts.ledger.gravity_impulse[d] += mass * change;
+          }
+      }
   }
 
 
@@ -336,10 +375,6 @@ namespace limber
   {
     hold_nodes(end);
     find_pattern_scales(step);
-    if (needs_volumes)
-      sum_volumes();
-    if (controls_density)
-      find_surface();
     const auto &media = cells.media;
     equations.values.assign(equations.columns.size(), 0.);
     equations.right_side.assign(equations.n, 0.);
@@ -419,12 +454,10 @@ namespace limber
       return;
 
     // The bodies of a medium have one pressure in a cell: compliances add up.
-    double density  = 0; // now, of the last body; used if there is but one
     double control  = 0;
     may_be_cut[row] = 1;
     medium.for_each_in(cell, [&](const auto &body, const double mass) {
       const Part part = part_of(medium, body, cell, mass);
-      density         = body.stress->density() / part.volume_ratio;
       control += body.description.density_control * part.volume / volume;
       equations.right_side[row] += part.compliance * part.pressure;
       former[row].compliance += part.compliance;
@@ -444,10 +477,10 @@ namespace limber
       {
         const std::uint32_t node = cells.node_of(cell, a);
         if (control > 0)
-          growth[row] +=
-            share * control / n_nodes *
-            (cells.corners.empty() ? excess(cell, node, density) :
-                                     excess_over_levels(node, density));
+          cells.corners.for_each_master(node, [&](const auto &master) {
+            growth[row] +=
+              share * control / n_nodes * master.share * excess(master.node);
+          });
         if (const double scale = pattern_scales[number][node]; scale > 0)
           for_each_pattern<dim>(parts.grid.geometry[cell],
                                 [&](const unsigned int pattern,

@@ -72,7 +72,7 @@ namespace limber
     void
     for_each_master(const std::uint32_t node, const Work &work) const
     {
-      if (hanging[node] == nullptr)
+      if (empty() || hanging[node] == nullptr)
         return work(Master{node, 1});
       for (const auto &[master, share] : hanging[node]->masters)
         work(Master{master, share});

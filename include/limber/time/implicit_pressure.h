@@ -32,6 +32,11 @@ namespace limber
    * zero: volume is exchanged between cells. It does not depend on the bulk
    * modulus, which may be as large as numbers are.
    *
+   * Weight: inside a liquid, nodes weigh what they have room for, not what the
+   * points near them happen to be: the pressures of cells carry the former, and
+   * the difference would set water at rest in motion, most at nodes that
+   * obstacles leave little room.
+   *
    * Density control: where nodes have more material than there is room for, a
    * cell is to grow by a part e of its volume. The same matrix gives the nodal
    * displacement w that does it with the least motion,

@@ -40,6 +40,22 @@ namespace limber
     find_columns();
 
     /**
+     * Find the free surface and how much nodes hold. Inside a liquid add to
+     * velocity and increment of nodes what their weight lacks, in a step of so
+     * many seconds, to that of the liquid which they have room for, see
+     * ImplicitPressure. First in a step; collective.
+     */
+    void
+    weigh(double step);
+
+    /** What weigh() has added to the mass that weighs at a node, kg. */
+    double
+    missing_mass_of(const std::uint32_t node) const
+    {
+      return levels_weights ? missing_mass[node] : 0;
+    }
+
+    /**
      * Assemble matrix and right-hand side from nodes that are advanced without
      * these pressures, before any boundary condition, in a step of so many
      * seconds until @p end; the density control acts with this @p share.
@@ -285,15 +301,15 @@ namespace limber
     void
     find_pattern_scales(double step);
     double
-    excess(std::uint32_t cell, std::uint32_t node, double density) const;
+    nodal_volume(std::uint32_t node) const;
     double
-    excess_in(double nodal_volume, std::uint32_t node, double density) const;
+    nodal_volume_over_levels(std::uint32_t node) const;
+    double
+    excess(std::uint32_t node) const;
     void
     sum_volumes();
     void
     find_surface();
-    double
-    excess_over_levels(std::uint32_t node, double density) const;
 
     const RunParts<dim>      parts;
     BoundaryConditions<dim> &boundaries;
@@ -309,12 +325,14 @@ namespace limber
     // By entry of the matrix: the cell, or piece of surface, of its column
     std::vector<std::uint32_t> mates;
     const bool                 controls_density; // of any body
-    // By node: current volume of the liquids around it, m^3 (P2G); only with
-    // density control and several bodies
-    const bool        needs_volumes;
-    LazyArray<double> volumes;
-    // Only with a density control; by node, how many of the cells around it are
-    // at the free surface
+    const bool levels_weights; // where weight acts on liquids alone
+    // By node: the mass that it has room for less its own, kg
+    LazyArray<double> missing_mass;
+    // Only where either is done, by node: current volume of the liquids around
+    // it, m^3 (P2G), and how many of the cells around it are at the free
+    // surface
+    const bool          looks_at_nodes;
+    LazyArray<double>   volumes;
     Surroundings<dim>   surroundings;
     LazyArray<double>   at_surface;
     RecordExchange      node_exchange{1};
