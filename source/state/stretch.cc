@@ -30,6 +30,28 @@ namespace limber
 
 
 
+  // The law knows the stretch of a pack of points; what points keep themselves
+  // is looked at one by one.
+  template <int dim>
+  void
+  stretches_along(const MaterialBody<dim>               &body,
+                  const PointView<dim>                  &points,
+                  const std::size_t                      n,
+                  const std::uint32_t *const             which,
+                  const std::array<const double *, dim> &directions,
+                  double *const                          result)
+  {
+    for (std::size_t k = 0; k < n; ++k)
+      {
+        dealii::Tensor<1, dim> direction;
+        for (int d = 0; d < dim; ++d)
+          direction[d] = directions[d][k];
+        result[k] = stretch_along(body, points, which[k], direction);
+      }
+  }
+
+
+
   template double
   stretch_along(const MaterialBody<2> &,
                 const PointView<2> &,
@@ -40,4 +62,18 @@ namespace limber
                 const PointView<3> &,
                 std::size_t,
                 const dealii::Tensor<1, 3> &);
+  template void
+  stretches_along<2>(const MaterialBody<2> &,
+                  const PointView<2> &,
+                  std::size_t,
+                  const std::uint32_t *,
+                  const std::array<const double *, 2> &,
+                  double *);
+  template void
+  stretches_along<3>(const MaterialBody<3> &,
+                  const PointView<3> &,
+                  std::size_t,
+                  const std::uint32_t *,
+                  const std::array<const double *, 3> &,
+                  double *);
 } // namespace limber

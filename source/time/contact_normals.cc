@@ -60,27 +60,42 @@ namespace limber
 
 
 
-  // In most steps no point enters another cell, or few do: the comparison costs
-  // less than repeating what depends on the cells.
+  // In most steps few points enter another cell, and still fewer one with
+  // contact nodes: the comparison costs less than repeating what depends on
+  // these.
   template <int dim>
   void
   Contact<dim>::find_cells()
   {
-    cells_are_others = parts.nodes.begin_noting();
-    const bool all   = cells_are_others;
+    const bool all   = parts.nodes.begin_noting();
+    cells_are_others = all;
     for (unsigned int b = 0; b < parts.bodies.size(); ++b)
       {
         std::vector<std::uint32_t> &former = cells_of[b];
-        const std::uint32_t *const  begin  = points[b].cell;
-        const std::uint32_t *const  end    = begin + points[b].size;
-        if (!all && former.size() == points[b].size &&
-            std::equal(begin, end, former.begin()))
-          continue;
-        cells_are_others = true;
-        former.assign(begin, end);
-        const unsigned int field = field_of(b);
-        for_each_batch(points[b], [&](const CellBatch &batch) {
-          parts.nodes.note_cell(field, batch.cell);
+        const std::uint32_t *const  cells  = points[b].cell;
+        const unsigned int          field  = field_of(b);
+        if (all || former.size() != points[b].size)
+          {
+            cells_are_others = true;
+            former.assign(cells, cells + points[b].size);
+            for_each_batch(points[b], [&](const CellBatch &batch) {
+              parts.nodes.note_cell(field, batch.cell);
+            });
+            continue;
+          }
+        for_each_block(points[b].size, [&](const CellBatch &block) {
+          if (std::equal(cells + block.begin,
+                         cells + block.end,
+                         former.data() + block.begin))
+            return;
+          for (std::size_t p = block.begin; p < block.end; ++p)
+            if (cells[p] != former[p])
+              {
+                parts.nodes.note_cell(field, cells[p]);
+                cells_are_others |= may_have_corners(field, cells[p]) ||
+                                    may_have_corners(field, former[p]);
+                former[p] = cells[p];
+              }
         });
       }
   }
@@ -299,7 +314,7 @@ namespace limber
     extents.find_largest();
     const auto furthest = [this](const std::size_t slot,
                                  const int         k) -> double & {
-      return extents.numbers[slot * Extents<dim>::n + k * Extents<dim>::lanes];
+      return extents.largest[slot * n_separations + k];
     };
     share(extents_of_ranks, [&](const std::size_t t) {
       std::array<double *, 2 * n_separations> slots;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+#include <limber/interpolation/batch_lanes.h>
 #include <limber/interpolation/spline.h>
 #include <limber/transfer/meeting_bodies.h>
 
@@ -64,16 +65,21 @@ namespace limber
             const CellBatch         &batch,
             const double             inverse_density)
     {
-      using P = Powers<dim, degree>;
-      std::array<double, P::n> result{};
-      for (std::size_t p = batch.begin; p < batch.end; ++p)
-        {
-          const auto xi = natural_place(points, cell, p);
-          std::array<std::array<double, P::along>, dim> powers;
+      using P      = Powers<dim, degree>;
+      using Number = PointPack<dim>;
+      std::array<Number, P::n> result;
+      set_zero(result);
+      for_each_pack<dim>(
+        batch, [&](const auto &lanes) __attribute__((always_inline)) {
+          const auto xi = lanes.natural(points, cell);
+          std::array<std::array<Number, P::along>, dim> powers;
 #pragma GCC unroll 3
           for (int d = 0; d < dim; ++d)
             {
-              powers[d][0] = d == 0 ? points.mass[p] * inverse_density : 1;
+              powers[d][0] =
+                d == 0 ?
+                  lanes.only_active(lanes.load(points.mass)) * inverse_density :
+                  broadcast<Number>(1.);
 #pragma GCC unroll 4
               for (int k = 1; k < P::along; ++k)
                 powers[d][k] = powers[d][k - 1] * xi[d];
@@ -81,14 +87,14 @@ namespace limber
 #pragma GCC unroll 64
           for (int i = 0; i < P::n; ++i)
             {
-              double product = powers[0][P::of(i, 0)];
+              Number product = powers[0][P::of(i, 0)];
 #pragma GCC unroll 2
               for (int d = 1; d < dim; ++d)
                 product *= powers[d][P::of(i, d)];
               result[i] += product;
             }
-        }
-      return result;
+        });
+      return all_sums(result);
     }
 
 
@@ -141,43 +147,55 @@ namespace limber
 
 
 
-    // Positions of a pack of points; idle lanes repeat the last one.
+    /** Half the edges of cubes of these volumes. */
+    template <int dim, class Number>
+    inline Number
+    half_edges_of(const Number &volume)
+    {
+      if constexpr (dim == 2)
+        return 0.5 * square_root(volume);
+      else
+        {
+          const Number inverse = inverse_cube_root(volume);
+          return 0.5 * volume * (inverse * inverse);
+        }
+    }
+
+
+
+    // Positions of a pack of points.
     template <int dim>
     struct PlacesOfPack
     {
-      using Number = Pack<Extents<dim>::lanes>;
+      using Number = PointPack<dim>;
 
       std::array<Number, dim> x;
       Number                  half_edge, reach;
 
+      template <class Lanes>
+      __attribute__((always_inline))
       PlacesOfPack(const PointView<dim> &points,
-                   const std::size_t     first,
-                   const std::size_t     end,
+                   const Lanes          &lanes,
                    const double          inverse_density)
+        : half_edge(
+            half_edges_of<dim>(Number(lanes.load(points.mass) * inverse_density)))
+        , reach(half_edge)
       {
-        for (int k = 0; k < Extents<dim>::lanes; ++k)
+        for (int d = 0; d < dim; ++d)
+          x[d] = lanes.load(points.place[d]);
+        if (points.reach != nullptr)
           {
-            const std::size_t p = std::min(first + k, end - 1);
-            for (int d = 0; d < dim; ++d)
-              x[d][k] = points.place[d][p];
-            half_edge[k] = points.mass[p] * inverse_density;
-          }
-        double volume = -1, edge = 0;
-        for (int k = 0; k < Extents<dim>::lanes; ++k)
-          {
-            if (half_edge[k] != volume) // usually the same volume as before
-              edge = half_edge_of<dim>(volume = half_edge[k]);
-            half_edge[k] = edge;
-            reach[k]     = reach_of(points, std::min(first + k, end - 1), edge);
+            const Number of_surface = lanes.load(points.reach);
+            reach = of_surface > 0. ? of_surface : half_edge;
           }
       }
 
-      Number
-      along(const double *const direction, const double sign) const
+      __attribute__((always_inline)) Number
+      along(const double *const direction) const
       {
-        Number result = (sign * direction[0]) * x[0];
+        Number result = direction[0] * x[0];
         for (int d = 1; d < dim; ++d)
-          result += (sign * direction[d]) * x[d];
+          result += direction[d] * x[d];
         return result;
       }
     };
@@ -266,7 +284,8 @@ namespace limber
   void
   Extents<dim>::clear(const std::size_t n_slots)
   {
-    numbers.assign(n_slots * n, -1e300);
+    of_lanes.assign(n_slots * n_separations * pack_width<PointPack<dim>>,
+                    -1e300);
   }
 
 
@@ -277,14 +296,12 @@ namespace limber
                     const MeetingBatches &batches,
                     const double *const   directions)
   {
-    using Number = Pack<lanes>;
+    using Number        = PointPack<dim>;
+    constexpr int lanes = pack_width<Number>;
     for (const MeetingBatch *some = batches.begin; some != batches.end; ++some)
-      for (std::size_t p = some->batch.begin; p < some->batch.end; p += lanes)
-        {
-          const PlacesOfPack<dim> places(points,
-                                         p,
-                                         some->batch.end,
-                                         batches.inverse_density);
+      for_each_pack<dim>(
+        some->batch, [&](const auto &pack) __attribute__((always_inline)) {
+          const PlacesOfPack<dim> places(points, pack, batches.inverse_density);
           for (std::uint32_t c = some->first; c < some->last; ++c)
             {
               const MeetingCorner &corner = batches.corners[c];
@@ -292,15 +309,17 @@ namespace limber
                 directions +
                 std::size_t(corner.slot / 2) * (n_separations * dim);
               double *const furthest =
-                numbers.data() + std::size_t(corner.slot) * n;
+                of_lanes.data() +
+                std::size_t(corner.slot) * (n_separations * lanes);
               const double sign = sign_of(corner);
+#pragma GCC unroll 3
               for (int k = 0; k < n_separations; ++k)
                 store(larger<Number>(load<Number>(furthest + k * lanes),
-                                     places.along(direction + k * dim, sign) +
+                                     sign * places.along(direction + k * dim) +
                                        places.reach),
                       furthest + k * lanes);
             }
-        }
+        });
   }
 
 
@@ -309,9 +328,11 @@ namespace limber
   void
   Extents<dim>::find_largest()
   {
-    for (std::size_t k = 0; k < numbers.size(); k += lanes)
-      numbers[k] =
-        *std::max_element(numbers.data() + k, numbers.data() + k + lanes);
+    using Number = PointPack<dim>;
+    largest.resize(of_lanes.size() / pack_width<Number>);
+    for (std::size_t k = 0; k < largest.size(); ++k)
+      largest[k] =
+        maximum(load<Number>(of_lanes.data() + k * pack_width<Number>));
   }
 
 
@@ -327,8 +348,7 @@ namespace limber
                    const double                largest_reach,
                    std::vector<std::uint32_t> &near)
   {
-    constexpr int lanes = Extents<dim>::lanes;
-    using Number        = Pack<lanes>;
+    using Number       = PointPack<dim>;
     const auto face_at  = [&](const std::uint32_t c) -> const Faces<dim>  &{
       return faces[corners[c].slot / 2];
     };
@@ -347,34 +367,30 @@ namespace limber
     // Margin for different normals: material in contact is within four half
     // edges, so their difference changes distances by up to 4 |dn| half edges.
     const double turned = 4 * std::sqrt(difference);
-    for (std::size_t p = some.batch.begin; p < some.batch.end; p += lanes)
-      {
-        const PlacesOfPack<dim> places(points,
-                                       p,
-                                       some.batch.end,
-                                       inverse_density);
+    for_each_pack<dim>(
+      some.batch, [&](const auto &pack) __attribute__((always_inline)) {
+        const PlacesOfPack<dim> places(points, pack, inverse_density);
         Number                  depth = broadcast<Number>(1e300);
         for (std::uint32_t c = some.first; c < some.last; ++c)
           {
             const Faces<dim> &face  = face_at(c);
             const double      other = face.furthest[1 - corners[c].slot % 2];
             depth                   = -larger<Number>(-depth,
-                                    places.along(face.normal.data(),
-                                                 sign_of(corners[c])) +
+                                    sign_of(corners[c]) *
+                                        places.along(face.normal.data()) +
                                       other);
           }
         // To the face is the other's reach less half its edge more than the
         // gap and the own reach; and of what is faced, that counts which is
         // less than its reach behind what is nearest. A quarter of an edge of
         // room is half of the way to the next row.
-        for (int k = 0; k < lanes && p + k < some.batch.end; ++k)
-          {
-            const double half_edge = places.half_edge[k];
-            if (depth[k] <= stretch * (2 * places.reach[k] + largest_reach) +
-                              (turned - 0.5) * half_edge)
-              near.push_back(static_cast<std::uint32_t>(p + k));
-          }
-      }
+        const Number furthest =
+          stretch * (2. * places.reach + largest_reach) +
+          (turned - 0.5) * places.half_edge;
+        for (int k = 0; k < pack.n; ++k)
+          if (depth[k] <= furthest[k])
+            near.push_back(static_cast<std::uint32_t>(pack.first + k));
+      });
   }
 
 

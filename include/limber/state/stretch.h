@@ -49,6 +49,18 @@ namespace limber
                 const PointView<dim>         &points,
                 std::size_t                   p,
                 const dealii::Tensor<1, dim> &direction);
+
+
+
+  /** The same for n points, see StressUpdate::stretches_along(). */
+  template <int dim>
+  void
+  stretches_along(const MaterialBody<dim>               &body,
+                  const PointView<dim>                  &points,
+                  std::size_t                            n,
+                  const std::uint32_t                   *which,
+                  const std::array<const double *, dim> &directions,
+                  double                                *result);
 } // namespace limber
 
 #endif

@@ -4,8 +4,7 @@
 
 #include <limber/time/contact_impulses.h>
 #include <limber/time/integrator.h>
-#include <limber/time/surface_fit.h>
-#include <limber/transfer/meeting_bodies.h>
+#include <limber/transfer/surface_points.h>
 
 #include <map>
 #include <unordered_map>
@@ -246,6 +245,12 @@ namespace limber
     forget_cell_nodes();
     void
     find_batches();
+    bool
+    may_have_corners(const unsigned int field, const std::uint32_t cell) const
+    {
+      return cell_nodes_of[std::size_t(parts.grid.n_cells()) * field + cell] !=
+             1;
+    }
     std::uint32_t
     find_cell_nodes(unsigned int field, std::uint32_t cell);
     template <std::size_t n>
@@ -264,9 +269,6 @@ namespace limber
     end_at_sides();
     void
     fit_surfaces();
-    template <int degree>
-    void
-    add_to_fits(const Group &group);
     void
     find_normals();
 
@@ -363,6 +365,7 @@ namespace limber
     std::vector<Faces<dim>>       faces;        // of the nodes
     std::vector<char>             points_touch; // likewise
     std::vector<SurfaceFit<dim>>  fits;         // in slots
+    SurfacePoints<dim>            surface;      // of a body
     SharedSlots                   gradients_of_ranks{2 * dim, false};
     SharedSlots                   fits_of_ranks{2 * SurfaceFit<dim>::n, false};
     SharedSlots                   extents_of_ranks{2 * n_separations, true};

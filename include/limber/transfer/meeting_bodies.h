@@ -23,6 +23,12 @@ namespace limber
     std::uint32_t slot; // 2 * number of the meeting, 1 more for the second body
     std::uint32_t k;    // local number of the node in the cell
     double        share = 1;
+
+    bool
+    is_of_hanging_node() const
+    {
+      return share < 1;
+    }
   };
 
 
@@ -113,16 +119,13 @@ namespace limber
 
   /**
    * How far points with their material extend along the candidate normals
-   * (second bodies: along their negatives). In each slot, lane by lane; see
-   * find_largest().
+   * (second bodies: along their negatives), m.
    */
   template <int dim>
   struct Extents
   {
-    static constexpr int lanes = 4;
-    static constexpr int n     = n_separations * lanes; // numbers a slot
-
-    std::vector<double> numbers; // -1e300 if there is no point
+    /** n_separations in each slot, -1e300 if there is no point. */
+    std::vector<double> largest;
 
     void
     clear(std::size_t n_slots);
@@ -132,9 +135,12 @@ namespace limber
         const MeetingBatches &batches,
         const double         *directions); // n_separations * dim a meeting
 
-    /** Reduce the lanes: the result is in the first. */
+    /** To be called after the last points have been added. */
     void
     find_largest();
+
+  private:
+    std::vector<double> of_lanes; // of packs of points, lane by lane
   };
 
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include <limber/transfer/meeting_bodies.h>
+#include <limber/transfer/surface_points.h>
 
 #include <gtest/gtest.h>
 #include <support/small_grid.h>
@@ -108,6 +108,7 @@ namespace
   public:
     static constexpr int        dim    = Case::dim;
     static constexpr KernelKind kernel = Case::kernel;
+    using Grid                         = SmallGrid<dim, kernel>;
     Meetings<dim, kernel>       meetings;
   };
 
@@ -214,8 +215,7 @@ TYPED_TEST(MeetingBodies, ExtentsAreTheLargestOfAPlainLoop)
   for (std::uint32_t slot = 0; slot < 2 * m.n; ++slot)
     for (int k = 0; k < n_separations; ++k)
       {
-        const double found =
-          extents.numbers[slot * extents.n + k * extents.lanes];
+        const double found   = extents.largest[slot * n_separations + k];
         const double of_loop = expected[slot * n_separations + k];
         n_found += of_loop > nowhere;
         EXPECT_NEAR(found, of_loop, 1e-14 * (1 + std::abs(of_loop)))
@@ -309,6 +309,87 @@ TYPED_TEST(MeetingBodies, PointsNearAFaceAreThoseOfAPlainLoop)
     }
   EXPECT_GT(n_near, 0u);
   EXPECT_LT(n_near, n_all);
+}
+
+
+
+// Every third point is at the surface. The guesses of some nodes are unknown.
+TYPED_TEST(MeetingBodies, FitsOfSurfacesAreThoseOfAPlainLoop)
+{
+  constexpr int                dim = TestFixture::dim;
+  auto                        &m   = this->meetings;
+  std::vector<SurfaceFit<dim>> expected;
+  for (std::uint32_t slot = 0; slot < 2 * m.n; ++slot)
+    expected.emplace_back(slot % 5 == 0 ? Vector<dim>() :
+                                          m.random.template vector<dim>(),
+                          0.3);
+  auto                found = expected;
+  std::vector<double> reach(m.points.size);
+  for (std::size_t p = 0; p < reach.size(); p += 3)
+    reach[p] = m.random(0.05, 0.2);
+  auto points  = m.points.view();
+  points.reach = reach.data();
+
+  SurfacePoints<dim> surface;
+  surface.find(points, m.all());
+  surface.turn(points, m.grid.view(), m.corners.data(), found.data());
+  for (std::size_t k = 0; k < surface.points.size(); ++k)
+    surface.stretch[k] = 1 + surface.points[k] * 1e-3;
+  surface.add_to_fits(points, m.grid.view(), m.corners.data(), found.data());
+
+  std::size_t n_found = 0;
+  for (const MeetingBatch &some : m.batches)
+    for (std::size_t p = some.batch.begin; p < some.batch.end; ++p)
+      {
+        if (!(reach[p] > 0))
+          continue;
+        const auto  value = [&](const std::uint32_t k) {
+          return m.grid.shape(some.batch.cell,
+                              static_cast<int>(k),
+                              m.points.position(p));
+        };
+        Vector<dim> upwards{};
+        double      square = 0;
+        for (std::uint32_t c = some.first; c < some.last; ++c)
+          for (int d = 0; d < dim; ++d)
+            upwards[d] += value(m.corners[c].k) *
+                          expected[m.corners[c].slot].guess()[d];
+        for (const double component : upwards)
+          square += component * component;
+        ASSERT_LT(n_found, surface.points.size());
+        EXPECT_EQ(surface.points[n_found], p);
+        for (int d = 0; d < dim; ++d)
+          EXPECT_NEAR(surface.upwards[d][n_found],
+                      square > 0 ? upwards[d] / std::sqrt(square) : 0,
+                      1e-13);
+        ++n_found;
+        if (!(square > 0))
+          continue;
+        const auto cell = m.grid.view().cells[some.batch.cell];
+        const auto xi   = natural_place(points, cell, p);
+        for (std::uint32_t c = some.first; c < some.last; ++c)
+          {
+            const MeetingCorner &corner = m.corners[c];
+            if (corner.share < 1) // of a hanging node
+              continue;
+            Vector<dim> place;
+            for (int d = 0; d < dim; ++d)
+              place[d] =
+                (xi[d] - TestFixture::Grid::Basis::power(corner.k, d)) /
+                cell.inverse_edge[d];
+            expected[corner.slot].add(place,
+                                      reach[p] * (1 + p * 1e-3),
+                                      value(corner.k));
+          }
+      }
+  EXPECT_EQ(n_found, surface.points.size());
+  EXPECT_GT(n_found, 10u);
+  for (std::uint32_t slot = 0; slot < 2 * m.n; ++slot)
+    for (int k = 0; k < SurfaceFit<dim>::n; ++k)
+      EXPECT_NEAR(found[slot].sums[k],
+                  expected[slot].sums[k],
+                  1e-12 * (1 + std::abs(expected[slot].sums[0])))
+        << "slot " << slot << ", sum " << k;
 }
 
 

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#ifndef limber_time_surface_fit_h
-#define limber_time_surface_fit_h
+#ifndef limber_transfer_surface_fit_h
+#define limber_transfer_surface_fit_h
 
-#include <deal.II/base/tensor.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
+#include <limber/base/pack.h>
 
 namespace limber
 {
@@ -24,7 +20,7 @@ namespace limber
   class SurfaceFit
   {
   public:
-    using Vector = dealii::Tensor<1, dim>;
+    using Vector = std::array<double, dim>;
 
     static constexpr int across = dim - 1;
 
@@ -41,26 +37,27 @@ namespace limber
      */
     SurfaceFit(const Vector &guess, const double edge)
       : edge(edge)
+      , inverse_edge(1 / edge)
+      , upwards(unit(guess))
     {
-      const double length = guess.norm();
-      if (!(length > 0))
-        return;
-      upwards = guess / length;
       if constexpr (dim == 2)
-        {
-          axes[0][0] = -upwards[1];
-          axes[0][1] = upwards[0];
-        }
+        axes[0] = {{-upwards[1], upwards[0]}};
       else
         {
           int least = 0;
           for (int d = 1; d < dim; ++d)
             if (std::abs(upwards[d]) < std::abs(upwards[least]))
               least = d;
-          axes[0][least] = 1;
-          axes[0] -= upwards[least] * upwards;
-          axes[0] /= axes[0].norm();
-          axes[1] = dealii::cross_product_3d(upwards, axes[0]);
+          Vector first{};
+          first[least] = 1;
+          for (int d = 0; d < dim; ++d)
+            first[d] -= upwards[least] * upwards[d];
+          axes[0] = unit(first);
+          for (int d = 0; d < dim; ++d)
+            {
+              const int e = (d + 1) % dim, f = (d + 2) % dim;
+              axes[1][d] = upwards[e] * axes[0][f] - upwards[f] * axes[0][e];
+            }
         }
     }
 
@@ -72,26 +69,40 @@ namespace limber
     }
 
     /**
-     * Add a point.
+     * Add a point, or a pack of points.
      * @param place  from the node, or any place that is the same for all, m
      * @param reach  from there to where its material ends, m
      * @param weight the function of the node at the point
      */
-    void
-    add(const Vector &place, const double reach, const double weight)
+    template <class Number>
+    __attribute__((always_inline)) void
+    add(const std::array<Number, dim> &place,
+        const Number                  &reach,
+        const Number                  &weight)
     {
-      const double z = place * upwards + reach;
-      // No node sees points a hundred edges away.
-      const double w = weight * std::exp(std::clamp(z / edge, -100., 100.));
-      sums[0] += w;
-      sums[1] += w * z;
+      const Number z = along(upwards, place) + reach;
+      const Number w = weight * exponential<Number>(z * inverse_edge);
+      std::array<Number, n> all;
+      all[0] = w;
+      all[1] = w * z;
+      std::array<Number, across> s;
       for (int i = 0, k = 2; i < across; ++i)
         {
-          const double s = place * axes[i];
-          sums[k++] += w * s;
-          sums[k++] += w * s * z;
+          s[i]             = along(axes[i], place);
+          const Number w_s = w * s[i];
+          all[k++]         = w_s;
+          all[k++]         = w_s * z;
           for (int j = 0; j <= i; ++j)
-            sums[k++] += w * s * (place * axes[j]);
+            all[k++] = w_s * s[j];
+        }
+      if constexpr (pack_width<Number> == 1)
+        for (int k = 0; k < n; ++k)
+          sums[k] += all[k];
+      else
+        {
+          const auto of_pack = all_sums(all);
+          for (int k = 0; k < n; ++k)
+            sums[k] += of_pack[k];
         }
     }
 
@@ -113,32 +124,57 @@ namespace limber
           for (int j = 0; j <= i; ++j)
             spread[i][j] = spread[j][i] = sums[k++] / sums[0] - s[i] * s[j];
         }
-      Vector       result         = upwards;
-      const double least_variance = 0.05 * edge * edge;
+      std::array<double, across> beta;
+      const double               least_variance = 0.05 * edge * edge;
       if constexpr (dim == 2)
         {
           if (!(spread[0][0] > least_variance))
             return upwards;
-          result -= with_z[0] / spread[0][0] * axes[0];
+          beta[0] = with_z[0] / spread[0][0];
         }
       else
         {
           const double mean = (spread[0][0] + spread[1][1]) / 2,
                        half = (spread[0][0] - spread[1][1]) / 2,
-                       root = std::hypot(half, spread[0][1]);
+                       root = std::sqrt(half * half +
+                                        spread[0][1] * spread[0][1]);
           if (!(mean - root > least_variance))
             return upwards;
           const double determinant = (mean - root) * (mean + root);
           for (int i = 0; i < 2; ++i)
-            result -= (spread[1 - i][1 - i] * with_z[i] -
+            beta[i] = (spread[1 - i][1 - i] * with_z[i] -
                        spread[0][1] * with_z[1 - i]) /
-                      determinant * axes[i];
+                      determinant;
         }
-      return result / result.norm();
+      Vector result = upwards;
+      for (int i = 0; i < across; ++i)
+        for (int d = 0; d < dim; ++d)
+          result[d] -= beta[i] * axes[i][d];
+      return unit(result);
     }
 
   private:
-    double                     edge;
+    template <class Number>
+    __attribute__((always_inline)) static Number
+    along(const Vector &direction, const std::array<Number, dim> &place)
+    {
+      Number result = direction[0] * place[0];
+      for (int d = 1; d < dim; ++d)
+        result += direction[d] * place[d];
+      return result;
+    }
+
+    /** Of length 1; zero remains zero. */
+    static Vector
+    unit(Vector vector)
+    {
+      const double square = along(vector, vector);
+      for (double &component : vector)
+        component *= square > 0 ? 1 / std::sqrt(square) : 0;
+      return vector;
+    }
+
+    double                     edge, inverse_edge;
     Vector                     upwards;
     std::array<Vector, across> axes{}; // across, normal to each other
   };
